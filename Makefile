@@ -9,7 +9,7 @@ OUT := out
 PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
-.PHONY: golden golden-before build environment lint test bare basic site bench peers accuracy study prior library stability nightly determinism munsell docs atlases samples cubes lock clean demo-render textures chart scenes plan pictures wavelengths representations mixing display palette look-cubes dial dependencies growth atlas-files axe cameras examples showcase first-steps looks emission environment measurements
+.PHONY: golden golden-before build lint test bare basic site measure peers library nightly munsell docs atlases samples cubes lock clean pictures axe examples
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -65,160 +65,23 @@ axe: $(AXE)
 $(AXE): $(INSTALLED)
 	-$(PIP) --no-deps --upgrade --target $(OUT)/axe axe-playwright-python==0.1.8 && touch $(AXE)
 
-bench: $(INSTALLED)
-	$(BIN)/python -m benchmarks.bench
-	$(BIN)/python -m benchmarks.programs
-	$(BIN)/python -m tools.render_docs performance
-
-# Speed and accuracy of all methods: docs/chart.md, its pictures, and the table of `uplift chart --recommend`.
-chart: $(INSTALLED)
-	$(BIN)/python -m benchmarks.chart
-	$(BIN)/python -m tools.render_docs chart
-
-# Tools for comparison in `make bench` and `make chart`. Ceres comes from the system: libceres-dev, cmake, g++.
+# Tools for comparison in the pages performance and chart. Ceres comes from the system: libceres-dev, cmake, g++.
 peers: $(INSTALLED)
 	$(PIP) -c constraints.txt --no-build-isolation -e '.[peers]'
-
-# Orders of growth, starts and solvers: docs/growth.md.
-growth: $(INSTALLED)
-	$(BIN)/python -m benchmarks.growth
-	$(BIN)/python -m tools.render_docs growth
-
-accuracy: $(INSTALLED)
-	$(BIN)/python -m benchmarks.accuracy
-	$(BIN)/python -m tools.render_docs accuracy
-
-# Measurements behind the design: docs/moments.md and docs/fidelity.md.
-study: $(INSTALLED)
-	$(BIN)/python -m benchmarks.moments
-	$(BIN)/python -m benchmarks.coefficients
-	$(BIN)/python -m benchmarks.fidelity
-	$(BIN)/python -m tools.render_docs moments fidelity
 
 # The library of the learnt prior, uplift/fit/library.npz, from atlases/ and colour-science.
 library: $(INSTALLED)
 	$(BIN)/python -m tools.ship_library
 
-# Bounds of colours under other lights: docs/looks.md.
-looks: $(INSTALLED)
-	$(BIN)/python -m benchmarks.looks
-	$(BIN)/python -m tools.render_docs looks
-
-# The learnt prior on materials that it does not know: docs/prior.md.
-prior: $(INSTALLED)
-	$(BIN)/python -m benchmarks.prior
-	$(BIN)/python -m tools.render_docs prior
-
-# Halves of atlases predicted by the other halves, and by plain baselines: docs/held-out.md.
-.PHONY: held-out
-held-out: $(INSTALLED)
-	$(BIN)/python -m benchmarks.held_out
-	$(BIN)/python -m tools.render_docs held-out
-
-# Raw values of cameras, by cubes and by matrices: docs/cameras.md.
-cameras: $(INSTALLED)
-	$(BIN)/python -m benchmarks.cameras
-	$(BIN)/python -m tools.render_docs cameras
-
-# Failures and sensitivity: docs/stability.md.
-stability: $(INSTALLED)
-	$(BIN)/python -m benchmarks.storage
-	$(BIN)/python -m benchmarks.stability
-	$(BIN)/python -m tools.render_docs stability
-
 # Malformed input, ten thousand of each kind, and a thousand commands of each class: takes minutes.
 nightly: $(INSTALLED)
 	$(BIN)/python -m tests.fuzz
 
-# Reproducibility across threads and instruction sets: docs/stability.md.
-determinism: $(INSTALLED)
-	$(BIN)/python -m benchmarks.determinism
-	$(BIN)/python -m tools.render_docs stability
-
-# The ColorChecker rendered with Mitsuba: docs/render.md.
-demo-render: $(INSTALLED)
-	$(BIN)/python -m benchmarks.render
-	$(BIN)/python -m benchmarks.render.rates
-	$(BIN)/python -m tools.render_docs render
-
-# Emission tables: lamps left out, exactness, expected errors, cost: docs/emission.md and its picture.
-emission: $(INSTALLED)
-	$(BIN)/python -m benchmarks.emission
-	$(BIN)/python -m tools.render_docs emission
-
-# The ColorChecker under environments of measured lamps, rendered with Mitsuba: docs/emission.md.
-environment: $(INSTALLED)
-	$(BIN)/python -m benchmarks.environment
-	$(BIN)/python -m tools.render_docs emission
-
-# Accuracy, speed and memory of textures: docs/textures.md.
-textures: pictures
-	$(BIN)/python -m benchmarks.textures
-	$(BIN)/python -m benchmarks.textures.memory
-	$(BIN)/python -m benchmarks.textures.storage
-	$(BIN)/python -m tools.render_docs textures
-
-# Gamut mappings: docs/display.md and its picture.
-display: $(INSTALLED)
-	$(BIN)/python -m benchmarks.display
-	$(BIN)/python -m tools.render_docs display
-
-# Mixing models: ramps, criteria, times: docs/mixing.md.
-mixing: $(INSTALLED)
-	$(BIN)/python -m benchmarks.mixing
-	$(BIN)/python -m tools.render_docs mixing
-
-# Cubes restricted to a scene: docs/scenes.md.
-scenes: pictures
-	$(BIN)/python -m benchmarks.scenes
-	$(BIN)/python -m tools.render_docs scenes
-
-# Scene plans for real images, and the accuracy of their predictions: docs/plan.md.
-plan: pictures
-	$(BIN)/python -m benchmarks.plan
-	$(BIN)/python -m tools.render_docs plan
-
-# Frame rate of the relighting viewer in Chromium: docs/palette-dial.md.
-dial: $(INSTALLED)
-	$(BIN)/python -m benchmarks.dial
-	$(BIN)/python -m benchmarks.dial.scan
-	$(BIN)/python -m tools.render_docs palette-dial
-
-# Accuracy of the factor model of palettes, and the examples: docs/palette.md and its pictures.
-palette: $(INSTALLED)
-	$(BIN)/python -m benchmarks.palette
-	$(BIN)/python -m tools.render_docs palette
-
-# Cubes with looks, and textures and scenes of several cubes: docs/look-cubes.md and its picture.
-look-cubes: $(INSTALLED)
-	$(BIN)/python -m benchmarks.look_cubes
-	$(BIN)/python -m tools.render_docs look-cubes
-
-# Wavelength selection, and reproduction of Meyer 1988: docs/wavelengths.md.
-wavelengths: $(INSTALLED)
-	$(BIN)/python -m benchmarks.wavelengths
-	$(BIN)/python -m tools.render_docs wavelengths
-
-# Spectral representations, compared with Kment 2011: docs/representations.md.
-representations: $(INSTALLED)
-	$(BIN)/python -m benchmarks.representations
-	$(BIN)/python -m tools.render_docs representations
-
-# Formats of atlas files: docs/atlas-files.md.
-atlas-files: $(INSTALLED)
-	$(BIN)/python -m benchmarks.atlas_files
-	$(BIN)/python -m tools.render_docs atlas-files
-
-# Size and import time of the dependencies: docs/dependencies.md.
-dependencies: $(INSTALLED)
-	$(BIN)/python -m benchmarks.dependencies
-	$(BIN)/python -m tools.render_docs dependencies
-
-# Packages whose example images the benchmarks use.
+# Packages with the example images of the pages plan, scenes and textures.
 pictures: $(INSTALLED)
 	$(PIP) --no-deps --upgrade --target $(OUT)/pictures scikit-image==0.26.0 scikit-learn==1.9.1
 
-# 1,269 chips of the Munsell book, for `make study`: they cannot be redistributed.
+# 1,269 chips of the Munsell book, for the page fidelity: they cannot be redistributed.
 munsell: $(INSTALLED)
 	$(PIP) --no-deps --upgrade --target $(OUT)/luxpy luxpy==1.12.5
 	$(BIN)/python tools/munsell.py $(OUT)/luxpy $(OUT)/munsell.csv
@@ -227,20 +90,10 @@ munsell: $(INSTALLED)
 atlases: $(INSTALLED)
 	$(BIN)/python tools/ship_atlases.py
 
-# Pictures and numbers of the README, and docs/showcase.md. Needs Mitsuba 3.
-showcase: $(INSTALLED)
-	$(BIN)/python -m benchmarks.showcase
-	$(BIN)/python -m tools.render_docs showcase README
-
-# Time from nothing to the first relit picture.
-first-steps: $(INSTALLED)
-	$(BIN)/python -m benchmarks.first_steps
-	$(BIN)/python -m tools.render_docs showcase README
-
-# All measured pages, one after the other, on a quiet machine: hours. Run again, it goes on where it stopped;
-# `python -m benchmarks.measurements --minutes 75` starts what can end in time. Before it, `make peers munsell` installs what some steps compare with.
-measurements: $(INSTALLED)
-	$(BIN)/python -m benchmarks.measurements
+# The figures of a page: `make measure PAGE=accuracy`. Without PAGE, list the pages; PAGE=all measures those that are not of the
+# last commit, on a quiet machine for hours. Before it, `make peers munsell pictures` installs what some pages compare with.
+measure: $(INSTALLED)
+	$(BIN)/python -m benchmarks $(PAGE)
 
 # Every example of the README, the documentation and the help, from a wheel: takes about 20 minutes.
 examples: $(INSTALLED)

@@ -1,1 +1,18 @@
-"""Programs that measure and write docs/data/*.json; `make docs` renders the pages."""
+"""Measurements shown in docs/, one file per page: ``make measure PAGE=name`` runs one and renders the pages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from uplift.lab.records import write_record
+
+ROOT = Path(__file__).parents[1]
+DOCS, DATA = ROOT / "docs", ROOT / "docs" / "data"
+ATLASES, CUBES, REFERENCE = ROOT / "atlases", ROOT / "cubes", ROOT / "tests" / "reference"
+MACBETH = ATLASES / "macbeth.txt"
+
+
+def record(page: str, data: str = "", **figures: Any) -> None:
+    """Write the figures of a page to docs/data/PAGE.json, or to DATA.json if the page has several."""
+    write_record(DATA / f"{data or page}.json", f"make measure PAGE={page}", **figures)

@@ -1,4 +1,4 @@
-"""Formats of atlas files, and how closely files in the layouts of instruments are read: ``make atlas-files``."""
+"""Formats of atlas files, and how closely files in the layouts of instruments are read, for docs/atlas-files.md."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.record import write
+from benchmarks import record
 from tests.atlas.vendor_files import VENDORS, Vendor, sample
 from uplift.atlas import FORMATS, Atlas, read_atlas
 from uplift.common.errors import UpliftWarning
@@ -52,7 +52,7 @@ def main() -> None:
         library, suffixes = each.library or UPLIFT, ", ".join(each.suffixes)
         layouts = ", ".join(names) or "the shipped atlases"
         rows.append(Row(each.name, suffixes, each.written, library, each.extra, layouts, largest))
-    write("atlas-files", "make atlas-files", layouts=len(found), largest=max(found.values()), formats=rows)
+    record("atlas-files", layouts=len(found), largest=max(found.values()), formats=rows)
 
 
 if __name__ == "__main__":

@@ -1,9 +1,4 @@
-"""Raw values of cameras to XYZ: cubes against the usual 3×3 matrices, on held-out patches of the ColorChecker.
-
-Examples
---------
-    python -m benchmarks.cameras
-"""
+"""Raw values of cameras to XYZ on held-out patches, by cubes and by matrices, for docs/cameras.md."""
 
 from __future__ import annotations
 
@@ -14,8 +9,8 @@ from typing import Any
 import numpy as np
 from scipy.optimize import least_squares
 
+from benchmarks import record
 from benchmarks.choices import ALONE, OURS, mark
-from benchmarks.record import write
 from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.camera import CAMERA
@@ -142,9 +137,8 @@ def main() -> None:
         warnings.simplefilter("ignore", UpliftWarning)
         rows = [compare(camera, light) for camera in observer.camera_names() for light in LIGHTS]
     left_out = list(families_with(on_grid(read_atlas(ATLAS), observer.grid())))
-    write(
+    record(
         "cameras",
-        "python -m benchmarks.cameras",
         atlas=ATLAS,
         splits=SPLITS,
         dim=DIM,

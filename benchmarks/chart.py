@@ -1,22 +1,24 @@
-"""Speed and accuracy of all methods: ``make chart``.
-
-Writes docs/data/chart.json, the pictures of docs/chart, and the table that the package carries.
-"""
+"""Speed and accuracy of all methods, for docs/chart.md and its pictures, and for ``uplift chart --recommend``."""
 
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import click
-from uplift_cli.startup import enable_jit_cache, use_one_blas_thread
-
+from benchmarks import ATLASES, DOCS, ROOT, record
 from benchmarks.choices import ALONE, OURS, SHIPPED, mark
-from benchmarks.record import ROOT, write
+from uplift.atlas import read_atlas
 from uplift.colorimetry.lights import CHART_LIGHTS
-
-if TYPE_CHECKING:
-    from uplift.lab.chart.table import Chart, MethodResult
+from uplift.common.files import write_text
+from uplift.common.progress import Progress
+from uplift.lab.chart.measure import measure_methods
+from uplift.lab.chart.methods import select_methods
+from uplift.lab.chart.page import render_chart
+from uplift.lab.chart.panels import all_panels, panels_of
+from uplift.lab.chart.picture import write_panel, write_pictures
+from uplift.lab.chart.recommend import MEASURED
+from uplift.lab.chart.table import Chart, MethodResult, State, chart_csv, read_chart
+from uplift.lab.chart.task import Effort, make_task
 
 ERRORS = (*CHART_LIGHTS, "rms", "own_lights")
 UNSEEN = ("lights", "rms")
@@ -25,61 +27,30 @@ PICTURES = {"unseen": 1, "set-up": 2}
 """Panels of the page, by the first part of the names of their files; each is drawn for every number of colours."""
 
 
-@click.command()
-@click.option("--from", "source", metavar="CSV", help="Table of an earlier run; nothing is measured.")
-@click.option("--longest", type=float, help="CPU seconds of a call; slower ones take fewer colours.  [default: 1]")
-def main(source: str | None, longest: float | None) -> None:
-    """Measure, draw and store."""
-    enable_jit_cache()
-    use_one_blas_thread()
-    publish(_measure(longest) if source is None else _read(source))
+def main(effort: Effort | None = None) -> None:
+    """Measure, draw and store; with the table of an earlier run as an argument, measure nothing."""
+    if len(sys.argv) > 1:
+        publish(read_chart(sys.argv[1]))
+        return
+    atlases = {path.stem: read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))}
+    publish(measure_methods(select_methods(), make_task(atlases, effort=effort), _print))
 
 
-def _read(source: str) -> Chart:
-    from uplift.lab.chart.table import read_chart
-
-    return read_chart(source)
-
-
-def _measure(longest: float | None) -> Chart:
-    from uplift.atlas import read_atlas
-    from uplift.lab.chart.measure import measure_methods
-    from uplift.lab.chart.methods import select_methods
-    from uplift.lab.chart.task import Effort, make_task
-
-    effort = Effort() if longest is None else Effort(longest=longest)
-    atlases = {path.stem: read_atlas(path) for path in sorted((ROOT / "atlases").glob("*.txt"))}
-    methods = select_methods()
-    with click.progressbar(length=len(methods), label="methods", file=sys.stderr) as bar:
-        return measure_methods(methods, make_task(atlases, effort=effort), lambda done: bar.update(1))
+def _print(progress: Progress) -> None:
+    print(f"{progress.done} of {progress.total} methods", file=sys.stderr)
 
 
 def publish(chart: Chart) -> None:
-    """Write the table, the pictures and the data of the page."""
-    from uplift.common.files import check_folder, write_text
-    from uplift.lab.chart.page import render_chart
-    from uplift.lab.chart.panels import panels_of
-    from uplift.lab.chart.picture import write_panel, write_pictures
-    from uplift.lab.chart.recommend import MEASURED
-    from uplift.lab.chart.table import chart_csv
-
-    folder = check_folder(ROOT / "docs" / "chart", (), force=True)
+    """Write the table that the package carries, the pictures and the data of the page."""
+    folder = DOCS / "chart"
     write_text(chart_csv(chart), ROOT / "uplift" / "lab" / "chart" / MEASURED, force=True)
     write_pictures(chart, folder / "chart.png", folder / "chart.svg", force=True)
     write_text(render_chart(chart), folder / "chart.html", force=True)
     for name, number in PICTURES.items():
         for batch in chart.batches:
             write_panel(chart, panels_of(batch)[number], folder / f"{name}-{batch}.png", force=True)
-    store(chart)
-
-
-def store(chart: Chart) -> None:
-    """Write docs/data/chart.json."""
-    from uplift.lab.chart.table import State
-
-    write(
+    record(
         "chart",
-        "make chart",
         environment=dict(chart.facts),
         batches=chart.batches,
         fronts=fronts(chart),
@@ -94,8 +65,6 @@ def store(chart: Chart) -> None:
 
 def fronts(chart: Chart) -> list[dict[str, Any]]:
     """Return the Pareto front of every panel, fastest first; the panel is named in its first row. Times in ns."""
-    from uplift.lab.chart.panels import all_panels
-
     rows = []
     for panel in all_panels(chart):
         front = panel.front(chart)

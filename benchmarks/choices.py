@@ -8,13 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from benchmarks.fidelity.materials import CHOSEN_ON
 from uplift.lab.study.held_out import CENTROID, HALF, LOCAL_LINEAR, NO_ATLAS
 
+CHOSEN_ON = ("rawtoaces", "babelcolor", "pmc", "tcs", "vs")
 SHIPPED = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017", "tcs", "vs")
-SMOOTH = "smooth prior"
-OURS, OURS_SMOOTH = HALF, f"{HALF}, {SMOOTH}"
-ALONE, ALONE_SMOOTH = NO_ATLAS, f"{NO_ATLAS}, {SMOOTH}"
+OURS, OURS_SMOOTH = HALF, f"{HALF}, smooth prior"
+ALONE, ALONE_SMOOTH = NO_ATLAS, f"{NO_ATLAS}, smooth prior"
 """Methods: cubes of moments with and without an atlas."""
 MARK = " ○"
 """Follows an optimistic figure on a page."""
@@ -22,34 +21,19 @@ MARK = " ○"
 
 @dataclass(frozen=True)
 class Choice:
-    """A choice of the design.
-
-    Parameters
-    ----------
-    choice : str
-        Its name.
-    sets : tuple of str
-        Sets whose errors it was made with.
-    methods : tuple of str
-        Methods that depend on it.
-    """
+    """A choice of the design, the sets whose errors it was made with, and the methods that depend on it."""
 
     choice: str
     sets: tuple[str, ...]
     methods: tuple[str, ...]
 
 
-ALL_CUBES = (OURS, OURS_SMOOTH, ALONE, ALONE_SMOOTH)
 CHOICES = (
-    Choice("metric, phase and start of smooth spectra", ("rawtoaces",), ALL_CUBES),
+    Choice("metric, phase and start of smooth spectra", ("rawtoaces",), (OURS, OURS_SMOOTH, ALONE, ALONE_SMOOTH)),
     Choice("weights of entries: lights, ends, curvature", CHOSEN_ON, (OURS, OURS_SMOOTH)),
     Choice("weight of smooth multipliers of entries", SHIPPED, (OURS, OURS_SMOOTH)),
     Choice("kriging: kinds, default length and nugget", CHOSEN_ON, (OURS, OURS_SMOOTH)),
-    Choice(
-        "share of an entry in the corners of its cell",
-        ("rawtoaces", "cie2017", "munsell"),
-        (OURS, OURS_SMOOTH),
-    ),
+    Choice("share of an entry in the corners of its cell", ("rawtoaces", "cie2017", "munsell"), (OURS, OURS_SMOOTH)),
     Choice("learnt prior: length, spreads, noise, bounds, relevance", (*SHIPPED, "munsell"), (OURS, ALONE)),
     Choice(
         "local-linear regression: regressors, criterion and ridge",

@@ -1,4 +1,4 @@
-"""Reproducibility of builds: ``make determinism`` writes docs/data/stability-determinism.json.
+"""Reproducibility of builds, for docs/stability.md.
 
 Threads, cores, devices and batch sizes must not change a byte. Instruction sets must not change the nodes of the
 lattice. They may change spectra; the largest difference is what `uplift check` has to allow between machines
@@ -23,7 +23,7 @@ import click
 import numpy as np
 
 import uplift
-from benchmarks.record import ROOT, write
+from benchmarks import ATLASES, ROOT, record
 from uplift.atlas import Atlas
 from uplift.report.regression import LIMITS, compare_rebuilt
 
@@ -99,9 +99,9 @@ def main(into: str | None, batch: tuple[int, int] | None) -> None:
         same = [row for setting in SAME for row in _rows(setting, base, Path(folder) / setting.name)]
         apart = [row for setting in APART for row in _rows(setting, base, Path(folder) / setting.name)]
     worst = {name: max(row["measures"][name] for row in apart) for name in LIMITS}
-    write(
+    record(
+        "determinism",
         "stability-determinism",
-        "make determinism",
         cubes=list(CASES),
         same=[
             {"setting": name, "cubes": len(rows), "different": sum(not row["same_bytes"] for row in rows)}
@@ -149,7 +149,7 @@ def _atlas(names: object) -> Atlas:
     for name in names:
         entries += [
             dataclasses.replace(entry, name=f"{name} {entry.name}")
-            for entry in uplift.read_atlas(ROOT / "atlases" / f"{name}.txt").entries
+            for entry in uplift.read_atlas(ATLASES / f"{name}.txt").entries
         ]
     return Atlas(tuple(entries))
 

@@ -1,4 +1,4 @@
-"""Bounds of the ColorChecker under other lights: ``make looks`` writes docs/data/looks.json.
+"""Bounds of the ColorChecker under other lights, for docs/looks.md and its pictures.
 
 Largest ΔE00 and share of each colour, the cost of many colours, the extreme reflectances against a linear program of
 scipy, how much more a search from 16 times as many directions finds, the share of held-out materials in the likely
@@ -15,10 +15,9 @@ from typing import Any
 import numpy as np
 from scipy.optimize import linprog
 
+from benchmarks import CUBES, DOCS, MACBETH, record
 from benchmarks.browser import SETTLE, SHIFT, browser
-from benchmarks.fidelity.light_errors import SPLITS, other_halves
-from benchmarks.fidelity.materials import large
-from benchmarks.record import ROOT, write
+from benchmarks.materials import LARGE, SPLITS, other_halves
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.expected_error import mahalanobis
@@ -31,10 +30,10 @@ from uplift.lookup.light_errors import LIKELY, NORMAL_RADIUS, lab_errors
 from uplift.report.look_page import write_look_page
 from uplift.viz.plots import plot_bounds
 
-ATLAS = ROOT / "atlases" / "macbeth.txt"
-CUBE = ROOT / "cubes" / "moments-16-macbeth.uplift"
+ATLAS = MACBETH
+CUBE = CUBES / "moments-16-macbeth.uplift"
 LIGHTS = ("A", "FL11", "HP1", "LED-RGB1")
-PICTURE = ROOT / "docs" / "looks" / "regions.png"
+PICTURE = DOCS / "looks" / "regions.png"
 DRAWN, DRAWN_LIGHTS = ((0x8A, 0x2A, 0x20), (0x5F, 0x7F, 0x9F)), 3
 """Encoded colours of the picture, between entries, and the number of lights."""
 PAGE_DIVISIONS, FINE_DIVISIONS = 3, 4
@@ -44,7 +43,7 @@ MANY, RUNS = 1000, 3
 """Colours that are timed."""
 LIKELY_LIGHTS, COEFFICIENTS = ("FL11", "A", "HP1"), 9
 """Lights of the share of held-out materials, and coefficients of the cubes that do not know them."""
-SCREENSHOT, WINDOW, SCALE = ROOT / "docs" / "looks" / "page.jpg", (1440, 1400), 0.85
+SCREENSHOT, WINDOW, SCALE = DOCS / "looks" / "page.jpg", (1440, 1400), 0.85
 CHOICE = (("region-1", "ArrowLeft", 6), ("region-1", "ArrowDown", 2))
 """Keys that are pressed for the screenshot, with Shift, and how often: 30 less a*, 10 less b* under FL11."""
 
@@ -62,9 +61,8 @@ def main() -> None:
     regions = [bounds(cube, drawn, each, divisions=PAGE_DIVISIONS) for each in lights[:DRAWN_LIGHTS]]
     plot_bounds(cube, [regions], PICTURE, force=True)
     screenshot(cube, [bounds(cube, drawn[:1], each, divisions=PAGE_DIVISIONS) for each in lights])
-    write(
+    record(
         "looks",
-        "make looks",
         precision="full",
         lights=LIGHTS,
         colours=[_colour(name, found, row) for row, name in enumerate(atlas.names)],
@@ -72,7 +70,7 @@ def main() -> None:
         many=MANY,
         runs=RUNS,
         programs=PROGRAMS,
-        likely=[row for name in large() for row in likely(name)],
+        likely=[row for name in LARGE for row in likely(name)],
         likely_share=LIKELY,
         normal_radius=NORMAL_RADIUS,
         splits=SPLITS,
@@ -105,7 +103,7 @@ def _method(cube: Cube, rgb: Array, found: Bounds) -> dict[str, Any]:
 
 def likely(name: str) -> list[dict[str, Any]]:
     """Return the shares of held-out materials in the likely region and in that of normal errors, by light."""
-    pairs, rows = other_halves(name, COEFFICIENTS), []
+    pairs, rows = other_halves(name, dim=32, coefficients=COEFFICIENTS), []
     for each in map(light, LIKELY_LIGHTS):
         distances, radii = [], []
         for cube, some in pairs:

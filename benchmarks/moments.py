@@ -1,7 +1,4 @@
-"""Reconstruction of measured spectra from moments, compared with Tódová 2020: ``make study``.
-
-Writes docs/data/moments.json and the pictures of docs/moments.
-"""
+"""Reconstruction of spectra from moments, compared with Tódová 2020, for docs/moments.md and its pictures."""
 
 from __future__ import annotations
 
@@ -13,18 +10,16 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import warps
-from benchmarks.record import ROOT, write
+from benchmarks import ATLASES, DOCS, REFERENCE, record
 from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.lab.study.moments import MomentsResult, MomentsStudy, study_moments
 from uplift.lab.study.moments_plots import Curve, curves, plot_errors, plot_patches, plot_worst
 from uplift.lab.study.technique import TECHNIQUES, Technique
 
-PICTURES = ROOT / "docs" / "moments"
-THESIS = ROOT / "tests" / "reference" / "moments_todova2020.csv"
+PICTURES = DOCS / "moments"
+THESIS = REFERENCE / "moments_todova2020.csv"
 FLOATS = (3, 5, 9, 13, 16)
 DEFAULT_FLOATS = 9
-WARPED, WARP_MOMENTS = TECHNIQUES[0], range(1, 9)
 Pair = list[float]
 """Mean and largest error."""
 Thesis = Mapping[tuple[Technique, int], Pair]
@@ -34,19 +29,16 @@ Thesis = Mapping[tuple[Technique, int], Pair]
 def main() -> None:
     """Measure, draw and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
-    atlases = {path.stem: uplift.read_atlas(path) for path in sorted((ROOT / "atlases").glob("*.txt"))}
+    atlases = {path.stem: uplift.read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))}
     study, thesis = study_moments(atlases), read_thesis()
-    PICTURES.mkdir(exist_ok=True)
     both = {f"our {len(study.names)} entries": curves(study), "Tódová 2020": thesis_curves(thesis)}
     plot_errors(both, PICTURES / "errors.png", force=True)
     plot_patches(study, PICTURES / "patches.png", force=True)
     plot_worst(study, PICTURES / "worst.png", force=True)
-    write(
+    record(
         "moments",
-        "make study",
         winners=[winners(study, thesis, floats) for floats in FLOATS],
         by_moments=[by_moments(study, thesis, count) for count in range(study.max_moments + 1)],
-        by_warp=by_warp(atlases, study, thesis),
         lights=[under_lights(study, floats, one) for floats in FLOATS for one in TECHNIQUES],
         by_atlas=[by_atlas(study, group) for group in study.groups],
         worst=[worst_entries(study, floats) for floats in FLOATS],
@@ -104,17 +96,6 @@ def by_moments(study: MomentsStudy, thesis: Thesis, count: int) -> dict[str, Any
         "ours": {one.short: pair(study.result(one, count)) for one in TECHNIQUES},
         "thesis": {one.short: thesis[one, count] for one in TECHNIQUES},
     }
-
-
-def by_warp(atlases: dict[str, uplift.Atlas], study: MomentsStudy, thesis: Thesis) -> list[dict[str, Any]]:
-    """Return the errors of the mirrored, warped technique with several warps, by the floats stored."""
-    rows = []
-    for name, warp in warps.candidates(study.measured).items():
-        with warps.replaced_warp(warp):
-            other = study_moments(atlases, max(WARP_MOMENTS))
-        rows.append({"warp": name, "errors": {str(n + 1): pair(other.result(WARPED, n)) for n in WARP_MOMENTS}})
-    printed = {str(n + 1): thesis[WARPED, n] for n in WARP_MOMENTS}
-    return [*rows, {"warp": "thesis", "errors": printed}]
 
 
 def under_lights(study: MomentsStudy, floats: int, technique: Technique) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Size and time of sparse cubes for real images: ``make scenes`` writes docs/data/scenes.json."""
+"""Size and time of sparse cubes for real images, for docs/scenes.md."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks.record import ROOT, write
-from benchmarks.textures.pictures import Picture, pictures
+from benchmarks import MACBETH, record
+from benchmarks.pictures import Picture, pictures
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.colorimetry.observer import light
@@ -21,7 +21,7 @@ from uplift.io.scene_colours import Images
 from uplift.lab.timing import Spread, time_calls
 from uplift.lookup import Cube
 
-ATLAS = ROOT / "atlases" / "macbeth.txt"
+ATLAS = MACBETH
 LATTICES = (("sRGB", 32), ("sRGB", 64), ("sRGB", 128), ("ACEScg", 32))
 RUNS = 3
 SAMPLE = 20_000
@@ -54,7 +54,7 @@ def main() -> None:
     images = list(pictures())
     uplift.build(ATLAS, dim=32)  # compile before timing
     sections = [measure(images, space, dim) for space, dim in LATTICES]
-    write("scenes", "make scenes", precision="full", runs=RUNS, sections=sections)
+    record("scenes", precision="full", runs=RUNS, sections=sections)
 
 
 def measure(images: list[Picture], space: str, dim: int) -> dict[str, Any]:

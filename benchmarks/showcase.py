@@ -1,6 +1,6 @@
-"""The pictures of the README, and the numbers below them: ``make showcase``.
+"""The pictures of the README and their numbers, for docs/showcase.md.
 
-Writes docs/data/showcase.json and docs/showcase/. The light on the charts is uniform, so that spectra are integrated
+The light on the charts is uniform, so that spectra are integrated
 instead of rendered; docs/render.md has renderings of the same chart, which agree.
 """
 
@@ -15,13 +15,12 @@ import numpy as np
 from PIL import Image
 
 import uplift
-from benchmarks.record import ROOT, write
-from benchmarks.render.chart import BACKGROUND, Layout, chart
-from benchmarks.render.picture import draw
+from benchmarks import DOCS, record
+from benchmarks.checker import BACKGROUND, Layout, chart, draw
 from tests.examples.installed import build_wheel, run_lines, unpack
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS
-from uplift.colorimetry.observer import light
+from uplift.colorimetry.observer import light, sensor
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.files import atomic_write
@@ -29,7 +28,7 @@ from uplift.lab.chart.methods import mitsuba3
 from uplift.report.relight import relight, write_relit_sheet
 from uplift.samples import sample_path
 
-FOLDER = ROOT / "docs" / "showcase"
+FOLDER = DOCS / "showcase"
 MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
     "measured",
     "RGB × light",
@@ -63,9 +62,8 @@ def main() -> None:
     }
     draw_charts(lamps, methods, errors)
     draw_still_life()
-    write(
+    record(
         "showcase",
-        "make showcase",
         session=session(),
         dim=DIM,
         lights=[{"light": lamp.name, "what": DESCRIPTIONS[lamp.name]} for lamp in lamps],
@@ -98,7 +96,7 @@ def colours(lamps: list[Light]) -> tuple[list[dict[str, Array]], Array]:
     """Return XYZ (24, 3) of the patches by method for each lamp, and which patches lie inside sRGB."""
     painted = chart()
     cube = uplift.build("macbeth", dim=DIM)
-    sensor = cube.data.sensor
+    srgb = cube.data.sensor
     spectra = {
         MEASURED: painted.measured,
         MITSUBA: mitsuba3.spectra(painted.painted, painted.wavelengths),
@@ -108,8 +106,8 @@ def colours(lamps: list[Light]) -> tuple[list[dict[str, Array]], Array]:
     found = []
     for lamp in lamps:
         xyz = {name: values @ lamp.xyz.T for name, values in spectra.items()}
-        product = painted.painted * (sensor.xyz_to_rgb @ lamp.white)
-        found.append({MEASURED: xyz.pop(MEASURED), PRODUCT: sensor.xyz(product), **xyz})
+        product = painted.painted * (srgb.xyz_to_rgb @ lamp.white)
+        found.append({MEASURED: xyz.pop(MEASURED), PRODUCT: srgb.xyz(product), **xyz})
     return found, ~painted.outside
 
 
@@ -127,7 +125,8 @@ def draw_charts(lamps: list[Light], methods: list[dict[str, Array]], errors: dic
             images[lamp.name, name] = image
             mean = errors[lamp.name, name].mean()
             captions[lamp.name, name] = row if name == MEASURED else f"mean ΔE00 {mean:.1f}"
-    draw(images, captions, RELIGHT_LIGHTS, tuple(methods[0]), LAYOUT, FOLDER / "charts.png", SIZE)
+    to_screen = {lamp.name: sensor(illuminant=lamp.name).xyz_to_rgb for lamp in lamps}
+    draw(images, captions, to_screen, tuple(methods[0]), LAYOUT, FOLDER / "charts.png", SIZE)
 
 
 def draw_still_life() -> None:

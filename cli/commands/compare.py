@@ -128,7 +128,7 @@ def _write(comparison: Comparison, tuned: tuple[TunedFilter, ...], folder: Path,
     from uplift.lab.comparison.page import render_comparison
     from uplift.lab.comparison.pictures import write_picture
     from uplift.lab.comparison.table import filter_records, records
-    from uplift.lab.study.records import write_csv
+    from uplift.lab.records import write_csv
 
     table, boxes, cost, html = (folder / name for name in FILES)
     write_csv(records(comparison), table, force=force)
@@ -163,7 +163,7 @@ def _print_json(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
 
 
 def _print_csv(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
-    from uplift.lab.study.records import records_csv
+    from uplift.lab.records import records_csv
 
     tables = _records(comparison, tuned)
     for name in ("representations", "filters"):

@@ -65,7 +65,7 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
 def _write(study: MomentsStudy, folder: Path, *, force: bool) -> None:
     from uplift.lab.study.moments_plots import curves, plot_errors, plot_patches, plot_worst
     from uplift.lab.study.moments_table import records
-    from uplift.lab.study.records import write_csv
+    from uplift.lab.records import write_csv
 
     table, errors, patches, worst = (folder / name for name in FILES)
     write_csv(records(study), table, force=force)
@@ -83,7 +83,7 @@ def _print_json(study: MomentsStudy) -> None:
 
 def _print_csv(study: MomentsStudy) -> None:
     from uplift.lab.study.moments_table import records
-    from uplift.lab.study.records import records_csv
+    from uplift.lab.records import records_csv
 
     print_csv_text(records_csv(records(study)))
 

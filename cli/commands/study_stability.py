@@ -102,7 +102,7 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
 
 def _write(axes: DesignSpace, runs: Sequence[RunResult], folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
-    from uplift.lab.study.records import write_csv
+    from uplift.lab.records import write_csv
     from uplift.lab.study.stability_design import grids
     from uplift.lab.study.stability_plots import plot_map
 
@@ -122,7 +122,7 @@ def _print_json(runs: Sequence[RunResult]) -> None:
 
 
 def _print_csv(runs: Sequence[RunResult]) -> None:
-    from uplift.lab.study.records import records_csv
+    from uplift.lab.records import records_csv
 
     print_csv_text(records_csv([run.record() for run in runs]))
 

@@ -9,11 +9,22 @@ import numpy as np
 import pytest
 
 import uplift
-from benchmarks.emission import cost, error_map
-from benchmarks.emission.__main__ import calibration, others, rows
-from benchmarks.emission.exactness import exactness, mixtures, round_trips, spokes, white_lights
-from benchmarks.emission.left_out import FAMILIES, drop_discs, family, groups, predict, unknown_lamps
-from benchmarks.emission.methods import nearest, planck, sigmoid_times_d65
+from benchmarks import emission
+from benchmarks.emission import (
+    FAMILIES,
+    drop_discs,
+    exactness,
+    lamp_family,
+    mixtures,
+    nearest,
+    planck,
+    predict,
+    round_trips,
+    sigmoid_times_d65,
+    spokes,
+    unknown_lamps,
+    white_lights,
+)
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.lights.lattice import chromaticity
@@ -37,10 +48,10 @@ def row(name):
 
 
 def test_every_lamp_has_one_family_and_every_family_lamps():
-    assert set(Counter(map(family, LAMPS.names))) == set(FAMILIES)
-    assert family("FL11") == family("F32T8/TL830 (Triphosphor)") != family("FL1")
+    assert set(Counter(map(lamp_family, LAMPS.names))) == set(FAMILIES)
+    assert lamp_family("FL11") == lamp_family("F32T8/TL830 (Triphosphor)") != lamp_family("FL1")
     with pytest.raises(LookupError):
-        family("candle")
+        lamp_family("candle")
 
 
 def test_predictions_of_a_lamp_never_know_it(unknown):
@@ -50,13 +61,6 @@ def test_predictions_of_a_lamp_never_know_it(unknown):
     assert unknown["lamp"].sum() == len(LAMPS)
     assert unknown["near-duplicates"][row("D65"), row("ID65")]
     assert not unknown["near-duplicates"][row("D65"), row("A")]
-
-
-def test_groups_cover_each_prediction_once(unknown):
-    found = list(groups(unknown["family"]))
-    assert len(found) == len(FAMILIES)
-    assert sorted(np.concatenate([predicted for _, predicted in found])) == list(range(len(LAMPS)))
-    assert all(set(predicted) == set(left_out) for left_out, predicted in found)
 
 
 def test_a_table_without_a_lamp_has_its_colour_and_not_its_spectrum():
@@ -91,26 +95,7 @@ def test_the_nearest_lamp_is_a_known_one(unknown):
     apart[row("D65")] = np.inf
     np.testing.assert_array_equal(found[row("D65")], LAMPS.power[apart.argmin()])
     apart = nearest(LAMPS, unknown["family"], RADIOMETRY, 1)[row("D65")]
-    assert family(LAMPS.names[int(np.abs(LAMPS.power - apart).max(axis=1).argmin())]) != "daylight"
-    assert len(others(LAMPS, unknown["lamp"], RADIOMETRY)) == 4
-
-
-def test_rows_of_the_truth_are_zero():
-    found = list(
-        rows(
-            LAMPS,
-            {"lamp": {"truth": LAMPS.power, "equal energy": np.ones_like(LAMPS.power)}},
-            {"checker": CHECKER},
-            RADIOMETRY,
-        )
-    )
-    assert found[0]["checker"] == {"mean": 0, "median": 0, "p95": 0}
-    assert found[1]["checker"]["p95"] > found[1]["checker"]["mean"] > 0
-
-
-def test_thirds_are_by_expected_error():
-    found = list(calibration(np.array([3.0, 1.0, 2.0]), np.array([30.0, 10.0, 20.0])))
-    assert [each["measured"] for each in found] == [10, 20, 30]
+    assert lamp_family(LAMPS.names[int(np.abs(LAMPS.power - apart).max(axis=1).argmin())]) != "daylight"
 
 
 def test_exactness_is_measured_from_white_to_the_locus():
@@ -148,18 +133,10 @@ def test_white_lights_of_the_table_are_the_illuminants():
     assert white["grey"] < 1e-6
 
 
-def test_costs_are_positive_and_small_tables_interpolate_worse(tmp_path):
-    options = (SMALL, {"knots": 64, "rings": 12})
-    coarse, fine = cost.sizes(options, 1, LAMPS.power[::10], CHECKER, tmp_path, {"knots": 64, "rings": 24})
-    assert coarse["mean"] > fine["mean"] > 0
-    assert coarse["bytes"] < fine["bytes"]
-    assert all(each["ratio"].min > 0 for each in cost.lookups(1000, 1))
-
-
 def test_the_map_ends_at_the_locus(tmp_path):
     table = drop_discs(uplift.load_emission())
-    errors = error_map.expected_errors(table, 40)
+    errors = emission.expected_errors(table, 40)
     assert np.isnan(errors[0, 0])
     assert 0.2 < np.isfinite(errors).mean() < 0.7
-    error_map.draw(table, LAMPS.names, LAMPS.power, np.ones(len(LAMPS)), tmp_path / "map.png")
+    emission.draw_error_map(table, LAMPS.names, LAMPS.power, np.ones(len(LAMPS)), tmp_path / "map.png")
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")

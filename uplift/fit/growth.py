@@ -1,4 +1,4 @@
-"""Growth: nodes are fitted in rounds, each from what earlier rounds found (docs/mathematics.md, 7; docs/growth.md).
+"""Growth: nodes are fitted in rounds, each from what earlier rounds found (docs/mathematics.md, 7; docs/accuracy.md).
 
 Rounds go from a coarse lattice to finer ones. The answer at a node is the spectrum of its colour that is nearest to its
 prior. The correction between prior and answer is smooth over the lattice: a node starts from its prior plus the

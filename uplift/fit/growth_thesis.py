@@ -1,6 +1,6 @@
 """Growth from neighbours: outward from seeds in rounds, each node from the spectra of its fitted neighbours.
 
-The algorithm of Tódová 2020, section 3.1.3, for any model and solver; docs/growth.md compares it with the default.
+The algorithm of Tódová 2020, section 3.1.3, for any model and solver; docs/accuracy.md compares it with the default.
 """
 
 from __future__ import annotations

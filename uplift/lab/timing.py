@@ -107,6 +107,23 @@ def time_calls(function: Callable[[], object], runs: int) -> tuple[Spread, Sprea
     return spread(wall), spread(cpu)
 
 
+def time_process(
+    command: list[str], runs: int, variables: dict[str, str] | None = None
+) -> tuple[Spread, float]:
+    """Measure the wall seconds of a process, and its peak memory in MB (Linux counts in kB)."""
+    wall, peak = [], 0
+    for _ in range(runs):
+        begin = time.perf_counter()
+        quiet = subprocess.DEVNULL
+        child = subprocess.Popen(command, env=os.environ | (variables or {}), stdout=quiet, stderr=quiet)
+        _, status, usage = os.wait4(child.pid, 0)
+        wall.append(time.perf_counter() - begin)
+        peak = max(peak, usage.ru_maxrss)
+        if status:
+            raise RuntimeError(f"{' '.join(command)} failed")
+    return spread(wall), peak / 1024
+
+
 def environment() -> dict[str, str]:
     """Describe where measurements are taken.
 

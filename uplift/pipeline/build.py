@@ -129,7 +129,7 @@ def build(
     solver : str or optimistix.AbstractLeastSquaresSolver, default "least-change"
         Solver of lattice points and entries: ``"least-change"``, ``"dogleg"``, ``"levenberg-marquardt"``,
         ``"gauss-newton"``, or any least-squares solver of optimistix. The default is fastest; answers agree
-        except for nearly box-shaped spectra (docs/growth.md).
+        except for nearly box-shaped spectra (docs/accuracy.md).
     debug : bool, default False
         Store the round of growth in which each point was fitted.
     scene : SceneLike, path-like or sequence of path-like, optional

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import uplift
-from benchmarks.mixing.paints import BLUES, acrylics, published
+from benchmarks.mixing import BLUES, acrylics, published
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.design.mixing import Mixer, criteria, mixers
 from uplift.design.mixing.amounts import add_lights, average_areas, stack_filters

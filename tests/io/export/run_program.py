@@ -10,8 +10,8 @@ import subprocess
 import numpy as np
 import pytest
 
-from benchmarks.programs import shaders
-from benchmarks.programs.shaders import listed, padded
+from tests.io.export import shaders
+from tests.io.export.shaders import listed, padded
 from tests.parts import CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need
 from uplift.common.processes import call_in_child
 

@@ -1,0 +1,61 @@
+"""Measure pages, or list them: ``python -m benchmarks [PAGE ...]``.
+
+Each page is measured in a process with BLAS on one thread, and all pages are rendered at the end. ``all`` names the
+pages whose figures are not of the last commit of the code, so that an interrupted run continues. A page that fails does
+not stop the others.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from benchmarks import DATA, ROOT
+from uplift.lab.timing import ONE_THREAD, commit
+
+
+def pages() -> dict[str, str]:
+    """Return the first line about each page, by its name: modules with a function ``main``."""
+    found = {}
+    for path in sorted(Path(__file__).parent.glob("[!_]*.py")):
+        module = ast.parse(path.read_text(encoding="utf-8"))
+        if any(isinstance(node, ast.FunctionDef) and node.name == "main" for node in module.body):
+            found[path.stem.replace("_", "-")] = (ast.get_docstring(module) or "").partition("\n")[0]
+    return found
+
+
+def is_current(page: str) -> bool:
+    """Whether the figures of a page were measured at the last commit of the code."""
+    data = DATA / f"{page}.json"
+    stored = json.loads(data.read_text(encoding="utf-8")) if data.is_file() else {}
+    return bool(stored.get("environment", {}).get("commit") == commit())
+
+
+def main(names: list[str]) -> int:
+    """Measure the pages and return the exit status."""
+    known = pages()
+    if not names:
+        print(*(f"{name:16}{line}" for name, line in known.items()), sep="\n")
+        return 0
+    names = [name for name in known if not is_current(name)] if names == ["all"] else names
+    if unknown := [name for name in names if name not in known]:
+        print(f"no page '{unknown[0]}'; pages are {', '.join(known)}", file=sys.stderr)
+        return 2
+    failed = []
+    for name in names:
+        print(name, file=sys.stderr)
+        command = [sys.executable, "-m", f"benchmarks.{name.replace('-', '_')}"]
+        if subprocess.run(command, cwd=ROOT, env=os.environ | ONE_THREAD, check=False).returncode:
+            failed.append(name)
+    if failed:
+        print(f"failed: {', '.join(failed)}", file=sys.stderr)
+    subprocess.run([sys.executable, "-m", "tools.render_docs"], cwd=ROOT, check=True)
+    return int(bool(failed))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,207 @@
+"""The ColorChecker: measured spectra and painted RGB, as a picture and as a Mitsuba scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks import MACBETH
+from uplift.atlas import on_grid, read_atlas
+from uplift.colorimetry import observer
+from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.srgb import to_display_codes
+from uplift.common.arrays import Array
+from uplift.viz.figure import new_figure, write_png
+
+COLUMNS, ROWS = 6, 4
+BACKGROUND = 0.03
+"""Reflectance between the patches."""
+INSET = 0.3
+"""Margin around the reference square in the middle of a patch, as a share of its width."""
+VARIANT = "scalar_spectral"
+"""The spectral variant that does not need LLVM."""
+OF_SURFACES = {"type": "direct", "bsdf_samples": 1, "emitter_samples": 0}
+"""Integrator for uniform illumination, where only the wavelengths are random."""
+OF_LIGHTS = {"type": "direct", "bsdf_samples": 0, "emitter_samples": 1}
+"""Integrator for environments."""
+CIE_Y_INTEGRAL = 106.856895
+"""Mitsuba divides by it, so that a constant radiance of 1 has Y = 1."""
+Reflectances = list[dict[str, Any]]
+"""Textures of Mitsuba for the patches."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """24 patches: ``measured`` (24, N) reflectances at ``wavelengths`` (N,) nm, ``painted`` (24, 3) linear sRGB.
+
+    ``outside`` (24,) marks the colours outside sRGB, which are painted clipped.
+    """
+
+    names: tuple[str, ...]
+    wavelengths: Array
+    measured: Array
+    painted: Array
+    outside: Array
+
+
+def chart() -> Chart:
+    """Read the shipped ColorChecker."""
+    sensor, spectra = observer.sensor(), read_atlas(MACBETH)
+    measured = on_grid(spectra, sensor.wavelengths)
+    rgb = sensor.rgb(measured)
+    return Chart(spectra.names, sensor.wavelengths, measured, np.clip(rgb, 0, 1), ~sensor.contains(rgb))
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Patches of ``patch`` pixels with ``gap`` between and around them, in reading order."""
+
+    patch: int
+    gap: int
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the picture."""
+        pitch = self.patch + self.gap
+        return COLUMNS * pitch + self.gap, ROWS * pitch + self.gap
+
+    def corners(self) -> Iterator[tuple[int, int]]:
+        """Yield the top left pixel (x, y) of each patch."""
+        pitch = self.patch + self.gap
+        for row in range(ROWS):
+            for column in range(COLUMNS):
+                yield self.gap + column * pitch, self.gap + row * pitch
+
+    def patches(self, inset: int = 0) -> Iterator[tuple[slice, slice]]:
+        """Yield the rows and columns of each patch, without ``inset`` pixels along its edges."""
+        for x, y in self.corners():
+            yield slice(y + inset, y + self.patch - inset), slice(x + inset, x + self.patch - inset)
+
+    def means(self, image: Array) -> Array:
+        """(24, K) mean of each patch in an image (height, width, K)."""
+        return np.array([image[place].mean(axis=(0, 1)) for place in self.patches()])
+
+
+def draw(
+    images: Mapping[tuple[str, str], Array],
+    captions: Mapping[tuple[str, str], str],
+    to_screen: Mapping[str, Array],
+    methods: Sequence[str],
+    layout: Layout,
+    path: Path,
+    size: tuple[float, float],
+) -> None:
+    """Draw XYZ ``images`` by row and method; the first method is the reference, shown inside the patches of all.
+
+    ``to_screen`` has the matrices (3, 3) from XYZ to linear sRGB by row.
+    """
+    figure = new_figure(*size)
+    grid = figure.subplots(len(to_screen), len(methods), squeeze=False)
+    for row, (name, matrix) in enumerate(to_screen.items()):
+        for column, method in enumerate(methods):
+            axes, image = grid[row, column], images[name, method].copy()
+            for place in layout.patches(round(INSET * layout.patch)):
+                image[place] = images[name, methods[0]][place]
+            height, width, _ = image.shape
+            # Means of 2 × 2 pixels halve the noise.
+            binned = image.reshape(height // 2, 2, width // 2, 2, 3).mean(axis=(1, 3))
+            axes.imshow(to_display_codes(binned @ matrix.T, SRGB).astype(np.uint8), interpolation="nearest")
+            axes.set(xticks=(), yticks=())
+            axes.spines[:].set_visible(False)
+            axes.set_xlabel(captions[name, method], fontsize=9, color="0.3")
+            if row == 0:
+                axes.set_title(method, fontsize=11, pad=8)
+            if column == 0:
+                axes.set_ylabel(name, fontsize=11, labelpad=8)
+    write_png(figure, path, force=True)
+
+
+def caption(errors: Array) -> str:
+    """Return the text below an image whose patches have errors (24,)."""
+    return f"mean ΔE00 {errors.mean():.2f}, worst {errors.max():.1f}"
+
+
+def start_mitsuba(variant: str = VARIANT) -> str:
+    """Select the variant and register the plug-ins; return Mitsuba's version."""
+    import mitsuba
+
+    from uplift.io.mitsuba import register
+
+    mitsuba.set_variant(variant)
+    register()
+    return str(mitsuba.__version__)
+
+
+def measured_spectra(painted: Chart) -> Reflectances:
+    """Return the measured spectra of the patches: the reference."""
+    return [regular_spectrum(painted.wavelengths, spectrum) for spectrum in painted.measured]
+
+
+def constant_light(illuminant: str) -> dict[str, Any]:
+    """Return uniform illumination, as bright as makes white's Y = 1."""
+    sensor = observer.sensor(illuminant=illuminant)
+    step = sensor.wavelengths[1] - sensor.wavelengths[0]
+    luminous = (sensor.power * sensor.cmfs[:, 1]).sum() * step
+    return {
+        "type": "constant",
+        "radiance": regular_spectrum(sensor.wavelengths, sensor.power * CIE_Y_INTEGRAL / luminous),
+    }
+
+
+def regular_spectrum(wavelengths: Array, values: Array) -> dict[str, Any]:
+    """Describe samples with straight lines between them."""
+    return {
+        "type": "regular",
+        "wavelength_min": float(wavelengths[0]),
+        "wavelength_max": float(wavelengths[-1]),
+        "values": ", ".join(f"{value:.9g}" for value in values),
+    }
+
+
+def render(
+    emitter: dict[str, Any],
+    reflectances: Reflectances,
+    layout: Layout,
+    spp: int,
+    seed: int,
+    integrator: dict[str, Any] = OF_SURFACES,
+) -> Array:
+    """Return XYZ (height, width, 3) of the chart under an emitter, from straight above, a unit a pixel."""
+    import mitsuba as mi
+
+    transform, (width, height) = mi.ScalarTransform4f, layout.size
+
+    def square(reflectance: dict[str, Any], middle: list[float], scale: list[float]) -> dict[str, Any]:
+        placed = transform().translate(middle).scale(scale)
+        return {"type": "rectangle", "to_world": placed, "bsdf": {"type": "diffuse", "reflectance": reflectance}}
+
+    half = layout.patch / 2
+    patches = {
+        f"patch_{number}": square(reflectance, [x + half - width / 2, height / 2 - y - half, 0], [half, half, 1])
+        for number, (reflectance, (x, y)) in enumerate(zip(reflectances, layout.corners(), strict=True))
+    }
+    view = transform().look_at(origin=[0, 0, 100], target=[0, 0, 0], up=[0, 1, 0])
+    camera = {
+        "type": "orthographic",
+        "to_world": view @ transform().scale([width / 2, width / 2, 1]),
+        "film": xyz_film(width, height) | {"rfilter": {"type": "box"}},
+    }
+    scene = {
+        "type": "scene",
+        "integrator": integrator,
+        "light": emitter,
+        "camera": camera,
+        "background": square({"type": "uniform", "value": BACKGROUND}, [0, 0, -1e-3], [width, height, 1]),
+        **patches,
+    }
+    return np.array(mi.render(mi.load_dict(scene), spp=spp, seed=seed), dtype=float)
+
+
+def xyz_film(width: int, height: int) -> dict[str, Any]:
+    """Describe a film of XYZ."""
+    size = {"width": width, "height": height}
+    return {"type": "hdrfilm", **size, "pixel_format": "xyz", "component_format": "float32"}

@@ -1,1 +1,0 @@
-"""The relighting viewer in a browser: frame rates and pictures."""

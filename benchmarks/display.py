@@ -1,0 +1,217 @@
+"""Gamut mapping of Munsell chips outside sRGB, for docs/display.md and its picture."""
+
+from __future__ import annotations
+
+import warnings
+from collections import defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import colour
+import numpy as np
+
+from benchmarks import DOCS, record
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, conversion, map_to_gamut
+from uplift.colorimetry.srgb import encode
+from uplift.common.arrays import Array
+from uplift.lab.timing import Spread, time_calls
+from uplift.viz.figure import new_figure, write_png
+
+BRIGHTEST, DARKEST = 9, 2
+"""Munsell values between which hues are well known."""
+STEP = 0.25
+"""Step of chroma along a line of constant hue and value."""
+WHITE = SRGB.rgb_to_xyz.sum(axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Chips:
+    """Linear sRGB (n, 3) and hues (n,) of the chips outside; x, y (k, 2) by hue and value, from grey outwards."""
+
+    rgb: Array
+    hues: tuple[str, ...]
+    lines: dict[tuple[str, float], Array]
+
+    def hue_shift(self, mapped: Array) -> Array:
+        """Return ΔE00 (n,) between mapped linear sRGB (n, 3) and the nearest colour of the hue at equal luminance."""
+        light = (mapped @ SRGB.rgb_to_xyz.T)[:, 1]
+        values = np.clip(colour.notation.munsell_value_ASTMD1535(100 * light), 1, 9)
+        nearest = [
+            delta_e_2000(_lab_of(self._line(hue, value), y), colour_lab).min()
+            for hue, value, y, colour_lab in zip(self.hues, values, light, _lab(mapped), strict=True)
+        ]
+        return np.array(nearest)
+
+    def _line(self, hue: str, value: float) -> Array:
+        """Interpolate between the lines of the values below and above, at equal chroma."""
+        low = min(int(value), 8)
+        below, above = self.lines[hue, low], self.lines[hue, low + 1]
+        count = min(len(below), len(above))
+        return below[:count] + (value - low) * (above[:count] - below[:count])
+
+
+def chips() -> Chips:
+    """Return the chips outside sRGB; illuminant C is adapted to the white of the screen (Bradford)."""
+    c = tuple(colour.CCS_ILLUMINANTS["CIE 1931 2 Degree Standard Observer"]["C"])
+    to_srgb = conversion(Primaries(SRGB.red, SRGB.green, SRGB.blue, c), SRGB)
+    from_xyz = to_srgb @ np.linalg.inv(Primaries(SRGB.red, SRGB.green, SRGB.blue, c).rgb_to_xyz)
+    real = {name for name, _ in colour.MUNSELL_COLOURS["Munsell Colours Real"]}
+    book = colour.MUNSELL_COLOURS["Munsell Colours All"]  # lines extend beyond the real chips
+    names = [name for name, _ in book]
+    xyz = colour.xyY_to_XYZ(np.array([xyY for _, xyY in book]) / [1, 1, 100])
+    rgb = xyz @ from_xyz.T
+    outside = [
+        row
+        for row, name in enumerate(names)
+        if name in real and DARKEST <= name[1] <= BRIGHTEST and ((rgb[row] < 0) | (rgb[row] > 1)).any()
+    ]
+    return Chips(rgb[outside], tuple(names[row][0] for row in outside), _lines(names, rgb @ SRGB.rgb_to_xyz.T))
+
+
+def _lines(names: list[tuple[str, float, float]], xyz: Array) -> dict[tuple[str, float], Array]:
+    found = defaultdict(list)
+    for (hue, value, chroma), row in zip(names, xyz, strict=True):
+        found[hue, value].append((chroma, *(row[:2] / row.sum())))
+    lines = {}
+    for key, points in found.items():
+        chroma, x, y = np.array([(0.0, *SRGB.white), *sorted(points)]).T
+        at = np.arange(0, chroma[-1] + STEP / 2, STEP)
+        lines[key] = np.stack([np.interp(at, chroma, x), np.interp(at, chroma, y)], axis=1)
+    return lines
+
+
+def _lab_of(xy: Array, light: float) -> Array:
+    x, y = xy.T
+    return lab(np.stack([x, y, 1 - x - y], axis=1) * (light / y)[:, None], WHITE)
+
+
+def _lab(rgb: Array) -> Array:
+    return lab(rgb @ SRGB.rgb_to_xyz.T, WHITE)
+
+
+def differences(chips: Chips, mapped: Array) -> tuple[Array, Array]:
+    """Return ΔE00 (n,) and |ΔL*| (n,) between the chips and their mapped colours."""
+    original, lab_mapped = _lab(chips.rgb), _lab(mapped)
+    return delta_e_2000(original, lab_mapped), np.abs(original[:, 0] - lab_mapped[:, 0])
+
+
+REC_2020 = Primaries((0.708, 0.292), (0.170, 0.797), (0.131, 0.046), (0.3127, 0.3290))
+MAPPINGS = tuple(method for method in METHODS if method != "error")
+RADIUS = 43
+"""Pixels."""
+HUES = (
+    (1, 0, 0),
+    (1, 0.45, 0),
+    (0.9, 0.9, 0),
+    (0, 1, 0),
+    (0, 0.9, 0.9),
+    (0, 0.25, 1),
+    (0, 0, 1),
+    (0.8, 0, 0.9),
+)
+"""Linear Rec. 2020 of the spheres."""
+LIGHT, HIGHLIGHT = 1.3, 3.0
+
+
+def draw(path: Path) -> None:
+    """Write the picture: one column per method, spheres above, all hues from dark to too bright below."""
+    figure = new_figure(15, 3.4)
+    rows = [spheres(), sweep()]
+    grid = figure.subplots(2, len(MAPPINGS), gridspec_kw={"height_ratios": [len(row) for row in rows]})
+    for column, method in enumerate(MAPPINGS):
+        grid[0, column].set_title(method, fontsize=17, pad=8)
+        for axes, image in zip(grid[:, column], rows, strict=True):
+            axes.imshow(encode(map_to_gamut(image, SRGB, method).rgb), interpolation="antialiased")
+            axes.set_axis_off()
+    write_png(figure, path, force=True)
+
+
+def spheres() -> Array:
+    """Return linear sRGB (h, w, 3), partly outside [0, 1]: paint with highlights in the colour of the light."""
+    side = 2 * RADIUS + 8
+    y, x = np.mgrid[:side, :side] - (side - 1) / 2
+    inside = x**2 + y**2 < RADIUS**2
+    z = np.sqrt(np.maximum(RADIUS**2 - x**2 - y**2, 0))
+    normal = np.stack([x, y, z], axis=-1) / RADIUS
+    to_light = np.array([-0.5, -0.6, 0.62])
+    facing = np.maximum(normal @ (to_light / np.linalg.norm(to_light)), 0)
+    half = to_light / np.linalg.norm(to_light) + [0, 0, 1]
+    shine = HIGHLIGHT * np.maximum(normal @ (half / np.linalg.norm(half)), 0) ** 60
+    tiles = []
+    for hue in HUES:
+        lit = np.array(hue) * (0.04 + LIGHT * facing)[..., None] + shine[..., None]
+        tiles.append(np.where(inside[..., None], lit, 0.18))
+    across = [np.concatenate(tiles[row : row + 4], axis=1) for row in (0, 4)]
+    return np.concatenate(across) @ conversion(REC_2020, SRGB).T
+
+
+def sweep() -> Array:
+    """Return linear sRGB (h, w, 3): hues of Rec. 2020 from left to right, brighter upwards, up to three times white."""
+    height, width = 2 * RADIUS, 8 * RADIUS + 32
+    hue = np.linspace(0, 6, width)
+    pure = np.clip(np.abs((hue[:, None] + [3, 1, 5]) % 6 - 3) - 1, 0, 1)
+    bright = np.geomspace(3, 0.02, height)
+    return (bright[:, None, None] * pure) @ conversion(REC_2020, SRGB).T
+
+
+PICTURE = DOCS / "display" / "ways.png"
+TIMED = 1 << 16
+"""Colours, all of them outside."""
+RUNS = 7
+FAMILIES = ("R", "YR", "Y", "GY", "G", "BG", "B", "PB", "P", "RP")
+
+
+def main() -> None:
+    """Draw, measure and store."""
+    warnings.simplefilter("ignore")  # colour-science warns about undefined values in some spaces
+    draw(PICTURE)
+    found = chips()
+    mapped = {name: map_to_gamut(found.rgb, SRGB, name).rgb for name in MAPPINGS}
+    record(
+        "display",
+        precision="full",
+        chips=len(found.hues),
+        runs=RUNS,
+        timed=TIMED,
+        methods=[{"name": name, **errors(found, rgb), "ns": cost(name)} for name, rgb in mapped.items()],
+        families=families(found, mapped),
+    )
+
+
+def errors(found: Chips, mapped: Array) -> dict[str, Any]:
+    """Return statistics of the hue shift, |ΔL*| and ΔE00 of mapped colours."""
+    delta_e, lightness = differences(found, mapped)
+    values = {"hue": found.hue_shift(mapped), "lightness": lightness, "delta_e": delta_e}
+    return {
+        name: {"mean": each.mean(), "p95": np.percentile(each, 95), "largest": each.max()}
+        for name, each in values.items()
+    }
+
+
+def families(found: Chips, mapped: dict[str, Array]) -> list[dict[str, Any]]:
+    """Return the mean hue shift by the hue of the chips."""
+    names = np.array([hue.lstrip("0123456789.") for hue in found.hues])
+    shifts = {method: found.hue_shift(rgb) for method, rgb in mapped.items()}
+    return [
+        {
+            "hue": name,
+            "chips": int((names == name).sum()),
+            **{method: shift[names == name].mean() for method, shift in shifts.items()},
+        }
+        for name in FAMILIES
+    ]
+
+
+def cost(method: str) -> Spread:
+    """Return the CPU time per mapped colour in nanoseconds."""
+    rgb = np.random.default_rng(0).normal(0.5, 1, (3 * TIMED, 3))
+    rgb = rgb[((rgb < 0) | (rgb > 1)).any(axis=1)][:TIMED]
+    map_to_gamut(rgb, SRGB, method)
+    _, cpu = time_calls(lambda: map_to_gamut(rgb, SRGB, method), RUNS)
+    return cpu.scaled(1e9 / TIMED)
+
+
+if __name__ == "__main__":
+    main()

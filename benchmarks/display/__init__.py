@@ -1,1 +1,0 @@
-"""Gamut mapping of colours outside sRGB: hue shifts, lightness, times, and a picture."""

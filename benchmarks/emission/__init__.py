@@ -1,1 +1,0 @@
-"""Emission tables: lamps left out, exactness, the map of expected errors, and cost."""

@@ -1,0 +1,97 @@
+"""Measured materials that cubes are tested on, and the errors of answers for them."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+import uplift
+from benchmarks import ATLASES, ROOT
+from uplift.atlas import Atlas, Entry, read_atlas, resample
+from uplift.colorimetry import observer
+from uplift.colorimetry.lights import HELD_OUT_LIGHTS
+from uplift.common.arrays import Array
+from uplift.fit.families import families_with
+from uplift.lab.study.held_out import spectrum_errors
+from uplift.lookup import Cube
+
+MUNSELL = ROOT / "out" / "munsell.csv"
+"""The 1,269 chips of the Munsell book, if `make munsell` has fetched them: they cannot be redistributed."""
+LARGE = ("rawtoaces", "cie2017", *(["munsell"] if MUNSELL.exists() else []))
+"""Atlases that are large enough to split."""
+SENSOR = observer.sensor()
+SPLITS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Materials:
+    """Reflectances (E, 81) and linear sRGB (E, 3) of the entries inside sRGB, without duplicate colours."""
+
+    name: str
+    measured: Array
+    rgb: Array
+
+    def take(self, rows: Sequence[int] | Array) -> Materials:
+        """Select some of the entries."""
+        return Materials(self.name, self.measured[rows], self.rgb[rows])
+
+
+@cache
+def spectra(name: str) -> Atlas:
+    """Read a set of measured spectra."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        return read_atlas(MUNSELL if name == "munsell" else ATLASES / f"{name}.txt")
+
+
+@cache
+def materials(name: str) -> Materials:
+    """Return the materials of a set."""
+    measured = resample(spectra(name), SENSOR.wavelengths).values
+    rgb = SENSOR.rgb(measured)
+    _, first = np.unique(np.round(rgb, 6), axis=0, return_index=True)
+    rows = [row for row in sorted(first) if SENSOR.contains(rgb[row])]
+    return Materials(name, measured[rows], np.clip(rgb[rows], 0, 1))
+
+
+def shipped_families(name: str) -> tuple[str, ...]:
+    """Return the shipped families that must not shape a prior that is tested on a set."""
+    return tuple(families_with(materials(name).measured))
+
+
+def build(some: str | Materials | None, **options: Any) -> Cube:
+    """Build a cube from a set, from materials or without an atlas, without warnings."""
+    atlas = spectra(some) if isinstance(some, str) else None
+    if isinstance(some, Materials):
+        grid = tuple(SENSOR.wavelengths)
+        atlas = Atlas(tuple(Entry(str(row), grid, tuple(values)) for row, values in enumerate(some.measured)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        return uplift.build(atlas, **options)
+
+
+def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
+    """Return cubes of random halves of a set, and the other halves: every material is queried equally often."""
+    pairs = []
+    for seed in range(SPLITS):
+        rows = np.random.default_rng(seed).permutation(len(materials(name).rgb))
+        halves = [materials(name).take(part) for part in np.array_split(rows, 2)]
+        for kept, queried in (halves, halves[::-1]):
+            pairs.append((build(kept, leave_out=shipped_families(name), **options), queried))
+    return pairs
+
+
+def errors(answers: Array, some: Materials) -> dict[str, Any]:
+    """Return the mean rms and the mean ΔE00 under each light."""
+    return as_record(spectrum_errors(answers, some.measured).means())
+
+
+def as_record(means: Array) -> dict[str, Any]:
+    """Convert mean rms and mean ΔE00, as of `spectrum_errors`, to names."""
+    rms, *delta_e = np.asarray(means).tolist()
+    return {"rms": rms, "errors": dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True))}

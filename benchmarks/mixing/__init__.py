@@ -1,1 +1,0 @@
-"""Mixing models: criteria, accuracy of the assumed scattering, times and pictures."""

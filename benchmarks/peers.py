@@ -1,0 +1,310 @@
+"""Other tools on the task of a build: CPU time per fitted node and accuracy, for docs/performance.md.
+
+The task is the lattice of linear sRGB under D65, without an atlas. Answers are checked before they are timed.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from benchmarks import ROOT
+from uplift.colorimetry import observer
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Array
+from uplift.common.errors import UpliftError
+from uplift.common.processes import ChildError, call_in_child
+from uplift.lab.timing import ONE_THREAD, Spread, spread
+from uplift.lattice import Lattice
+from uplift.models import Model, Moments, Sigmoid, evaluate
+from uplift.models.sigmoid import evaluate_unscaled
+
+THRESHOLD = 1e-4
+"""Largest |linear RGB| between a fitted spectrum and its colour: the threshold of cubes."""
+DIM = 16
+OUR_DIMS = (16, 32)
+OUR_MODELS = (("sigmoid", 3), ("moments", 3), ("moments", 5), ("moments", 9), ("moments", 17))
+MAX_RUNS, LIMIT = 3, 3600
+"""Most runs, as some tools take half a minute for a few nodes, and seconds after which a tool counts as hung."""
+
+
+@dataclass(frozen=True)
+class Peer:
+    """CPU time in µs per node (all threads) of a tool, share of nodes within `THRESHOLD`, and largest residual.
+
+    ``model`` is 'sigmoid' or 'moments', ``count`` its number of coefficients. A tool that is not installed has no
+    figures; ``notes`` then states why.
+    """
+
+    tool: str
+    model: str
+    count: int
+    points: int
+    cpu_us: Spread | None = None
+    share: float | None = None
+    worst: float | None = None
+    notes: str = ""
+
+
+def time_peers(runs: int) -> list[Peer]:
+    """Time each tool in a process without the threads, compiled code or settings of the others."""
+    return [row for tool in TOOLS for row in alone(tool, min(runs, MAX_RUNS))]
+
+
+def alone(tool: Callable[[int], list[Peer]], runs: int, seconds: float = LIMIT) -> list[Peer]:
+    """Return the rows of ``tool``, timed ``runs`` times in a fresh process, or one that states how it failed."""
+    before = dict(os.environ)
+    os.environ.update(ONE_THREAD)
+    try:
+        return call_in_child(tool, runs, seconds=seconds)
+    except ChildError as error:
+        return [Peer(tool.__name__, "", 0, 0, notes=str(error))]
+    finally:
+        os.environ.clear()
+        os.environ.update(before)
+
+
+@cache
+def sensor() -> Sensor:
+    """Return the sensor of the task: CIE 1931 observer, D65, linear sRGB."""
+    return observer.sensor()
+
+
+@cache
+def lattice(dim: int = DIM) -> Lattice:
+    """Return a lattice with nodes spaced as sRGB."""
+    return Lattice(observer.axis_nodes("srgb", dim))
+
+
+def model_of(name: str, count: int) -> Model:
+    """Return a spectrum model by name."""
+    return Sigmoid() if name == "sigmoid" else Moments(count)
+
+
+def missing(tool: str, what: str, model: str, count: int) -> Peer:
+    """Return the row of a tool that needs ``what``."""
+    return Peer(tool, model, count, 0, notes=f"{what} is not installed")
+
+
+def judge(rgb: ArrayLike, target: ArrayLike, *, least: float, within: float = THRESHOLD) -> dict[str, float]:
+    """Compare linear RGB (n, 3) with ``target`` (n, 3): the share within `THRESHOLD`, and the largest residual.
+
+    Raises `RuntimeError` if fewer than the share ``least`` come within ``within``: some tools leave a few nodes
+    unfitted, with more a time means nothing.
+    """
+    residual = np.abs(np.asarray(rgb) - np.asarray(target)).max(axis=1)
+    residual = np.where(np.isfinite(residual), residual, np.inf)
+    share = float((residual <= within).mean())
+    if share < least:
+        raise RuntimeError(f"wrong answer, not timed: {share:.1%} of the points are within {within:g}")
+    return {"share": float((residual <= THRESHOLD).mean()), "worst": float(residual.max())}
+
+
+def judge_multipliers(model: Model, multipliers: Array, target: Array, *, least: float) -> dict[str, float]:
+    """`judge` the spectra with multipliers (n, C)."""
+    return judge(sensor().rgb(evaluate(model, multipliers, sensor().wavelengths)), target, least=least)
+
+
+def measured(solve: Callable[[], Array], points: int, runs: int) -> tuple[Array, Spread]:
+    """Return the result of ``solve``, and µs of CPU per node. Some tools are too slow for a separate first run."""
+    solution, seconds = np.empty(0), []
+    for _ in range(runs):
+        begin = time.process_time()
+        solution = solve()
+        seconds.append(time.process_time() - begin)
+    return solution, spread(seconds).scaled(1e6 / points)
+
+
+def ours(runs: int) -> list[Peer]:
+    """Time builds of every model at every dim, with smooth spectra as the prior."""
+    import uplift
+
+    rows = []
+    for dim in OUR_DIMS:
+        for name, count in OUR_MODELS:
+
+            def build(dim: int = dim, name: str = name, count: int = count) -> Array:
+                data = uplift.build(dim=dim, model=name, coefficients=count, prior="smooth").data
+                return np.asarray(data.points.coefficients, dtype=float)
+
+            build()  # compiles
+            stored, cpu = measured(build, dim**3, runs)
+            model = model_of(name, count)
+            answer = judge_multipliers(model, model.from_storage(stored), lattice(dim).points, least=1.0)
+            rows.append(Peer("uplift", name, count, dim**3, cpu, **answer, notes=f"{dim}³, compiled before"))
+    return rows
+
+
+CERES_SOURCE, CERES_BUILT = ROOT / "benchmarks" / "ceres", ROOT / "out" / "ceres"
+CERES_NEEDS = "Ceres with cmake and a C++ compiler (libceres-dev, cmake, g++)"
+CERES_STEPS = 12
+"""Iterations from each start. The default of Ceres, 50, doubles the time for moments and fits no more of them."""
+CERES_JOBS = (("sigmoid", 3, "sigmoid", 0.99), ("moments", 9, "moments", 0.5), ("moments", 9, "multipliers", 0.99))
+"""Model, coefficients, unknowns, and the minimum share of nodes that must be fitted."""
+UNKNOWNS = {"sigmoid": "", "moments": "in c, ", "multipliers": "in p, "}
+
+
+def ceres(runs: int) -> list[Peer]:
+    """Time the solver of the thesis with numeric differences (`benchmarks/ceres/fit.cpp`), if Ceres is installed.
+
+    It grows from the middle of the lattice, every node from its fitted neighbours.
+    """
+    program = _build_ceres()
+    if program is None:
+        return [missing("Ceres", CERES_NEEDS, model, count) for model, count, *_ in CERES_JOBS]
+    return [_ceres_row(program, *job, runs) for job in CERES_JOBS]
+
+
+def _build_ceres() -> Path | None:
+    """Build the program; return None if cmake, a compiler or Ceres is missing."""
+    program = CERES_BUILT / "fit"
+    if shutil.which("cmake") is None or _cmake("-S", str(CERES_SOURCE), "-B", str(CERES_BUILT)).returncode:
+        return None
+    program.unlink(missing_ok=True)  # of an earlier build
+    _cmake("--build", str(CERES_BUILT)).check_returncode()
+    return program if program.exists() else None
+
+
+def _cmake(*words: str) -> subprocess.CompletedProcess[bytes]:
+    return subprocess.run(["cmake", *words], capture_output=True, check=False)
+
+
+def _ceres_row(program: Path, name: str, count: int, unknowns: str, least: float, runs: int) -> Peer:
+    model, points = model_of(name, count), lattice().points
+    done = [_run_ceres(program, unknowns, count) for _ in range(runs)]
+    solution, facts = done[-1]
+    multipliers = model.from_storage(solution) if unknowns == "moments" else solution
+    answer = judge_multipliers(model, multipliers, points, least=least)
+    cpu = spread([each["cpu"] for _, each in done]).scaled(1e6 / len(points))
+    starts = facts["solves"] / len(points)
+    notes = f"{DIM}³, {UNKNOWNS[unknowns]}numeric differences, C++; grown from the middle, {starts:.1f} starts a point"
+    return Peer(f"Ceres {facts['ceres']}", name, count, len(points), cpu, **answer, notes=notes)
+
+
+def _run_ceres(program: Path, unknowns: str, count: int) -> tuple[Array, dict[str, Any]]:
+    """Return the solutions (n, count), and the statistics printed by the program."""
+    numbers = np.concatenate([sensor().wavelengths, sensor().matrix.ravel(), lattice().nodes])
+    text = f"{len(sensor().wavelengths)} {DIM}\n" + "\n".join(map(repr, numbers.tolist())) + "\n"
+    with tempfile.TemporaryDirectory() as folder:
+        scene, solution = Path(folder, "scene.txt"), Path(folder, "found")
+        scene.write_text(text)
+        command = [str(program), str(scene), str(solution), unknowns, str(count), str(CERES_STEPS)]
+        # Ceres logs every step outside the moments of reflectances, which would be timed too.
+        quiet = os.environ | {"GLOG_minloglevel": "3"}
+        done = subprocess.run(command, env=quiet, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
+        return np.fromfile(solution).reshape(-1, count), json.loads(done.stdout)
+
+
+def mitsuba_table(runs: int) -> list[Peer]:
+    """Time lookups in Mitsuba's table of sigmoids for sRGB, one colour per call; nothing is fitted."""
+    try:
+        import mitsuba
+    except ImportError:
+        return [missing("Mitsuba 3", "Mitsuba", "sigmoid", 3)]
+    mitsuba.set_variant("scalar_spectral")  # needs no LLVM
+    target, wavelengths = lattice().points, np.linspace(400, 700, 4)
+    colours = target.tolist()
+
+    def fetch() -> Array:
+        return np.array([mitsuba.srgb_model_fetch(rgb) for rgb in colours], dtype=float)
+
+    coefficients, cpu = measured(fetch, len(target), runs)
+    # The table is interpolated in single precision.
+    rgb = sensor().rgb(evaluate_unscaled(coefficients, sensor().wavelengths))
+    answer = judge(rgb, target, least=0.95, within=2e-3)
+    rows = coefficients.tolist()
+
+    def evaluate_rows() -> Array:
+        return np.array([mitsuba.srgb_model_eval(row, wavelengths.tolist()) for row in rows])
+
+    values, evaluation = measured(evaluate_rows, len(target), runs)
+    if not np.allclose(values, evaluate_unscaled(coefficients, wavelengths), atol=1e-3):
+        raise RuntimeError("Mitsuba's coefficients mean something else")
+    notes = (
+        "no fit: its table, looked up from Python a colour a call (what fitted it is not exposed); "
+        f"evaluation at {len(wavelengths)} wavelengths {evaluation.median:.1f} µs more"
+    )
+    return [Peer(f"Mitsuba {mitsuba.__version__}", "sigmoid", 3, len(target), cpu, **answer, notes=notes)]
+
+
+def colour_science(runs: int) -> list[Peer]:
+    """Time a small table of colour-science's LUT3D_Jakob2019; a large one goes from point to point in shorter steps."""
+    import colour
+    from colour.recovery.jakob2019 import lightness_scale
+
+    size, table = 3, colour.recovery.LUT3D_Jakob2019()
+    cmfs, light = observer.aligned(sensor())
+
+    def generate() -> Array:
+        space = colour.RGB_COLOURSPACES[sensor().space]
+        table.generate(space, cmfs, light, size, print_callable=lambda *_: None)
+        return np.asarray(table.coefficients.reshape(-1, 3))
+
+    # A part of the table for each largest component; within it by the value of that component, then by the shares of
+    # the next two, in cyclic order.
+    shares = np.linspace(0, 1, size)
+    value, last, middle = np.meshgrid(lightness_scale(size), shares, shares, indexing="ij")
+    bright = np.stack([value, value * middle, value * last], axis=-1)
+    target = np.stack([np.roll(bright, part, axis=-1) for part in range(3)]).reshape(-1, 3)
+    coefficients, cpu = measured(generate, len(target), runs)
+    rgb = sensor().rgb(evaluate_unscaled(coefficients, sensor().wavelengths))
+    answer = judge(rgb, target, least=0.8, within=1e-2)
+    tool = f"colour-science {version('colour-science')} `LUT3D_Jakob2019`"
+    notes = f"a table of size {size}, 3 × {size}³ points; it stops at a ΔE"
+    return [Peer(tool, "sigmoid", 3, len(target), cpu, **answer, notes=notes)]
+
+
+def scipy_least_squares(runs: int) -> list[Peer]:
+    """Time scipy, a node at a time: multipliers with the exact Jacobian, and moments with numeric differences."""
+    from scipy.optimize import least_squares
+
+    model, points = Moments(9), 32
+    target = lattice().points[np.random.default_rng(16).choice(DIM**3, points, replace=False)]
+    basis, weights = model.basis(sensor().wavelengths), sensor().matrix
+
+    def residual(multipliers: Array, rgb: Array) -> Array:
+        return weights @ model.squash(basis @ multipliers) - rgb
+
+    def jacobian(multipliers: Array, rgb: Array) -> Array:
+        return (weights * model.slope(basis @ multipliers)) @ basis
+
+    def residual_of_moments(moments: Array, rgb: Array) -> Array:
+        try:
+            return residual(model.from_storage(moments), rgb)
+        except UpliftError:  # numbers that are not moments are farther than any colour
+            return np.ones(3)
+
+    def in_multipliers() -> Array:
+        grey = np.zeros(model.count)
+        return np.stack([least_squares(residual, grey, jacobian, args=(rgb,)).x for rgb in target])
+
+    def in_moments() -> Array:
+        grey = model.to_storage(np.zeros(model.count))
+        return np.stack([least_squares(residual_of_moments, grey, args=(rgb,)).x for rgb in target])
+
+    tool, rows = f"scipy {version('scipy')} `least_squares`", []
+    for solve, least, notes in (
+        (in_multipliers, 0.95, "in p, exact Jacobian; every point from grey"),
+        (in_moments, 0.5, "in c, numeric differences; every point from grey"),
+    ):
+        solution, cpu = measured(solve, points, runs)
+        multipliers = model.from_storage(solution) if solve is in_moments else solution
+        answer = judge_multipliers(model, multipliers, target, least=least)
+        rows.append(Peer(tool, "moments", model.count, points, cpu, **answer, notes=notes))
+    return rows
+
+
+TOOLS = (ours, ceres, mitsuba_table, colour_science, scipy_least_squares)

@@ -1,0 +1,269 @@
+"""Times of builds, processes, lookups, the exported C header and other tools, for docs/performance.md.
+
+Results are checked before they are timed.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import warnings
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks import MACBETH, ROOT, record
+from uplift.lab.timing import Spread, spread, time_calls, time_process
+
+UPLIFT = str(Path(sys.executable).parent / "uplift")
+RUNS, FEW_RUNS = 5, 3
+"""Runs, and those of large lattices, which take long and vary little."""
+MODELS = (("sigmoid", 3), *(("moments", count) for count in (3, 5, 9, 13, 17)))
+DIMS, MODEL_DIM = (16, 32, 64, 128), 64
+WAVELENGTHS = np.linspace(400, 700, 16)
+COLOURS = {"coefficients": 1_000_000, "spectra": 1_000_000, "moments": 200_000, "refined": 50_000}
+"""Queries by what is looked up: fewer where lookups are slow."""
+MAX_ERRORS = {"coefficients": 1e-6, "spectra": 1e-5, "moments": 2e-2, "refined": 1e-6}
+"""Largest permitted errors, for float32 too."""
+BULK, CHECKED = 1_000_000, 5000
+FLAGS = ("-O3", "-march=x86-64-v3", "-fno-math-errno", "-fno-trapping-math")
+MODES = ("spectra", "moments")
+PROGRAM_COLOURS, PYTHON_COLOURS, MAX_DIFFERENCE = 400_000, 100_000, 1e-3
+"""Colours of the C header, those of Python in the same run, and the largest permitted difference of reflectance."""
+Row = dict[str, Any]
+
+
+def main() -> None:
+    """Time everything and store."""
+    # First: a process started from a large one counts the memory of its parent as its own.
+    processes = time_processes()
+    from benchmarks.peers import THRESHOLD, time_peers
+
+    cube = _build(dim=32)
+    record(
+        "performance",
+        runs=RUNS,
+        dims=[time_build("moments", 9, dim, RUNS if dim <= MODEL_DIM else FEW_RUNS) for dim in DIMS],
+        models=[time_build(model, count, MODEL_DIM, FEW_RUNS) for model, count in MODELS],
+        processes=processes,
+        lookups=time_lookups(cube),
+        bulk=time_bulk(cube),
+        threshold=THRESHOLD,
+        peers=time_peers(RUNS),
+    )
+    if compiler := shutil.which("cc"):
+        version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True).stdout
+        colours = np.random.default_rng(1).random((PROGRAM_COLOURS, 3)).astype(np.float32)
+        record(
+            "performance",
+            "programs",
+            runs=RUNS,
+            colours=len(colours),
+            compiler=version.splitlines()[0],
+            flags=" ".join(FLAGS),
+            rows=[
+                time_header(each, mode, colours) for mode in MODES for each in (cube, _build(dim=32, model="sigmoid"))
+            ],
+            python=[time_python(cube, mode, colours[:PYTHON_COLOURS].astype(float)) for mode in ("bulk", *MODES)],
+        )
+
+
+def _build(**options: Any) -> Any:
+    import uplift
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        return uplift.build(MACBETH, **options)
+
+
+def time_build(model: str, count: int, dim: int, runs: int) -> Row:
+    """Time builds in this process; ``compile_s`` is the extra time of the first one."""
+    import jax
+
+    jax.clear_caches()  # type: ignore[no-untyped-call]
+    build = partial(_build, dim=dim, model=model, coefficients=count)
+    begin = time.perf_counter()
+    data = build().data
+    first = time.perf_counter() - begin
+    unfitted, worst = data.points.counts()["unfitted"], float(data.points.distance.max())
+    if unfitted:
+        raise RuntimeError(f"{unfitted} nodes are unfitted: nothing to time")
+    wall, cpu = time_calls(build, runs)
+    return {
+        "model": model,
+        "coefficients": count,
+        "dim": dim,
+        "nodes": dim**3,
+        "compile_s": max(first - wall.median, 0),
+        "wall_s": wall,
+        "whole_us": cpu.scaled(1e6 / dim**3),
+        "worst": worst,
+    }
+
+
+def time_processes() -> list[Row]:
+    """Time commands as a user starts them: wall seconds and peak memory in MB."""
+
+    def row(what: str, wall: Spread, megabytes: float) -> Row:
+        return {"what": what, "wall": wall, "megabytes": megabytes}
+
+    with tempfile.TemporaryDirectory() as folder:
+
+        def build(dim: int) -> list[str]:
+            options = ["--dim", str(dim), "-o", f"{folder}/{dim}.uplift", "--force", "-q"]
+            return [UPLIFT, "build", "--atlas", str(MACBETH), *options]
+
+        uncached = {"JAX_ENABLE_COMPILATION_CACHE": "false"}
+        rows = [row("uplift build --dim 32, compilation cache disabled", *time_process(build(32), RUNS, uncached))]
+        for dim in DIMS:
+            runs = RUNS if dim < max(DIMS) else 1
+            caches = [{"JAX_COMPILATION_CACHE_DIR": f"{folder}/cache-{dim}-{run}"} for run in range(runs)]
+            walls, peaks = zip(*(time_process(build(dim), 1, cache) for cache in caches), strict=True)
+            rows.append(row(f"uplift build --dim {dim}, first run", spread([one.median for one in walls]), max(peaks)))
+            rows.append(row(f"uplift build --dim {dim}, compiled before", *time_process(build(dim), runs, caches[0])))
+    starts = {
+        "python -c 'import numpy'": [sys.executable, "-c", "import numpy"],
+        "uplift query '#cc3319' --format json": [UPLIFT, "query", "#cc3319", "--format", "json"],
+        "uplift --help": [UPLIFT, "--help"],
+    }
+    return rows + [row(what, *time_process(command, 2 * RUNS)) for what, command in starts.items()]
+
+
+def time_lookups(cube: Any) -> list[Row]:
+    """Time every mode with numpy in both types, on one thread and on two, and for colours near those of the atlas."""
+    rng = np.random.default_rng(1)
+    rows = [
+        _lookup(cube, what, rng.random((count, 3)), dtype, threads)
+        for what, count in COLOURS.items()
+        for dtype in ("float64", "float32")
+        for threads in (1, 2)
+    ]
+    for what, count in COLOURS.items():
+        row = _lookup(cube, what, near_entries(cube, count, rng), "float64", 1)
+        rows.append(row | {"what": f"{what}, colours near entries"})
+    return rows
+
+
+def near_entries(cube: Any, count: int, rng: np.random.Generator) -> Any:
+    """Draw linear RGB (n, 3) around the colours of the atlas entries, most of them in entry boxes."""
+    rgb = cube.data.atlas.rgb
+    return np.clip(rgb[rng.integers(len(rgb), size=count)] + rng.normal(0, 1e-3, (count, 3)), 0, 1)
+
+
+def _lookup(cube: Any, what: str, rgb: Any, dtype: str, threads: int) -> Row:
+    options: Row = {"dtype": dtype, "threads": threads}
+    if what == "coefficients":
+        query = partial(cube.coefficients, rgb, **options)
+        error = float(np.abs(query() - cube.coefficients(rgb)).max())
+    else:
+        query = partial(cube.reflectance, rgb, WAVELENGTHS, what, **options)
+        back = cube.data.sensor.rgb(cube.reflectance(rgb[:CHECKED], None, what, **options))
+        error = float(np.abs(back - rgb[:CHECKED]).max())
+    size, count = np.dtype(dtype).itemsize, cube.data.model.count
+    width = count if what == "coefficients" else len(WAVELENGTHS)
+    rows_read = size * width if what == "spectra" else 8 * count
+    return _timing(query, rgb, error, MAX_ERRORS[what], 24 + 8 * rows_read + size * width) | {"what": what, **options}
+
+
+def time_bulk(cube: Any) -> list[Row]:
+    """Time JAX: spectra and coefficients of random colours, and spectra of colours near those of the atlas."""
+    rng = np.random.default_rng(1)
+    random, painted = rng.random((BULK, 3)), near_entries(cube, BULK, rng)
+    return [
+        _bulk(cube, "spectra", random, 1),
+        _bulk(cube, "spectra", random, 2),
+        _bulk(cube, "spectra, float32 queries", random.astype(np.float32), 2),
+        _bulk(cube, "spectra, colours near entries", painted, 2),
+        _bulk(cube, "coefficients", random, 2),
+    ]
+
+
+def _bulk(cube: Any, what: str, rgb: Any, threads: int) -> Row:
+    import jax
+
+    from uplift.lookup import bulk
+
+    jax.clear_caches()  # type: ignore[no-untyped-call]
+    spectra = what.startswith("spectra")
+    begin = time.perf_counter()
+    sample = bulk.spectra(cube, WAVELENGTHS, threads=threads) if spectra else bulk.coefficients(cube, threads=threads)
+    prepared = time.perf_counter()
+    result = sample(rgb)
+    answered = time.perf_counter()
+    expected = cube.reflectance(rgb, WAVELENGTHS) if spectra else cube.coefficients(rgb)
+    width = len(WAVELENGTHS) if spectra else cube.data.model.count
+    error = float(np.abs(result - expected).max())
+    row = _timing(lambda: sample(rgb), rgb, error, 1e-6, rgb.itemsize * 3 + 9 * 4 * width)
+    compiling = max(answered - prepared - row["wall_s"].median, 0)
+    times = {"prepare_s": prepared - begin, "compile_s": compiling}
+    return row | {"what": what, "dtype": rgb.dtype.name, "threads": threads} | times
+
+
+def _timing(query: Callable[[], object], rgb: Any, error: float, limit: float, bytes_each: int) -> Row:
+    """Bytes of a colour are those of the query, of the rows read and of the result."""
+    if not error <= limit:
+        raise RuntimeError(f"error {error} exceeds {limit}: nothing to time")
+    wall, cpu = time_calls(query, RUNS)
+    return {
+        "colours": len(rgb),
+        "bytes": bytes_each,
+        "wall_s": wall,
+        "million_per_s": len(rgb) / wall.median / 1e6,
+        "cpu_us": cpu.median / len(rgb) * 1e6,
+        "error": error,
+    }
+
+
+def time_header(cube: Any, mode: str, colours: Any) -> Row:
+    """Compile the C header, check its reflectances, and return its rates on one core, in million colours per second."""
+    from uplift.colorimetry.delta_e import delta_e_rgb
+    from uplift.io.export import write_program
+
+    source, data = ROOT / "benchmarks" / "rates.c", cube.data
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        write_program(data, folder / "cube.h", mode=mode)
+        colours.tofile(folder / "rgb")
+        cube.wavelengths.astype(np.float32).tofile(folder / "at")
+        subprocess.run(["cc", *FLAGS, "-I.", str(source), "-o", "rates", "-lm"], cwd=folder, check=True)
+        command = ["./rates", "rgb", "at", str(RUNS), "found"]
+        done = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
+        found = np.fromfile(folder / "found", np.float32).reshape(CHECKED, -1).astype(float)
+    checked = colours[:CHECKED].astype(float)
+    worst = float(np.abs(found - cube.reflectance(checked, cube.wavelengths, mode=mode)).max())
+    if not worst <= MAX_DIFFERENCE:
+        raise RuntimeError(f"{mode}: reflectances differ by {worst}: nothing to time")
+    errors = delta_e_rgb(data.sensor, data.sensor.rgb(found), checked)
+    rates = [len(colours) / float(word) / 1e6 for word in done.stdout.split()[:-1]]
+    return {
+        "model": data.model.name,
+        "coefficients": data.model.count,
+        "mode": mode,
+        **dict(zip(("lookup", "many", "evaluation", "shared"), rates, strict=True)),
+        "worst": worst,
+        "mean_delta_e": float(errors.mean()),
+        "max_delta_e": float(errors.max()),
+    }
+
+
+def time_python(cube: Any, mode: str, colours: Any) -> Row:
+    """Return the rate of lookups in Python on the same colours: million per CPU second of all threads."""
+    from uplift.lookup import bulk
+
+    if mode == "bulk":
+        name, sample = "`uplift.bulk`, spectra", bulk.spectra(cube, WAVELENGTHS, threads=1)
+    else:
+        name, sample = f"numpy, {mode}", partial(cube.reflectance, wavelengths=WAVELENGTHS, mode=mode, dtype="float32")
+    sample(colours)
+    _, cpu = time_calls(lambda: sample(colours), RUNS)
+    return {"what": name, "lookup": len(colours) / cpu.min / 1e6}
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,56 @@
+"""Images distributed with scikit-image, scikit-learn, colour-science and matplotlib."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import numpy as np
+
+from benchmarks import ROOT
+from uplift.common.arrays import Array
+
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore")  # of its optional parts
+    import colour
+
+INSTALLED = ROOT / "out" / "pictures"
+"""Folder into which `make textures` installs packages with images."""
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """An image file, its package, and its linear sRGB as read by other software."""
+
+    path: Path
+    package: str
+
+    def linear(self) -> Array:
+        """Return linear sRGB (h, w, 3), by OpenEXR, or by Pillow and the sRGB curve of colour-science."""
+        if self.path.suffix == ".exr":
+            import OpenEXR
+
+            found = OpenEXR.File(str(self.path)).channels()
+            return np.asarray(found["RGB"].pixels, dtype=float)
+        from PIL import Image
+
+        codes: Any = np.asarray(Image.open(self.path).convert("RGB"), dtype=float)
+        return np.asarray(colour.models.eotf_sRGB(codes / 255), dtype=float)
+
+
+def pictures() -> Iterator[Picture]:
+    """Yield the images; raise `FileNotFoundError` unless `make textures` installed them."""
+    if not INSTALLED.is_dir():
+        raise FileNotFoundError(f"{INSTALLED}: run 'make textures'")
+    for name in ("astronaut.png", "coffee.png", "chelsea.png", "ihc.png", "rocket.jpg"):
+        yield Picture(INSTALLED / "skimage" / "data" / name, "scikit-image")
+    for name in ("china.jpg", "flower.jpg"):
+        yield Picture(INSTALLED / "sklearn" / "datasets" / "images" / name, "scikit-learn")
+    test_pattern = Path(colour.__file__).parent / "io" / "tests" / "resources" / "CMS_Test_Pattern.exr"
+    yield Picture(test_pattern, "colour-science")
+    portrait = Path(matplotlib.get_data_path()) / "sample_data" / "grace_hopper.jpg"
+    yield Picture(portrait, "matplotlib")

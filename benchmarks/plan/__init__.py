@@ -1,1 +1,0 @@
-"""Scene plans for real textures, and the accuracy of their predictions."""

@@ -1,1 +1,0 @@
-"""Rates and accuracy of exported programs."""

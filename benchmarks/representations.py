@@ -1,0 +1,197 @@
+"""Spectral representations compared with Kment 2011, for docs/representations.md and its pictures."""
+
+from __future__ import annotations
+
+import csv
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+import uplift
+from benchmarks import ATLASES, DOCS, REFERENCE, record
+from uplift.colorimetry import observer
+from uplift.common.arrays import Array
+from uplift.lab.comparison.filters import NONE, TunedFilter, tune_filters
+from uplift.lab.comparison.measure import Comparison, RepresentationResult, compare, error_statistics
+from uplift.lab.comparison.pictures import KINDS, write_picture
+from uplift.lab.comparison.recommend import cheapest
+from uplift.lab.comparison.scene import Scene, make_scene
+from uplift.scene.representations import all_representations
+from uplift.scene.representations.composite import ENHANCED_THRESHOLD, Composite, enhanced_riemann
+from uplift.scene.representations.samples import (
+    TABLE_STRIDE,
+    SampleRepresentation,
+    riemann_sums,
+    wavelengths,
+    xyz_weights,
+)
+from uplift.viz.format import capitalise
+
+OTHER_LIGHTS = ("LED-B3", "LED-RGB1", "HP1")
+TARGETS = (2.0, 1.0, 0.5)
+TABLE = 81
+"""Floats of a light that is kept as its 5 nm table."""
+RIEMANN_COUNTS = (8, 16, 32)
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Printed:
+    """Printed errors of a representation, or of a filter with its ``parameters``."""
+
+    mean: float
+    q97_5: float | None = None
+    parameters: str = ""
+
+
+def main() -> None:
+    """Measure, draw and store."""
+    warnings.simplefilter("ignore", uplift.UpliftWarning)
+    atlases = {path.stem: uplift.read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))}
+    default = make_scene(atlases)
+    ours, others = (_compare(scene) for scene in (default, make_scene(atlases, OTHER_LIGHTS)))
+    for kind in KINDS:
+        write_picture(ours, kind, DOCS / "representations" / f"{kind}.png", force=True)
+    record(
+        "representations",
+        surfaces=len(default.names),
+        titles={name: capitalise(title) for one in (ours, others) for name, title in one.sets.items()},
+        advice=[row for one in (ours, others) for row in advice(one)],
+        ranking=[*ranking(ours, printed_tables()), *ranking(others, {})],
+        riemann=riemann_rows(default, printed_tables()),
+        filters=filter_rows(tune_filters(default), printed_filters()),
+    )
+
+
+def _compare(scene: Scene) -> Comparison:
+    return compare(scene, all_representations(scene.powers, scene.surfaces))
+
+
+def printed_tables() -> dict[tuple[str, str], Printed]:
+    """Return tables 6.1 and 6.2 of the thesis, by lights and representation."""
+    rows = _printed("representations_kment2011.csv")
+    return {(row["lights"], row["representation"]): Printed(float(row["mean"]), float(row["q97_5"])) for row in rows}
+
+
+def printed_filters() -> dict[tuple[str, int, str], Printed]:
+    """Return tables A.1 and A.2 of the thesis, by lights, samples and kind of filter."""
+    return {
+        (row["lights"], int(row["samples"]), row["filter"]): Printed(
+            float(row["mean"]), parameters=row["parameters"].replace(";", ",")
+        )
+        for row in _printed("filters_kment2011.csv")
+    }
+
+
+def _printed(name: str) -> list[dict[str, str]]:
+    with (REFERENCE / name).open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def advice(comparison: Comparison) -> Iterator[Row]:
+    """Yield the cheapest representation for each set of lights and target, with and without tables of lights."""
+    without = tuple(row for row in comparison.results if row.light_floats < TABLE)
+    compact = replace(comparison, results=without)
+    for name, title in comparison.sets.items():
+        for target in TARGETS:
+            best = {
+                "cheapest": cheapest(comparison, name, target),
+                "without_light_table": cheapest(compact, name, target),
+            }
+            yield {"lights": title, "target": target, **{key: _named(row) for key, row in best.items()}}
+
+
+def _named(row: RepresentationResult | None) -> Row | None:
+    return {"name": row.name, "floats": row.floats, "light_floats": row.light_floats} if row else None
+
+
+def ranking(comparison: Comparison, thesis: Mapping[tuple[str, str], Printed]) -> Iterator[Row]:
+    """Yield the errors and costs of every representation under each set of lights, smallest mean first."""
+    names = ("mean", "std", "median", "p2_5", "p25", "p75", "p97_5")
+    for row in comparison.results:
+        printed = thesis.get((row.lights, row.name))
+        yield {
+            "lights": row.lights,
+            "name": row.name,
+            **dict(zip(names, row.statistics, strict=True)),
+            "thesis_mean": printed.mean if printed else None,
+            "thesis_p97_5": printed.q97_5 if printed else None,
+            "floats": row.floats,
+            "light_floats": row.light_floats,
+            "time": row.ns.median,
+        }
+
+
+def filter_rows(tuned: Sequence[TunedFilter], thesis: Mapping[tuple[str, int, str], Printed]) -> list[Row]:
+    """Return the best filter of each kind; ``change`` is relative to no filter, None for that row."""
+    unfiltered = {(one.lights, one.count): one.statistics.mean for one in tuned if one.kind == NONE}
+    rows = []
+    for one in tuned:
+        printed, bare = thesis[one.lights, one.count, one.kind], thesis[one.lights, one.count, NONE]
+        mean, reference = one.statistics.mean, unfiltered[one.lights, one.count]
+        rows.append(
+            {
+                "lights": one.lights,
+                "samples": one.count,
+                "filter": one.kind,
+                "mean": mean,
+                "std": one.statistics.deviation,
+                "change": None if one.kind == NONE else mean / reference - 1,
+                "parameters": one.parameters,
+                "thesis": {
+                    "mean": printed.mean,
+                    "change": None if one.kind == NONE else printed.mean / bare.mean - 1,
+                    "parameters": printed.parameters,
+                },
+            }
+        )
+    return sorted(rows, key=lambda row: (row["lights"], row["samples"], row["mean"]))
+
+
+def riemann_rows(scene: Scene, thesis: Mapping[tuple[str, str], Printed]) -> list[Row]:
+    """Return mean ΔE00 of plain and enhanced sums with disjoint and with closed cells, and of the thesis.
+
+    Closed cells are the literal reading of eq. 5.3: samples on a border count twice.
+    """
+    pairs: list[tuple[Any, Any]] = [(riemann_sums(count), closed(count)) for count in RIEMANN_COUNTS]
+    pairs += [(enhanced_riemann(count), enhanced(count)) for count in RIEMANN_COUNTS]
+    return [
+        {
+            "lights": lights.name,
+            "name": one.name,
+            "disjoint": error_statistics(one, scene, lights).mean,
+            "closed": error_statistics(other, scene, lights).mean,
+            "thesis": thesis[lights.name, one.name].mean,
+        }
+        for lights in scene.sets
+        for one, other in pairs
+    ]
+
+
+def closed(count: int) -> SampleRepresentation:
+    """Return means over closed cells; XYZ by the colour-matching functions at 5 nm, shared between cells."""
+    inside = _cells(count)
+    encoder = np.zeros((len(wavelengths()), count))
+    encoder[::TABLE_STRIDE] = (inside / inside.sum(axis=1, keepdims=True)).T
+    weights = (inside / inside.sum(axis=0)) @ (xyz_weights()[::TABLE_STRIDE] * TABLE_STRIDE)
+    return SampleRepresentation(f"RS{count}", "Riemann sums, closed cells", encoder, weights)
+
+
+def enhanced(count: int) -> Composite:
+    """Return enhanced sums over the same cells; a spike on a border is multiplied by the mean of both."""
+    inside, family = _cells(count), "enhanced Riemann sums, closed cells"
+    return Composite(f"RE{count}", family, closed(count), inside / inside.sum(axis=0), ENHANCED_THRESHOLD)
+
+
+def _cells(count: int) -> Array:
+    """Return (count, 81) whether a sample of the 5 nm table lies in a cell."""
+    edges = np.linspace(observer.START, observer.END, count + 1)
+    low, high = edges[:-1, None] - 1e-9, edges[1:, None] + 1e-9
+    return ((observer.grid() >= low) & (observer.grid() <= high)).astype(float)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,1 +1,0 @@
-"""Comparison of spectral representations with Kment 2011: docs/data/representations.json."""

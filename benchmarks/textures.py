@@ -1,0 +1,220 @@
+"""Accuracy, speed and memory of spectral textures, for docs/textures.md and its picture."""
+
+from __future__ import annotations
+
+import tempfile
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import OpenEXR
+
+import uplift
+from benchmarks import CUBES, DOCS, MACBETH, record
+from benchmarks.performance import UPLIFT
+from benchmarks.pictures import Picture, colour, pictures
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, delta_e_rgb, lab
+from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.srgb import to_display_codes
+from uplift.common.arrays import Array
+from uplift.io import texture
+from uplift.io.mitsuba.texture_file import multipliers_of_rounded
+from uplift.lab.timing import time_process
+from uplift.lookup import Cube
+from uplift.models import Moments, evaluate
+from uplift.viz.figure import new_figure, write_png
+
+FORMS: tuple[tuple[str, texture.PixelEncoding, str], ...] = (
+    ("spectrum_half", texture.Spectrum(), "half"),
+    ("spectrum_float", texture.Spectrum(), "float"),
+    ("moments_half", texture.Moments(), "half"),
+    ("moments_float", texture.Moments(), "float"),
+    ("multipliers_float", texture.Multipliers(), "float"),
+)
+ROWS = 64
+"""Rows per call of colour-science, which limits its memory."""
+GRIDS = ((380, 780, 5), (400, 700, 5), (380, 780, 10), (400, 700, 10), (380, 780, 20), (400, 700, 20))
+"""First, last, step in nm."""
+
+
+def round_trips(cube: Cube, images: list[Picture], target: Path) -> Iterator[dict[str, Any]]:
+    """Yield ΔE00 between each image and its textures, read by OpenEXR and, where spectral, by colour-science."""
+    uplifters = [(name, form, texture.prepare(cube, form, depth=depth)) for name, form, depth in FORMS]
+    for picture in images:
+        linear = np.clip(picture.linear(), 0, 1)
+        errors, colour_science = {}, {}
+        for name, form, uplifter in uplifters:
+            texture.convert(uplifter, picture.path, target, force=True)
+            found = delta_e_rgb(cube.data.sensor, linear, _rgb(cube, form, uplifter.channels, target))
+            errors[name] = [float(found.mean()), float(found.max())]
+            if isinstance(form, texture.Spectrum):
+                found = delta_e_rgb(cube.data.sensor, linear, _rgb_by_colour_science(target))
+                colour_science[name] = float(found.mean())
+        yield {
+            "image": f"{picture.path.name} ({picture.package})",
+            "pixels": linear.size // 3,
+            "errors": errors,
+            "colour_science": colour_science,
+        }
+
+
+def _rgb(cube: Cube, form: texture.PixelEncoding, names: tuple[str, ...], path: Path) -> Array:
+    """Return the linear RGB (h, w, 3) of a texture, read as Mitsuba reads it."""
+    sensor, model = cube.data.sensor, cube.data.model
+    channels = OpenEXR.File(str(path), separate_channels=True).channels()
+    shape = channels["R"].pixels.shape
+    values = np.stack([channels[name].pixels.ravel() for name in names], axis=-1)
+    blocks = []
+    for block in np.array_split(values, max(len(values) // 50_000, 1)):
+        numbers = block.astype(float)
+        if isinstance(model, Moments) and isinstance(form, texture.Moments):
+            numbers, valid = multipliers_of_rounded(model, numbers)
+            if not valid.all():
+                raise ValueError(f"{path}: {(~valid).sum()} pixels hold no moments of a reflectance")
+        if not isinstance(form, texture.Spectrum):
+            numbers = evaluate(model, numbers, sensor.wavelengths)
+        blocks.append(sensor.rgb(numbers))
+    return np.concatenate(blocks).reshape(*shape, 3)
+
+
+def _rgb_by_colour_science(path: Path) -> Array:
+    """Return linear sRGB, read and converted by colour-science alone."""
+    io = colour.io.fichet2021
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        at, values = io.read_spectral_image_Fichet2021(path)["T"]
+        blocks = [values[first : first + ROWS].astype(float) for first in range(0, len(values), ROWS)]
+        return np.concatenate([io.components_to_sRGB_Fichet2021({"T": (at, rows)})[0] for rows in blocks])
+
+
+def fewer_wavelengths(
+    cube: Cube, images: list[Picture], target: Path, first: int, last: int, step: int
+) -> dict[str, Any]:
+    """Return ΔE00 of half-float spectra at first:last:step nm, converted back by colour-science."""
+    wavelengths = tuple(float(wavelength) for wavelength in range(first, last + 1, step))
+    uplifter = texture.prepare(cube, texture.Spectrum(wavelengths))
+    means, worst = [], 0.0
+    for picture in images:
+        texture.convert(uplifter, picture.path, target, force=True)
+        linear = np.clip(picture.linear(), 0, 1)
+        errors = delta_e_rgb(cube.data.sensor, linear, _rgb_by_colour_science(target))
+        means.append(float(errors.mean()))
+        worst = max(worst, float(errors.max()))
+    return {
+        "wavelengths": f"{first}:{last}:{step}" + (", the default" if (first, last, step) == GRIDS[0] else ""),
+        "channels": len(wavelengths),
+        "bytes": 2 * (len(wavelengths) + 3),
+        "lowest_mean": min(means),
+        "highest_mean": max(means),
+        "max": worst,
+    }
+
+
+LIGHTS = {"A": "tungsten", "FL11": "three-band fluorescent", "HP1": "high-pressure sodium"}
+DETAIL = (slice(0, 300), slice(60, 460))
+"""Rows and columns of the detail."""
+
+
+def draw_relit(cube: Cube, picture: Picture, path: Path) -> dict[str, float]:
+    """Write the figure, and return the mean ΔE00 between both methods by light."""
+    spectra = _spectra(cube, picture)
+    rgb = np.clip(picture.linear(), 0, 1)[DETAIL]
+    sensor = cube.data.sensor
+    figure = new_figure(10.2, 4.5)
+    panels = figure.subplots(2, len(LIGHTS) + 1)
+    _show(panels[0, 0], sensor.rgb(spectra), "D65, from the texture's spectra")
+    _show(panels[1, 0], rgb, "the image")
+    errors = {}
+    for (above, below), (name, what) in zip(panels[:, 1:].T, LIGHTS.items(), strict=True):
+        light = observer.light(name)
+        spectral = spectra @ light.xyz.T  # no adaptation, as of a camera balanced for daylight
+        colour = light.white @ sensor.xyz_to_rgb.T
+        product = (rgb * colour) @ np.linalg.inv(sensor.xyz_to_rgb).T
+        errors[name] = float(delta_e_2000(lab(spectral, light.white), lab(product, light.white)).mean())
+        _show(above, spectral @ sensor.xyz_to_rgb.T / colour.max(), f"{name}, {what}")
+        _show(below, rgb * colour / colour.max(), f"{name}, RGB × RGB: ΔE00 {errors[name]:.1f}")
+    write_png(figure, path, force=True)
+    return errors
+
+
+def _spectra(cube: Cube, picture: Picture) -> Array:
+    """Return the spectra (h, w, N) of the texture, read by OpenEXR."""
+    with tempfile.TemporaryDirectory() as folder:
+        uplifter = texture.prepare(cube)
+        texture.convert(uplifter, picture.path, Path(folder) / "texture.exr")
+        channels = OpenEXR.File(str(Path(folder) / "texture.exr"), separate_channels=True).channels()
+        return np.stack([channels[name].pixels[DETAIL] for name in uplifter.channels], axis=-1).astype(float)
+
+
+def _show(axes: Any, linear: Array, title: str) -> None:
+    axes.imshow(to_display_codes(linear, SRGB).astype(np.uint8))
+    axes.set_title(title, fontsize=9, loc="left")
+    axes.set_axis_off()
+
+
+FEW = ("--wavelengths", "400:700:10")
+JOBS: tuple[tuple[int, tuple[str, ...], int], ...] = (
+    (2048, (), 3),
+    (2048, ("--representation", "moments"), 3),
+    (2048, ("--representation", "multipliers"), 1),
+    (4096, FEW, 1),
+    (8192, FEW, 1),
+    (8192, ("--representation", "moments"), 1),
+)
+"""Size, options, runs."""
+
+
+def _write(path: Path, size: int) -> None:
+    """Write a photograph tiled to size² pixels as 8-bit PNG, with noise so that the tiles do not compress."""
+    import OpenImageIO
+    from PIL import Image
+
+    photo = np.asarray(Image.open(next(iter(pictures())).path).convert("RGB"), dtype=int)
+    rng, height = np.random.default_rng(0), photo.shape[0]
+    tiled = np.tile(photo, (1, size // photo.shape[1], 1))
+    image = OpenImageIO.ImageOutput.create("png")
+    if image is None or not image.open(str(path), OpenImageIO.ImageSpec(size, size, 3, "uint8")):
+        raise RuntimeError(OpenImageIO.geterror())
+    for first in range(0, size, height):
+        noisy = np.clip(tiled + rng.integers(-3, 4, tiled.shape), 0, 255).astype(np.uint8)
+        image.write_scanlines(first, first + height, 0, noisy)
+    image.close()
+
+
+def time_textures(cube: Path, size: int, options: tuple[str, ...], runs: int) -> dict[str, Any]:
+    """Time a process that uplifts size² pixels."""
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = Path(folder) / "in.png", Path(folder) / "out.exr"
+        _write(source, size)
+        command = [UPLIFT, "texture", str(source), "-o", str(target), "--cube", str(cube), "--force", *options]
+        wall, megabytes = time_process(command, runs)
+        return {
+            "options": " ".join(options) or "none: spectra at 81 wavelengths",
+            "size": size,
+            "megapixels": size**2 / 1e6,
+            "seconds": wall,
+            "rate": size**2 / wall.median / 1e6,
+            "written_mb": target.stat().st_size / 1e6,
+            "peak_mb": megabytes,
+        }
+
+
+def main() -> None:
+    """Measure, draw and store."""
+    warnings.simplefilter("ignore", uplift.UpliftWarning)
+    # First: a process started from a large one counts the memory of its parent as its own.
+    speed = [time_textures(CUBES / "moments-16-macbeth.uplift", *job) for job in JOBS]
+    cube, images = uplift.build(MACBETH, dim=32), list(pictures())
+    relighting = draw_relit(cube, images[0], DOCS / "textures" / "relit.png")
+    with tempfile.TemporaryDirectory() as folder:
+        target = Path(folder) / "texture.exr"
+        found = list(round_trips(cube, images, target))
+        fewer = [fewer_wavelengths(cube, images, target, *grid) for grid in GRIDS]
+    record("textures", relighting=relighting, round_trips=found, wavelengths=fewer, speed=speed)
+
+
+if __name__ == "__main__":
+    main()

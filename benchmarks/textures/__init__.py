@@ -1,1 +1,0 @@
-"""Accuracy, speed and memory of spectral textures: ``make textures``."""

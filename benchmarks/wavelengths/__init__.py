@@ -1,1 +1,0 @@
-"""Selection of wavelengths, and reproduction of Meyer 1988: ``make wavelengths``."""

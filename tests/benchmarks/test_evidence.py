@@ -1,0 +1,76 @@
+"""Programs of pages whose computations nothing else tests: matrices of cameras, closed cells, the scan, skies."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks import palette_dial as scan
+from benchmarks.cameras import lab_matrix, realisable_share, xyz_matrix
+from benchmarks.representations import Printed, closed, enhanced, printed_filters, printed_tables
+from uplift.colorimetry import observer
+from uplift.design.palette.picture import read_weights
+from uplift.scene.representations.samples import xyz_weights
+
+WHITE = np.array([0.95, 1.0, 1.09])
+
+
+@pytest.fixture
+def known():
+    """A matrix that takes (1, 1, 1) to the white."""
+    matrix = np.array([[0.6, 0.3, 0.1], [0.3, 0.6, 0.1], [0.05, 0.1, 0.85]])
+    return matrix * (WHITE / matrix.sum(axis=1))[:, None]
+
+
+def test_known_camera_matrices_are_found_and_keep_white(known):
+    rng = np.random.default_rng(4)
+    raw = rng.random((12, 3))
+    np.testing.assert_allclose(xyz_matrix(raw, raw @ known.T), known, rtol=1e-10)
+    np.testing.assert_allclose(lab_matrix(raw, raw @ known.T, WHITE), known, rtol=1e-6)
+    noisy = raw @ known.T + 0.01 * rng.standard_normal((12, 3))
+    np.testing.assert_allclose(lab_matrix(raw, noisy, WHITE).sum(axis=1), WHITE, rtol=1e-12)
+
+
+def test_overlapping_channels_leave_few_raw_values():
+    shares = [realisable_share(observer.sensor("camera", "D65", name), 12) for name in observer.camera_names()]
+    assert 0 < shares[1] < shares[0] < 1
+
+
+@pytest.mark.parametrize("count", [8, 32])
+def test_closed_cells_keep_the_white(count):
+    light = np.ones((1, 401))
+    for one in (closed(count), enhanced(count)):
+        np.testing.assert_allclose(one.xyz(one.encode_light(light)), light @ xyz_weights(), rtol=2e-3)
+
+
+def test_a_sample_on_a_border_counts_twice():
+    line = np.zeros((1, 401))
+    line[0, 25] = 1  # 405 nm: a border of 16 cells, and within one of 15
+    assert (closed(16).encode_light(line) > 0).sum() == 2
+    assert (closed(15).encode_light(line) > 0).sum() == 1
+
+
+def test_thesis_tables_have_the_printed_values():
+    assert printed_tables()["spiky", "CS15"] == Printed(0.316, 0.816)
+    assert printed_filters()["spiky", 16, "mitchell"].parameters == "extent 19, b -0.4, c 1"
+
+
+def test_the_viewer_reads_the_scan_in_which_every_material_is_visible(tmp_path):
+    weights = scan.cast(scan.scan(90), 90)
+    assert weights.min() >= 0
+    assert weights.sum(axis=-1).max() <= 1
+    assert (weights.max(axis=(0, 1)) > 0.02).all()
+    assert not weights[0, 0].any()
+    scan.write_weights(weights, tmp_path / "engine.exr")
+    order = ["block", "haze", "piston", "valve"]
+    found = read_weights(tmp_path / "engine.exr", order, {})
+    np.testing.assert_allclose(found, weights[..., [list(scan.DENSITIES).index(name) for name in order]], atol=1e-6)
+
+
+def test_a_block_in_front_hides_what_is_behind():
+    slab = np.zeros((24, 24, 24), dtype=np.float32)
+    slab[:, :, 14:20] = scan.DENSITIES["block"]
+    slab[:, :, 4:10] = scan.DENSITIES["valve"]
+    names = list(scan.DENSITIES)
+    middle = scan.cast(slab, 24)[12, 12]
+    assert middle[names.index("block")] > 20 * middle[names.index("valve")]

@@ -1,0 +1,157 @@
+"""The pages of measurements are renderings of the stored data, and each has a program in benchmarks/."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import shutil
+import subprocess
+import sys
+
+import jinja2
+import pytest
+
+from benchmarks import choices
+from benchmarks.__main__ import main, pages
+from benchmarks.cameras import ATLAS, CHOSEN_AS
+from benchmarks.chart import optimistic_mark
+from benchmarks.choices import ALONE, MARK, OURS, SHIPPED, is_optimistic, mark
+from tests.conftest import ROOT
+from tests.parts import MITSUBA, need
+from tools import render_docs
+from tools.render_docs import number, page_file, pick, read_data, render, stale, table
+from uplift.lab.chart.table import read_chart
+from uplift.lab.study.stability import NO_ATLAS, UPLIFT
+from uplift.lab.study.stability_design import SPACES
+
+DOCS = ROOT / "docs"
+RENDERED = render_docs.pages()
+
+
+@pytest.mark.parametrize("name", pages())
+def test_every_program_can_be_imported(name):
+    if name in ("render", "render-rates", "environment", "look-cubes", "showcase"):
+        need(MITSUBA)
+    assert callable(importlib.import_module(f"benchmarks.{name.replace('-', '_')}").main)
+
+
+def test_every_stored_figure_names_a_page_that_can_be_measured():
+    for path in (DOCS / "data").glob("*.json"):
+        command = json.loads(path.read_text(encoding="utf-8")).get("command", "")
+        if path.stem != "stability-hostile":
+            assert not command or command.removeprefix("make measure PAGE=") in pages(), path
+
+
+def test_pages_are_listed_and_unknown_ones_refused(capsys):
+    assert main([]) == 0
+    assert "accuracy        Round trips" in capsys.readouterr().out
+    assert main(["fluorescence"]) == 2
+    assert "pages are accuracy" in capsys.readouterr().err
+
+
+def test_a_page_that_fails_does_not_stop_the_others(monkeypatch):
+    commands = []
+
+    def run(command, **options):
+        commands.append(command[2])
+        return subprocess.CompletedProcess(command, int(command[2] == "benchmarks.chart"))
+
+    monkeypatch.setattr("benchmarks.__main__.subprocess.run", run)
+    assert main(["chart", "atlas-files"]) == 1
+    assert commands == ["benchmarks.chart", "benchmarks.atlas_files", "tools.render_docs"]
+
+
+@pytest.mark.parametrize("name", RENDERED)
+def test_committed_page_is_the_rendering_of_the_committed_data(name):
+    assert page_file(name).read_text(encoding="utf-8") == render(name)
+
+
+def test_a_changed_number_in_the_page_is_noticed(tmp_path):
+    for file in ("templates/scenes.md.j2", "templates/macros.j2", "data/scenes.json"):
+        (tmp_path / file).parent.mkdir(exist_ok=True)
+        shutil.copy(DOCS / file, tmp_path / file)
+    page = tmp_path / "scenes.md"
+    text = (DOCS / "scenes.md").read_text(encoding="utf-8")
+    page.write_text(text, encoding="utf-8")
+    assert stale(tmp_path) == []
+    page.write_text(text.replace("e-", "e-1", 1), encoding="utf-8")
+    assert stale(tmp_path) == ["scenes"]
+
+
+def test_a_missing_figure_is_an_error():
+    data = read_data("accuracy")
+    del data["queries"]
+    with pytest.raises(jinja2.UndefinedError, match="queries"):
+        render("accuracy", data=data)
+
+
+@pytest.mark.parametrize(
+    ("value", "spec", "text"),
+    [
+        (None, ".2f", ""),
+        (True, "", "●"),
+        (1234.5, ",.0f", "1,234"),
+        (4200, "time", "4.2 µs"),
+        ([1, 2.5], ".1f", "1.0 / 2.5"),
+        ([1, 2.5], "list .1f", "1.0, 2.5"),
+        ({"median": 2, "min": 1, "max": 3, "runs": 5}, ".1f", "2.0 (1.0–3.0)"),
+        ({"mean": 2, "std": 0.5}, ".1f", "2.0 ± 0.5"),
+    ],
+)
+def test_formats_of_numbers(value, spec, text):
+    assert number(value, spec) == text
+
+
+def test_table_fills_a_row_pattern():
+    rows = [{"name": "x", "errors": {"FL2": [1.0, 2.0]}}]
+    text = table(rows, lambda: "\nname | mean\n{name} | {errors.FL2.0:.1f}\n")
+    assert text == "| name | mean |\n| --- | --- |\n| x | 1.0 |\n"
+
+
+def test_pick_returns_the_only_match():
+    rows = [{"a": 1, "b": 2}, {"a": 1, "b": 3}]
+    assert pick(rows, b=3) == rows[1]
+    with pytest.raises(LookupError, match="2 rows"):
+        pick(rows, a=1)
+
+
+def test_a_choice_marks_its_methods_on_its_sets(monkeypatch):
+    assert sorted(SHIPPED) == sorted(path.stem for path in (ROOT / "atlases").glob("*.txt"))
+    monkeypatch.setattr(choices, "CHOICES", (choices.Choice("length", ("macbeth",), (OURS,)),))
+    assert is_optimistic(["vs", "macbeth"], OURS)
+    assert not is_optimistic(["vs"], OURS)
+    assert (mark(["macbeth"], OURS), mark(["macbeth"], ALONE)) == (MARK, "")
+
+
+def test_stored_marks_agree_with_the_choices():
+    held_out = read_data("held-out")
+    assert held_out["choices"] == json.loads(json.dumps([vars(choice) for choice in choices.CHOICES]))
+    for each in held_out["sets"]:
+        assert all(row["optimistic"] == is_optimistic([each["set"]], row["method"]) for row in each["rows"])
+    marks = {name: text for name, text in read_data("cameras")["marks"].items() if text}
+    assert marks == {name: mark([ATLAS], method) for name, method in CHOSEN_AS.items()}
+    rows = read_chart(ROOT / "uplift" / "lab" / "chart" / "measured.csv").measured
+    stored = {row["name"]: row["mark"] for row in read_data("chart")["methods"]}
+    assert stored == {row.method: optimistic_mark(row) for row in rows}
+    assert {name for name, text in stored.items() if text} == {
+        name for name in stored if name.removeprefix("c-").startswith("moments")
+    }
+
+
+def test_statements_of_the_stability_page_hold_for_its_figures():
+    figures = read_data("stability")
+    ours = [row for row in figures["map"] if row["solver"] == UPLIFT]
+    assert sum(row["unfitted"] for row in ours) == 0
+    five = [row for row in ours if (row["dim"], row["threshold"], row["atlas"]) == (17, 1e-4, NO_ATLAS)]
+    assert {row["space"] for row in five} == set(SPACES)
+    assert max(row["stand_ins"] for row in ours if row["threshold"] >= 1e-4) <= 1
+    assert not any(row["stand_ins"] for row in ours if row["space"] == "sRGB")
+    for cube in figures["cubes"].values():
+        assert cube["lipschitz"]["largest_per_code"] < 0.06
+    cubes = figures["cubes"]
+    assert cubes["sigmoid-16"]["lipschitz"]["largest"] > 2 * cubes["sigmoid-8"]["lipschitz"]["largest"]
+
+
+def test_the_programs_run_as_modules():
+    done = subprocess.run([sys.executable, "-m", "benchmarks"], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert len(done.stdout.splitlines()) == len(pages())
