@@ -63,9 +63,9 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
 
 
 def _write(study: MomentsStudy, folder: Path, *, force: bool) -> None:
+    from uplift.lab.records import write_csv
     from uplift.lab.study.moments_plots import curves, plot_errors, plot_patches, plot_worst
     from uplift.lab.study.moments_table import records
-    from uplift.lab.records import write_csv
 
     table, errors, patches, worst = (folder / name for name in FILES)
     write_csv(records(study), table, force=force)
@@ -82,8 +82,8 @@ def _print_json(study: MomentsStudy) -> None:
 
 
 def _print_csv(study: MomentsStudy) -> None:
-    from uplift.lab.study.moments_table import records
     from uplift.lab.records import records_csv
+    from uplift.lab.study.moments_table import records
 
     print_csv_text(records_csv(records(study)))
 

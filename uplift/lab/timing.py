@@ -107,9 +107,7 @@ def time_calls(function: Callable[[], object], runs: int) -> tuple[Spread, Sprea
     return spread(wall), spread(cpu)
 
 
-def time_process(
-    command: list[str], runs: int, variables: dict[str, str] | None = None
-) -> tuple[Spread, float]:
+def time_process(command: list[str], runs: int, variables: dict[str, str] | None = None) -> tuple[Spread, float]:
     """Measure the wall seconds of a process, and its peak memory in MB (Linux counts in kB)."""
     wall, peak = [], 0
     for _ in range(runs):
