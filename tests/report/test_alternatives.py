@@ -8,7 +8,6 @@ import pytest
 from uplift.colorimetry.observer import display_sensors
 from uplift.lookup import load
 from uplift.report.fidelity import JAKOB_HANIKA, WITHOUT_ATLAS, find_alternatives
-from uplift.report.page import to_json
 
 
 @pytest.fixture(scope="module")
@@ -70,12 +69,3 @@ def test_colours_outside_srgb_have_no_answer(judged):
     assert np.isnan(other.answer[0]).all()
     assert np.isfinite(other.delta_e[1:]).all()
     assert np.isfinite(other.mean).all()
-
-
-def test_json_has_the_same_numbers(judged, found):
-    for record in to_json(judged)["alternatives"]:
-        other = found[record["name"]]
-        for column, sensor in enumerate(judged.lights):
-            errors = record["delta_e_2000"][sensor.illuminant]
-            assert errors["mean"] == pytest.approx(other.mean[column])
-            assert errors["entries"] == other.delta_e[:, column].tolist()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import jinja2
 import pytest
 
-from uplift.viz.html import Markup, _environment, render, resource
+from uplift.viz.html import Markup, _environment, render
 
 HOSTILE = "</script><b title='\"'>&"
 BASE = "viz/templates/base.html.j2"
@@ -21,10 +21,6 @@ def test_page_escapes_its_texts():
     assert HOSTILE not in page
     assert page.count("&lt;/script&gt;&lt;b title=&#39;&#34;&#39;&gt;&amp;") == 3
     assert page.startswith('<!DOCTYPE html>\n<html lang="en">')
-
-
-def test_page_holds_its_style_sheet_unescaped():
-    assert resource("viz/page.css") in render(BASE, title="", lead="")
 
 
 def test_markup_is_not_escaped():
@@ -66,13 +62,3 @@ def test_json_cannot_end_its_script():
 )
 def test_shared_parts(source, expected):
     assert rendered(source, text="<i>") == expected
-
-
-def test_simple_table_aligns_numbers():
-    text = rendered("{{ parts.simple_table(['name', 'n'], [['<i>', 1]], numbers=[1]) }}").replace("\n", "")
-    assert text == (
-        '<div class="scroll" role="group" aria-label="Table" tabindex="0"><table class="slim">'
-        '<thead><tr><th scope="col">name</th>'
-        '<th class="number" scope="col">n</th></tr></thead><tbody>'
-        '<tr><td>&lt;i&gt;</td><td class="number">1</td></tr></tbody></table></div>'
-    )

@@ -24,16 +24,6 @@ def test_repr_is_short(small_cube):
     assert "23 entries" in repr(small_cube)
 
 
-def test_facts_are_properties(small_cube):
-    data = small_cube.data
-    assert small_cube.dim == 8
-    assert small_cube.coefficient_count == 9
-    assert (small_cube.space, small_cube.illuminant) == ("sRGB", "D65")
-    assert small_cube.observer == data.sensor.observer
-    assert small_cube.atlas_names == data.atlas.names
-    np.testing.assert_array_equal(small_cube.wavelengths, data.sensor.wavelengths)
-
-
 @pytest.mark.parametrize("name", ["small_cube", "plain_cube"])
 def test_html_is_well_formed_and_states_the_facts(request, name):
     cube = request.getfixturevalue(name)

@@ -35,7 +35,6 @@ def write_page(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fa
     if data.sensor.space != SPACE:
         raise OptionError(
             f"a page shows images in sRGB, got a cube of {data.sensor.space}",
-            code="page-needs-srgb",
             hint="build the cube without another RGB space",
         )
     text = page(data)

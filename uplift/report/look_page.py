@@ -47,7 +47,6 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
         count = len(found[0].xyz) if found else 0
         raise OptionError(
             f"a page shows one colour under one light or more, got {count} colours",
-            code="page-needs-one-colour",
             hint="give a single colour",
         )
     sensor, rgb = cube.data.sensor, found[0].volumes.rgb[0]

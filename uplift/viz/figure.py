@@ -115,7 +115,7 @@ def check_suffix(path: str | os.PathLike[str]) -> str:
     if suffix not in SUFFIXES:
         problem = f"the suffix of a plot must be one of {', '.join(SUFFIXES)}, got '{suffix}'"
         hint = "name the file accordingly, such as plot.svg"
-        raise OutputError(problem, code="unknown-plot-format", path=path, hint=hint)
+        raise OutputError(problem, path=path, hint=hint)
     return suffix
 
 

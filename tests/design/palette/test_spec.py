@@ -9,7 +9,7 @@ import uplift
 from tests.conftest import MACBETH, ROOT
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
-from uplift.common.errors import AtlasError, CubeFileError, PaletteError, UnknownNameError, UpliftError
+from uplift.common.errors import AtlasError, CubeFileError, PaletteError, UnknownNameError
 from uplift.design.palette import MinDifference, illuminant, read_palette
 from uplift.design.palette.colours import planck, screen_matrix
 
@@ -123,15 +123,6 @@ def test_paths_start_in_the_folder_of_the_spec(tmp_path, monkeypatch):
     assert read_palette(spec).material("x").samples is not None
 
 
-def test_shipped_atlas_by_name(tmp_path):
-    spec = tmp_path / "spec.toml"
-    text = 'lights.day.illuminant = "D65"\nmaterials.x = { atlas = "macbeth", entry = "orange" }\n'
-    spec.write_text(text, encoding="utf-8")
-    by_name = read_palette(spec).material("x").samples
-    spec.write_text(text.replace('"macbeth"', f'"{MACBETH.as_posix()}"'), encoding="utf-8")
-    np.testing.assert_array_equal(by_name, read_palette(spec).material("x").samples)
-
-
 APART = '[[apart]]\nmaterials = ["new", "new"]\n'
 HEAD = 'lights.day.illuminant = "D65"\nmaterials.new.design = true\n'
 
@@ -204,18 +195,6 @@ def test_errors_have_the_line_of_the_key(read, text, line):
     assert caught.value.line == line
 
 
-def test_similar_names_are_suggested(read):
-    for text, suggestion in (
-        ("smothness = 1", "'smoothness'"),
-        ('colours.ne.day = "#000000"', "'new'"),
-        ('colours.new.dya = "#000000"', "'day'"),
-        (f'materials.x = {{ atlas = "{MACBETH.as_posix()}", entry = "orang" }}', "'orange'"),
-    ):
-        with pytest.raises(UpliftError) as caught:
-            read(HEAD + text)
-        assert suggestion in caught.value.hint
-
-
 def test_errors_of_other_files_are_their_own(read):
     with raises(UnknownNameError, "unknown-entry"):
         read(HEAD + f'materials.x = {{ atlas = "{MACBETH.as_posix()}", entry = "orang" }}')
@@ -223,15 +202,3 @@ def test_errors_of_other_files_are_their_own(read):
         read(HEAD + 'materials.x = { atlas = "none.txt", entry = "a" }')
     with pytest.raises(CubeFileError):
         read(HEAD + 'materials.x = { rgb = "#102030", cube = "none.uplift" }')
-
-
-@pytest.mark.parametrize(
-    ("content", "code"),
-    [(b"\xff\xfe", "file-unreadable"), (b"x = " + b"[" * 50_000, "invalid-toml"), (None, "file-not-found")],
-)
-def test_other_files_are_refused(tmp_path, content, code):
-    path = tmp_path / "spec.toml"
-    if content is not None:
-        path.write_bytes(content)
-    with raises(PaletteError, code):
-        read_palette(path)

@@ -1,20 +1,102 @@
-"""The page in Chromium: a drag changes the spectrum, the RGB stays, and colours are those of Python."""
+"""Look page: its numbers; in Chromium a drag changes the spectrum, the RGB stays, and colours are those of Python."""
 
 from __future__ import annotations
 
 import json
+import re
 import tomllib
 
 import numpy as np
 import pytest
 
-from benchmarks.browser import SETTLE
+from benchmarks.browser import SETTLE, browser
 from tests.browsing import check_page
-from tests.report.look_page.conftest import LIGHTS
+from tests.helpers import raises
+from tests.pages import Page, external_links
+from tests.parts import CHROMIUM, need
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.srgb import hex_codes, to_display_codes
+from uplift.common.errors import OptionError
+from uplift.lookup import bounds
+from uplift.report.look_page import page
+
+LIGHTS = ("A", "FL11")
+
+
+@pytest.fixture(scope="module")
+def red():
+    """Linear sRGB of #8a2a20."""
+    return observer.sensor().decode([0x8A, 0x2A, 0x20])[None]
+
+
+@pytest.fixture(scope="module")
+def found(small_cube, red):
+    return [bounds(small_cube, red, observer.light(name)) for name in LIGHTS]
+
+
+@pytest.fixture(scope="module")
+def html(small_cube, found):
+    return page(small_cube, found)
+
+
+@pytest.fixture(scope="module")
+def tab():
+    need(CHROMIUM)
+    with browser() as opened:
+        opened.window(1440, 900)
+        yield opened
+
+
+@pytest.fixture
+def opened(tab, html, tmp_path):
+    """The page of the red, freshly loaded."""
+    (tmp_path / "page.html").write_text(html, encoding="utf-8")
+    tab.open(tmp_path / "page.html")
+    return tab
+
+
+@pytest.fixture
+def grey(small_cube):
+    return [bounds(small_cube, np.full((1, 3), 0.31), observer.light("FL11"), divisions=1)]
+
+
+def numbers(html):
+    return json.loads(re.search(r'id="numbers">(.*?)</script>', html, re.DOTALL)[1])
+
+
+def test_the_page_is_well_formed_and_self_contained(html):
+    assert Page(html).tags.count("figure") == 2
+    assert external_links(html) == []
+    assert "Content-Security-Policy" in html
+
+
+def test_its_spectrum_is_the_answer(html, small_cube, found):
+    given = numbers(html)
+    start = 1 / (1 + np.exp(-np.array(given["start"])))
+    np.testing.assert_allclose(start, found[0].reflectance[0], atol=1e-9)
+    np.testing.assert_allclose(np.array(given["sensor"]) @ start, given["target"], atol=1e-6)
+    assert np.shape(given["basis"]) == (81, 17)
+    assert given["rgb"] == "#8a2a20"
+
+
+def test_regions_are_those_of_the_bounds(html, found):
+    for given, each in zip(numbers(html)["lights"], found, strict=True):
+        assert given["name"] == each.light.name
+        np.testing.assert_allclose(given["region"], each.outline(0), atol=1e-3)
+        np.testing.assert_allclose(given["likely"], each.likely(0), atol=1e-3)
+
+
+def test_colours_without_a_code_are_linear(small_cube, grey):
+    assert numbers(page(small_cube, grey))["rgb"] == [0.31, 0.31, 0.31]
+
+
+def test_a_page_is_about_one_colour(small_cube):
+    two = [bounds(small_cube, np.full((2, 3), 0.4), observer.light("A"), divisions=0)]
+    for found in (two, []):
+        with raises(OptionError, "option"):
+            page(small_cube, found)
 
 
 def drag(tab, light, dx, dy):
@@ -89,13 +171,6 @@ def test_colours_equal_those_of_python(opened):
     for number, name in enumerate(LIGHTS):
         light = observer.light(name)
         assert shown_lab(opened, number) == pytest.approx(lab(light.xyz @ current, light.white), abs=0.051)
-
-
-def test_the_point_follows_the_mouse(opened):
-    x = opened.evaluate(f"{rect('point-1')}.x")
-    width = opened.evaluate(f"{rect('region-1')}.width")
-    drag(opened, 1, -0.1, 0.0)
-    assert opened.evaluate(f"{rect('point-1')}.x") == pytest.approx(x - 0.1 * width, abs=2)
 
 
 def test_goals_of_two_lights_hold_together(opened):

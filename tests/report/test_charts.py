@@ -1,4 +1,4 @@
-"""Histograms and their bins."""
+"""Histograms and their bins; charts are XML."""
 
 from __future__ import annotations
 

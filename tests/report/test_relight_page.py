@@ -43,18 +43,6 @@ def test_the_picture_has_a_row_per_light_and_a_column_per_method(relit, tmp_path
     assert 1.8 < two[1] / one[1] < 2.1
 
 
-@pytest.mark.parametrize(("suffix", "start"), [(".svg", b"<?xml"), (".pdf", b"%PDF")])
-def test_the_picture_has_the_format_of_its_suffix(relit, tmp_path, suffix, start):
-    path = tmp_path / f"relit{suffix}"
-    write_relit_sheet([relit], path)
-    assert path.read_bytes().startswith(start)
-
-
-def test_other_suffixes_are_refused(relit, tmp_path):
-    with raises(OutputError, "unknown-plot-format"):
-        write_relit_sheet([relit], tmp_path / "relit.gif")
-
-
 @pytest.mark.parametrize(("write", "name"), [(write_relit_sheet, "relit.png"), (write_relit_page, "relit.html")])
 def test_existing_files_stay_without_force(relit, tmp_path, write, name):
     path = tmp_path / name

@@ -28,11 +28,6 @@ def relit(picture, small_cube, plain_cube):
     return relight("noise", picture, {"without atlas": plain_cube, "atlas": small_cube}, LIGHTS)
 
 
-def test_methods_and_lights_are_in_order(relit):
-    assert relit.methods == (RGB_PRODUCT, "without atlas", "atlas")
-    assert [rendering.light for rendering in relit.renderings] == list(LIGHTS)
-
-
 @pytest.mark.parametrize("method", [RGB_PRODUCT, "without atlas", "atlas"])
 def test_colours_stay_under_the_light_that_they_refer_to(relit, picture, method):
     np.testing.assert_allclose(relit.renderings[0].colours[method], picture, atol=2e-4)
