@@ -45,13 +45,6 @@ def test_printed_entry_stops_at_the_ellipsis(save):
     )
 
 
-def test_printed_samples_do_not_cover_the_visible_range(save):
-    with raises(AtlasError, "atlas") as caught:
-        read_atlas(save(THESIS.replace(", ... }", "}")))
-    assert caught.value.where.endswith(":1: entry 'orange'")
-    assert "380–440 nm" in caught.value.problem
-
-
 @pytest.mark.parametrize("header", ["", HEADER_1_0, HEADER_1_1, HEADER_1_1.replace("1.1", "1.2")])
 def test_headers(save, header):
     spectra = read_atlas(save(header + PLAIN))
@@ -59,17 +52,6 @@ def test_headers(save, header):
     stated = spectra.sources[0].header
     assert stated.content == ("greys" if header else "")
     assert (stated.copyright, stated.licence) == (("(c) A. Person: 2020", "CC0") if "copyright" in header else ("", ""))
-
-
-def test_metadata(save):
-    (entry,) = read_atlas(save(PLAIN)).entries
-    assert (entry.device, entry.measured_by, entry.date) == ("spectrometer", "A. Person", "2020-01-31")
-    assert entry.step == 100
-
-
-def test_additional_description(save):
-    text = PLAIN.replace("Type  ", "Additional description:  matt side\nType  ", 1)
-    assert read_atlas(save(text)).entries[0].additional_description == "matt side"
 
 
 @pytest.mark.parametrize(
@@ -167,8 +149,6 @@ def without(key):
 
 FAULTS = [
     (without("Type"), 1),
-    (without("Start"), 1),
-    (without("Increment"), 1),
     (without("Maximum"), 1),
     (without("{"), 1),
     (without("Sampling info"), 16),
@@ -177,34 +157,23 @@ FAULTS = [
     (lambda text: text[: text.index("25")], 17),
     (lambda text: text.replace("}", "} 3"), 17),
     (lambda text: text.replace("}", "}\n\n\nabc"), 20),
-    (lambda text: text.replace("0.25", "0.25x"), 17),
     (lambda text: text.replace("0.25,", "\n0.25,\n oops,"), 19),
-    (lambda text: text.replace("0.25", "0.\n25"), 17),
     (lambda text: text.replace("0.0625", "0.06 0.02\n"), 17),
-    (lambda text: text.replace("0.25,", ","), 17),
     (lambda text: text.replace("0.25", "0_2"), 17),
-    (lambda text: text.replace("0.25", "{0.25}"), 17),
     (lambda text: text.replace("400.0 nm", "0.4 µm"), 12),
     (lambda text: text.replace("value  :  1.0", "value  :  0"), 14),
-    (lambda text: text.replace("value  :  1.0", "value  :  nan"), 14),
     (lambda text: text.replace("value  :  1.0", "value  :  1e-320"), 1),
     (lambda text: text.replace("reflectance spectrum", "smell"), 4),
     (lambda text: text.replace("regular", "random"), 11),
     (lambda text: text.replace("regular", "point sampled"), 12),
     (lambda text: text.replace(":  no", ":  perhaps"), 5),
     (lambda text: text.replace("Maximum", "Maximun"), 14),
-    (lambda text: text.replace("Measured by", "Measured for"), 7),
     (lambda text: text.replace("Increment  ", "Start  "), 13),
-    (lambda text: text.replace("Measured by  ", "A note\nMeasured by"), 7),
     (lambda text: text.replace("0.25", "nan"), 1),
-    (lambda text: text.replace("0.25", "inf"), 1),
     (lambda text: text.replace("0.25", "25"), 1),
-    (lambda text: text.replace("0.25", "-0.25"), 1),
     (lambda text: text.replace("100.0 nm", "0 nm"), 1),
-    (lambda text: text.replace("100.0 nm", "-100 nm"), 1),
     (lambda text: text.replace("400.0 nm", "-400 nm"), 1),
     (lambda text: text.replace("400.0 nm", "401 nm"), 1),
-    (lambda text: text.replace("400.0 nm", "399 nm"), 1),
     (lambda text: text.replace(", 0.25, 0.125, 0.0625", ""), 1),
 ]
 

@@ -46,10 +46,6 @@ def test_no_overshoot(row):
         assert between.max() <= high + 1e-12
 
 
-def test_empty_atlas():
-    assert on_grid(Atlas(), GRID).shape == (0, 81)
-
-
 def test_one_warning_for_all_clipped_entries():
     rows = ([0.5] * 6 + [1.25], [0.5] * 7, [1.5, 1.0, 0.5, -0.04, 0.5, 0.5, 0.5], [0.5, -0.04] + [0.5] * 5)
     with warns("entry-clipped") as caught:
@@ -91,10 +87,3 @@ def test_entries_are_read_only():
 def test_entries_from_python_are_validated(name, wavelengths, values, code):
     with raises(AtlasError, code):
         Entry(name, wavelengths, values)
-
-
-def test_duplicate_name_from_python():
-    (entry,) = spectra([0.5] * 7).entries
-    other = Entry("e0", entry.wavelengths, entry.values)
-    with raises(AtlasError, "atlas"):
-        Atlas((entry, other))

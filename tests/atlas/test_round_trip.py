@@ -72,13 +72,3 @@ def test_quoted_hash_is_a_name_and_not_a_comment(tmp_path):
     path = tmp_path / "atlas.csv"
     path.write_text('# a comment\n"name",400,700\n  # another\n"#",0.1,0.2\n"# 1",0.3,0.4\n')
     assert [entry.name for entry in read_atlas(path)] == ["#", "# 1"]
-
-
-@settings(max_examples=50)
-@given(atlases(one_sampling=False), st.randoms())
-def test_order_of_entries_is_kept(spectra, random):
-    entries = list(spectra.entries)
-    random.shuffle(entries)
-    found = round_trip(Atlas(tuple(entries)), "atlas.txt")
-    values = {entry.name: entry.values.tolist() for entry in found.entries}
-    assert values == {entry.name: entry.values.tolist() for entry in spectra.entries}

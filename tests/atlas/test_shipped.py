@@ -55,10 +55,6 @@ def test_readme_lists_every_file():
         assert f"| `{file}` | {count} | {start}–{end}, {step} |" in table
 
 
-def test_all_files_form_one_atlas():
-    assert len(read_atlas(*(ATLASES / file for file in SHIPPED))) == sum(row[0] for row in SHIPPED.values())
-
-
 def test_measured_values_are_unchanged():
     spectra = read_atlas(ATLASES / "macbeth.txt")
     for entry, sd in zip(spectra.entries, colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"].values(), strict=True):
@@ -105,12 +101,6 @@ def test_name_of_a_missing_file_reads_the_shipped_atlas_with_a_warning(empty_fol
 def test_existing_file_takes_precedence(empty_folder, name):
     (empty_folder / name).write_text("name,380,780\nwhite,1,1\n")
     assert read_atlas(name).names == ("white",)
-
-
-def test_broken_link_is_not_replaced_by_a_shipped_atlas(empty_folder):
-    (empty_folder / "macbeth.txt").symlink_to("gone.txt")
-    with raises(AtlasError, "file-not-found"):
-        read_atlas("macbeth.txt")
 
 
 @pytest.mark.parametrize("path", ["macbet", "Macbeth.txt", "atlases/macbeth.txt"])

@@ -38,10 +38,6 @@ def test_layouts(save, text):
     assert [entry.values.tolist() for entry in spectra.entries] == [[0.1, 0.2, 0.9], [0.8, 0.3, 0.05]]
 
 
-def test_lines_of_entries(save):
-    assert [entry.line for entry in read_atlas(save(WIDE.replace("\n", "\n\n"))).entries] == [3, 5]
-
-
 def test_numbers_as_names(save):
     wide = WIDE.replace("red", "1").replace("blue", "2")
     tall = TALL.replace("red", "1").replace("blue", "2")

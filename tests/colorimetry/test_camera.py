@@ -59,12 +59,6 @@ def test_a_file_is_read(tmp_path):
     assert observer.sensor(CAMERA, observer=str(tmp_path / "mine.csv")).space == "mine"
 
 
-def test_reading_again_changes_nothing():
-    camera = observer.find_camera(SIGMA)
-    again = Camera(camera.name, observer.grid(), camera.at(observer.grid()))
-    assert again.at(observer.grid()).tobytes() == camera.at(observer.grid()).tobytes()
-
-
 @pytest.mark.parametrize(
     ("rows", "code"),
     [

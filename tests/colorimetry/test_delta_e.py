@@ -34,11 +34,6 @@ def test_delta_e_2000_agrees_with_colour_science():
     np.testing.assert_allclose(delta_e_2000(first, second), expected, rtol=1e-9)
 
 
-def test_equal_greys_have_no_difference():
-    greys = np.stack([np.linspace(0, 100, 11), np.zeros(11), np.zeros(11)], axis=1)
-    assert not delta_e_2000(greys, greys).any()
-
-
 @pytest.mark.parametrize("white", ["D65", "A"])
 def test_lab_agrees_with_colour_science(white):
     xy = colour.CCS_ILLUMINANTS["CIE 1931 2 Degree Standard Observer"][white]

@@ -103,12 +103,6 @@ def test_nearly_all_entries_are_within_the_familiar_distance():
     assert familiar_distance(np.array([[0.0, 0, 0], [3, 4, 0]])) == pytest.approx(5)
 
 
-@pytest.mark.parametrize("count", [0, 1])
-def test_without_a_neighbour_no_distance_is_familiar(count):
-    assert familiar_distance(PLACES[:count]) == 0
-    assert (nearest_distances(PLACES[1:], PLACES[:count]) > 0).all()
-
-
 def test_distances_are_those_of_the_inverse_covariance():
     rng = np.random.default_rng(3)
     covariance = np.stack([np.cov(rng.normal(size=(2, 9))) for _ in range(20)])

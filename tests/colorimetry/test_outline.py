@@ -25,8 +25,3 @@ def test_all_points_lie_within_the_outline():
     inside = Path(centre + 1.01 * (limits - centre)).contains_points(points)
     assert inside.all()
     assert not Path(centre + 0.95 * (limits - centre)).contains_points(points).all()
-
-
-def test_a_point_has_an_outline_of_one_point():
-    found = sphere(1)
-    np.testing.assert_allclose(outline(np.full((42, 2), 4.0), found.faces), 4.0)

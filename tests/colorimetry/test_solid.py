@@ -62,10 +62,6 @@ def test_ray_fraction_ends_on_the_boundary():
     np.testing.assert_allclose(limits.signed_distance(ends)[:2], 0, atol=1e-12)
 
 
-def test_empty_input_gives_empty_output(sensor):
-    assert solid(sensor.matrix).contains(np.zeros((0, 3))).shape == (0,)
-
-
 def test_solid_volume_is_that_of_the_convex_hull(sensor):
     """For few wavelengths, all corners of the zonotope can be listed."""
     few = sensor.matrix[:, ::9]

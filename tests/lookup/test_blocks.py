@@ -25,11 +25,6 @@ def test_reflectances_do_not_depend_on_threads(small_cube, mode):
     np.testing.assert_array_equal(small_cube.reflectance(rgb, AT, mode, threads=3), alone)
 
 
-def test_coefficients_do_not_depend_on_threads(small_cube):
-    rgb = random_colours(2 * BLOCK + 5)
-    np.testing.assert_array_equal(small_cube.coefficients(rgb, threads=2), small_cube.coefficients(rgb))
-
-
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("count", [3, 1000])
 def test_float32_agrees_with_float64(small_cube, mode, count):
@@ -39,12 +34,6 @@ def test_float32_agrees_with_float64(small_cube, mode, count):
     assert found.min() >= 0
     assert found.max() <= 1
     np.testing.assert_allclose(found, small_cube.reflectance(rgb, AT, mode), rtol=0, atol=1e-6)
-
-
-def test_float32_coefficients(small_sigmoid_cube):
-    rgb = random_colours(10)
-    found = small_sigmoid_cube.coefficients(rgb, dtype="float32")
-    np.testing.assert_array_equal(found, small_sigmoid_cube.coefficients(rgb).astype(np.float32))
 
 
 @pytest.mark.parametrize("mode", TABULATED)

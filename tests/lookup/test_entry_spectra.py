@@ -127,18 +127,7 @@ def test_outside_boxes_multipliers_have_the_refined_spectra(small_cube, data):
     assert (extended_multipliers(data, rgb)[outside][:, 9:] == 0).all()
 
 
-def test_the_default_count_is_that_of_the_nodes(small_cube):
-    rgb = np.random.default_rng(2).random((5, 3))
-    np.testing.assert_array_equal(small_cube.coefficients(rgb), small_cube.coefficients(rgb, 9))
-
-
 @pytest.mark.parametrize("count", [0, 10, 17.5, "nine", True])
 def test_other_counts_are_refused(small_cube, count):
     with raises(OptionError, "option"):
         small_cube.coefficients([0.5, 0.5, 0.5], count)
-
-
-def test_without_an_atlas_there_is_one_count(plain_cube):
-    assert plain_cube.entry_coefficient_count == plain_cube.coefficient_count == 9
-    with raises(OptionError, "option"):
-        plain_cube.coefficients([0.5, 0.5, 0.5], 17)

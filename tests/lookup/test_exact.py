@@ -82,11 +82,6 @@ def test_mixtures_with_their_colours_do_not_change():
     )
 
 
-def test_other_wavelengths_have_the_same_spectra(wide, colours):
-    every = wide.reflectance(colours[:50])
-    np.testing.assert_allclose(wide.reflectance(colours[:50], wide.wavelengths[::4]), every[:, ::4], atol=1e-12)
-
-
 def test_tables_and_the_bulk_query_have_the_same_answers(wide, colours):
     few = np.concatenate([wide.reflectance(part) for part in np.array_split(colours, 60)])
     np.testing.assert_allclose(wide.reflectance(colours), few, atol=1e-6)  # unrealisable ones are nearly boxes

@@ -9,7 +9,6 @@ from hypothesis.extra.numpy import arrays
 
 from uplift.lattice import weighted_sum
 from uplift.lookup.interpolate import around
-from uplift.models import reflectance
 
 colours = arrays(float, (5, 3), elements=st.floats(0, 1))
 FACES = st.tuples(st.integers(1, 6), st.integers(0, 2), arrays(float, 3, elements=st.floats(0, 1)))
@@ -32,12 +31,6 @@ def test_nodes_reproduce_the_colour_including_entries(small_cube, rgb):
     np.testing.assert_allclose(found, rgb, atol=1e-12)
 
 
-def test_entries_have_their_stored_spectra(small_cube):
-    data = small_cube.data
-    own = reflectance(data.entry_spectra.model, data.entry_spectra.coefficients, data.sensor.wavelengths)
-    np.testing.assert_allclose(small_cube.reflectance(data.atlas.rgb), own, rtol=0, atol=1e-12)
-
-
 @given(face=FACES)
 def test_both_cells_of_a_face_agree_on_it(small_cube, face):
     """The upper cell at its lower end, and the lower cell at its upper end."""
@@ -54,12 +47,3 @@ def test_both_cells_of_a_face_agree_on_it(small_cube, face):
         for cell, part in ((low, fraction), (below, end))
     )
     np.testing.assert_allclose(lower, upper, rtol=0, atol=1e-15)
-
-
-@given(face=FACES)
-def test_answers_are_continuous_across_faces(small_cube, face):
-    node, axis, rgb = face
-    sides = np.repeat(rgb[None], 2, axis=0)
-    sides[:, axis] = small_cube.data.lattice.nodes[node] + np.array([-1e-12, 1e-12])
-    one, other = small_cube.reflectance(sides)
-    assert np.abs(one - other).max() < 1e-8

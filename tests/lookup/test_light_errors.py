@@ -134,15 +134,6 @@ def test_colours_far_from_all_entries_are_unlike_the_atlas(small_cube, plain_cub
     assert plain_cube.unlike_atlas([0.2, 0.2, 0.2])
 
 
-def test_standard_errors_survive_the_file(small_cube, tmp_path):
-    path = tmp_path / "cube.uplift"
-    small_cube.save(path)
-    rgb = np.random.default_rng(1).random((4, 5, 3))
-    again = uplift.load(path).standard_error(rgb, "HP1")
-    assert again.shape == (4, 5)
-    np.testing.assert_array_equal(again, small_cube.standard_error(rgb, "HP1"))
-
-
 def without_left_out(data: CubeData) -> CubeData:
     return dataclasses.replace(data, atlas=dataclasses.replace(data.atlas, left_out=None))
 

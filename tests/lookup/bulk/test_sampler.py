@@ -12,7 +12,6 @@ from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import Lattice
 from uplift.lookup import Cube, bulk
-from uplift.models import reflectance
 
 AT = np.linspace(380, 780, 9)
 CUBES = ["macbeth_cube", "small_cube", "plain_cube", "small_sigmoid_cube"]
@@ -68,12 +67,6 @@ def test_both_numbers_of_coefficients_are_those_of_numpy(small_cube, count):
         bulk.coefficients(small_cube, 12)
 
 
-def test_an_entry_has_its_stored_spectrum(small_cube):
-    data = small_cube.data
-    own = reflectance(data.entry_spectra.model, data.entry_spectra.coefficients, AT)
-    np.testing.assert_allclose(bulk.spectra(small_cube, AT)(data.atlas.rgb), own, rtol=0, atol=1e-6)
-
-
 def test_nodes_closer_than_bins_are_distinguished():
     data = hand_made(lattice=Lattice(np.array([0.0, 1e-5, 2e-5, 1.0])))
     rng = np.random.default_rng(1)
@@ -95,13 +88,6 @@ def test_results_do_not_depend_on_chunks_and_threads(small_cube, monkeypatch):
     for threads in (1, 2, 5):
         again = bulk.spectra(small_cube, AT, threads=threads)(rgb)
         np.testing.assert_allclose(again, whole, rtol=0, atol=1e-6)
-
-
-@pytest.mark.parametrize("kind", [np.float16, np.float32, np.longdouble, list])
-def test_other_numeric_types_are_accepted(sample, kind):
-    exact = np.array([[0.5, 0.25, 0.125], [1, 0, 1]])
-    rgb = exact.tolist() if kind is list else exact.astype(kind)
-    np.testing.assert_array_equal(sample(rgb), sample(exact))
 
 
 def test_views_are_accepted_and_not_modified(sample):
@@ -129,24 +115,6 @@ def test_the_error_quotes_an_invalid_colour_of_a_later_chunk(sample):
     with raises(ColourError, "rgb-out-of-gamut") as caught:
         sample(rgb)
     assert "(0.5, 1.25, 0)" in caught.value.problem
-
-
-def test_rounding_moves_no_colour_out_of_gamut(sample):
-    for base in ((1.0, 1.0, 1.0), (0.0, 0.0, 0.0), (1.0, 0.5, 0.0)):
-        for bit in (1e-12, -1e-12):
-            np.testing.assert_allclose(sample(np.array(base) + bit), sample(base), rtol=0, atol=1e-6)
-
-
-def test_the_default_wavelengths_are_those_of_the_sensor(small_cube):
-    rgb = [0.2, 0.3, 0.4]
-    expected = small_cube.reflectance(rgb)
-    np.testing.assert_allclose(bulk.spectra(small_cube)(rgb), expected, rtol=0, atol=1e-6)
-
-
-def test_memory_is_that_of_the_tables(small_cube):
-    size = small_cube.data.lattice.size
-    most = 4 * size * (len(AT) + 8) + 4 * (4096 + 1) + 23 * 1000
-    assert 4 * size * len(AT) < bulk.spectra(small_cube, AT).nbytes < most
 
 
 def test_invalid_wavelengths_and_threads_are_refused(small_cube):
