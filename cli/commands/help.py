@@ -68,7 +68,7 @@ def _print_modes() -> None:
 
 
 def _print_gamut() -> None:
-    from uplift.colorimetry.gamut.mapping import MAPPINGS
+    from uplift.colorimetry.gamut import MAPPINGS
 
     for name, mapping in MAPPINGS.items():
         _print_documentation(f"{name}: {inspect.getdoc(mapping)}".split("\n\n")[0])

@@ -12,8 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.gamut import SRGB
-from uplift.colorimetry.gamut.boundary import conversion
+from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.lights import DESCRIPTIONS
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Light, Sensor

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from tests.helpers import raises
-from uplift.colorimetry.gamut import METHODS, SRGB, map_to_gamut
-from uplift.colorimetry.gamut.apply import BLOCK
+from uplift.colorimetry.gamut import BLOCK, METHODS, SRGB, map_to_gamut
 from uplift.common.errors import ColourError, OptionError
 
 MOVERS = [method for method in METHODS if method != "error"]

@@ -10,10 +10,10 @@ import pytest
 from scipy.optimize import brentq
 
 from tests.colorimetry.gamut.conftest import GAMUTS
+from uplift.colorimetry import gamut as mapping
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, map_to_gamut, mapping
-from uplift.colorimetry.gamut.oklab import cone_responses, cube_roots, oklab
+from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, cone_responses, cube_roots, map_to_gamut, oklab
 
 MOVERS = [method for method in METHODS if method != "error"]
 

@@ -6,8 +6,7 @@ import colour
 import numpy as np
 
 from tests.colorimetry.gamut.conftest import ACESCG
-from uplift.colorimetry.gamut import SRGB
-from uplift.colorimetry.gamut.oklab import cone_responses, cube_roots, oklab
+from uplift.colorimetry.gamut import SRGB, cone_responses, cube_roots, oklab
 
 
 def test_oklab_agrees_with_colour_science(outside):

@@ -1,0 +1,411 @@
+"""Display gamuts by primaries and white, and gamut mapping of linear RGB outside [0, 1] (docs/display.md).
+
+Fishkin 1983, *Applying Color Science to Computer Graphics*, chapter 4: chromaticities of the primaries give the columns
+of the matrix to XYZ up to their lengths, and the white gives the lengths. Chapter 6 distinguishes two cases. A colour
+too bright for the display is scaled (6.1). A chromaticity outside the triangle of the primaries moves toward white on a
+straight line, which keeps the dominant wavelength (6.2.3). There the thesis multiplies the result by R + G + B, and
+calls this luminance. Here the luminance itself is kept.
+
+Oklab (Ottosson 2020, "A perceptual color space for image processing") is a space in which lines of constant hue are
+nearly straight. L is 0 for black and 1 for white, a and b are 0 for grey.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NoReturn, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from uplift.colorimetry.sensor import in_unit_cube
+from uplift.common.arrays import Array, Mask, Values
+from uplift.common.errors import ColourError, OptionError
+
+__all__ = [
+    "METHODS",
+    "SRGB",
+    "Gamut",
+    "GamutMapped",
+    "Primaries",
+    "as_rgb",
+    "check_method",
+    "conversion",
+    "map_to_gamut",
+    "raise_out_of_gamut",
+]
+
+BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
+"""XYZ to the cone responses of Bradford adaptation (Lam 1985; the matrix of ICC.1:2022, annex E)."""
+
+Chromaticity = tuple[float, float]
+"""CIE x, y."""
+CONES = np.array(
+    [
+        [0.8189330101, 0.3618667424, -0.1288597137],
+        [0.0329845436, 0.9293118715, 0.0361456387],
+        [0.0482003018, 0.2643662691, 0.6338517070],
+    ]
+)
+"""XYZ under D65 to cone responses."""
+OKLAB = np.array(
+    [
+        [0.2104542553, 0.7936177850, -0.0040720468],
+        [1.9779984951, -2.4285922050, 0.4505937099],
+        [0.0259040371, 0.7827717662, -0.8086757660],
+    ]
+)
+"""Cube roots of cone responses to L, a, b."""
+NEARLY = 2.5e-3
+"""Linear RGB, relative to the largest component, by which a line in Oklab may leave the gamut before its edge.
+
+The boundary of a gamut is concave near blue: lines from grey leave sRGB by 0.0008, ACEScg by 0.0021, and return.
+Stopping at the first exit would map neighbouring colours far apart.
+"""
+HALVINGS = 24
+"""Bisection steps along a line."""
+
+LARGEST = 1e300
+"""Colours are scaled down to components of this magnitude where sums of three could overflow."""
+
+BLOCK = 1 << 13
+"""Colours mapped per block; the temporary arrays of a block fit into a processor's cache."""
+
+
+class Gamut(Protocol):
+    """An RGB space whose linear RGB in [0, 1] can be displayed.
+
+    Both `Primaries` and `uplift.colorimetry.sensor.Sensor` fulfil this protocol.
+    """
+
+    @property
+    def rgb_to_xyz(self) -> Array:
+        """Matrix from linear RGB to XYZ; white, (1, 1, 1), has Y = 1. Shape (3, 3)."""
+        ...
+
+
+@dataclass(frozen=True)
+class Primaries:
+    """A display gamut by the chromaticities of its primaries and white.
+
+    Parameters
+    ----------
+    red, green, blue : tuple of float
+        CIE x, y of the primaries.
+    white : tuple of float
+        CIE x, y of the white, inside their triangle.
+
+    Raises
+    ------
+    OptionError
+        The primaries do not span a triangle with the white inside.
+    """
+
+    red: Chromaticity
+    green: Chromaticity
+    blue: Chromaticity
+    white: Chromaticity
+
+    def __post_init__(self) -> None:
+        if not self._span_a_gamut():
+            raise OptionError(
+                f"primaries must span a triangle with the white inside, got ({self})",
+                code="invalid-primaries",
+                hint="give x,y of red, green, blue and white",
+            )
+
+    @classmethod
+    def of(cls, numbers: Sequence[float]) -> Primaries:
+        """Create primaries from eight numbers, in the order of OpenEXR headers.
+
+        Parameters
+        ----------
+        numbers : sequence of float, length 8
+            x, y of red, green, blue and white.
+
+        Returns
+        -------
+        Primaries
+
+        Raises
+        ------
+        OptionError
+            There are not eight numbers, or they do not define a gamut.
+        """
+        if len(numbers) != 8:
+            raise OptionError(
+                f"primaries and white are eight numbers, got {len(numbers)}",
+                code="invalid-primaries",
+                hint="give x,y of red, green, blue and white",
+            )
+        pairs = [(float(x), float(y)) for x, y in zip(numbers[::2], numbers[1::2], strict=True)]
+        return cls(*pairs)
+
+    def __str__(self) -> str:
+        return " ".join(f"{x:g},{y:g}" for x, y in (self.red, self.green, self.blue, self.white))
+
+    @cached_property
+    def rgb_to_xyz(self) -> Array:
+        """Matrix from linear RGB to XYZ; white has Y = 1; shape (3, 3)."""
+        return self._columns * self.lengths
+
+    @cached_property
+    def lengths(self) -> Array:
+        """X + Y + Z of each primary at full power: ρ, γ and β of equation 4.5; shape (3,)."""
+        x, y = self.white
+        white = np.array([x, y, 1 - x - y]) / y if y else np.full(3, np.nan)
+        return np.asarray(np.linalg.solve(self._columns, white))
+
+    def _span_a_gamut(self) -> bool:
+        with np.errstate(all="ignore"):
+            if not abs(np.linalg.det(self._columns)) > 1e-6:  # False for NaN
+                return False
+            return bool(((self.lengths > 0) & np.isfinite(self.lengths)).all())
+
+    @property
+    def _columns(self) -> Array:
+        return np.array([[x, y, 1 - x - y] for x, y in (self.red, self.green, self.blue)]).T
+
+
+SRGB = Primaries((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), (0.3127, 0.3290))
+"""The sRGB gamut (IEC 61966-2-1)."""
+
+
+def conversion(source: Gamut, target: Gamut) -> Array:
+    """Compute the matrix between the linear RGB of two gamuts, with Bradford adaptation of the white.
+
+    Shape (3, 3).
+
+    >>> import numpy as np
+    >>> bool(np.allclose(conversion(SRGB, SRGB), np.eye(3)))
+    True
+    """
+    before, after = (BRADFORD @ gamut.rgb_to_xyz.sum(axis=1) for gamut in (source, target))
+    adapt = np.linalg.solve(BRADFORD, (after / before)[:, None] * BRADFORD)
+    matrix = np.linalg.solve(target.rgb_to_xyz, adapt @ source.rgb_to_xyz)
+    return np.asarray(matrix / matrix.sum(axis=1, keepdims=True))
+
+
+def cone_responses(gamut: Gamut) -> Array:
+    """Matrix (3, 3) from linear RGB to cone responses, adapted so that the white of the gamut gives (1, 1, 1)."""
+    matrix = CONES @ gamut.rgb_to_xyz
+    return np.asarray(matrix / matrix.sum(axis=1, keepdims=True))
+
+
+def oklab(rgb: Array, gamut: Gamut) -> Array:
+    """Convert linear RGB (…, 3) to L, a, b (…, 3)."""
+    return np.asarray(np.cbrt(rgb @ cone_responses(gamut).T) @ OKLAB.T)
+
+
+def cube_roots(lab: Array) -> Array:
+    """Convert L, a, b (…, 3) to cube roots of cone responses (…, 3)."""
+    return np.asarray(lab @ np.linalg.inv(OKLAB).T)
+
+
+def clip(rgb: Array, gamut: Gamut) -> Array:
+    """Clip each component separately, which changes chromaticity, hue and luminance (Fishkin, 6.1.1)."""
+    return np.clip(rgb, 0, 1)
+
+
+def scale(rgb: Array, gamut: Gamut) -> Array:
+    """Move toward white at constant luminance until no component is negative, then divide by the largest.
+
+    The dominant wavelength is kept. So is the chromaticity of colours that are only too bright.
+    """
+    rgb = _without_overflow(rgb)
+    inside = _toward_grey(rgb, np.maximum(_luminance(rgb, gamut), 0), np.inf)
+    return inside / np.maximum(inside.max(axis=1, keepdims=True), 1)
+
+
+def desaturate(rgb: Array, gamut: Gamut) -> Array:
+    """Move toward white at constant luminance and dominant wavelength until all components are in [0, 1].
+
+    A luminance of at least that of white gives white. A luminance of at most 0 gives black.
+    """
+    rgb = _without_overflow(rgb)
+    return _toward_grey(rgb, np.clip(_luminance(rgb, gamut), 0, 1), 1)
+
+
+def desaturate_oklab(rgb: Array, gamut: Gamut) -> Array:
+    """Move toward grey at constant lightness and hue of Oklab, which keeps the hue of reds and yellows better."""
+    rgb = _without_overflow(rgb)
+    lab = oklab(rgb, gamut)
+    # One row per response, then one per component: contiguous rows are twice as fast here.
+    grey = np.ascontiguousarray(cube_roots(np.clip(lab[:, :1], 0, 1) * [1, 0, 0]).T)
+    chroma = np.ascontiguousarray(cube_roots(lab * [0, 1, 1]).T)
+    to_rgb = np.linalg.inv(cone_responses(gamut))
+    inner, outer = np.zeros(len(rgb)), np.ones(len(rgb))
+    for _ in range(HALVINGS):
+        middle = (inner + outer) / 2
+        fits = _nearly_inside(to_rgb @ _cube(grey + middle * chroma))
+        inner, outer = np.where(fits, middle, inner), np.where(fits, outer, middle)
+    return desaturate((to_rgb @ _cube(grey + inner * chroma)).T, gamut)
+
+
+Mapping = Callable[[Array, Gamut], Array]
+"""Function from finite linear RGB (n, 3) outside [0, 1] to linear RGB (n, 3) inside, up to rounding."""
+MAPPINGS: dict[str, Mapping] = {
+    "clip": clip,
+    "scale": scale,
+    "desaturate": desaturate,
+    "desaturate-oklab": desaturate_oklab,
+}
+"""Mappings by the name of their method."""
+METHODS = ("error", *MAPPINGS)
+"""Names of the methods; ``"error"`` raises instead of moving a colour."""
+
+
+def _without_overflow(rgb: Array) -> Array:
+    return rgb * np.minimum(1, LARGEST / np.maximum(np.abs(rgb).max(axis=1, keepdims=True), 1))
+
+
+def _luminance(rgb: Array, gamut: Gamut) -> Array:
+    """Y (n, 1)."""
+    return rgb @ gamut.rgb_to_xyz[1, :, None]
+
+
+def _toward_grey(rgb: Array, grey: Array, top: float) -> Array:
+    """Mix with grey (n, 1) in [0, top], keeping as much colour as all components in [0, top] allow."""
+    low, high = rgb.min(axis=1, keepdims=True), rgb.max(axis=1, keepdims=True)
+    below, above = np.ones_like(grey), np.ones_like(grey)
+    np.divide(grey, grey - low, out=below, where=low < 0)
+    np.divide(top - grey, high - grey, out=above, where=high > top)
+    return grey + np.minimum(below, above) * (rgb - grey)
+
+
+def _nearly_inside(rgb: Array) -> Mask:
+    """Whether (n,) linear RGB (3, n) lies within [0, 1], up to `NEARLY`."""
+    low, high = rgb.min(axis=0), rgb.max(axis=0)
+    return np.asarray((low >= -NEARLY * high) & (high <= 1 + NEARLY))
+
+
+def _cube(values: Array) -> Array:
+    """Third power, ten times as fast as numpy's ``**``."""
+    return values * values * values
+
+
+@dataclass(frozen=True, eq=False)
+class GamutMapped:
+    """Linear RGB before and after gamut mapping.
+
+    Parameters
+    ----------
+    requested : ndarray, shape (..., 3)
+        Linear RGB before the mapping.
+    rgb : ndarray, shape (..., 3)
+        Linear RGB after it, in [0, 1].
+    outside : ndarray of bool, shape (...)
+        Colours that were outside [0, 1].
+    """
+
+    requested: Values
+    rgb: Values
+    outside: Mask
+
+    @property
+    def count(self) -> int:
+        """Number of colours that were moved.
+
+        Returns
+        -------
+        int
+        """
+        return int(self.outside.sum())
+
+    @property
+    def max_change(self) -> float:
+        """Largest absolute change of a component.
+
+        Returns
+        -------
+        float
+        """
+        return float(np.abs(self.requested[self.outside] - self.rgb[self.outside]).max(initial=0))
+
+
+def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMapped:
+    """Move linear RGB outside [0, 1] inside; in-gamut colours are unchanged, bit for bit.
+
+    Parameters
+    ----------
+    rgb : array_like, shape (..., 3)
+        Linear RGB. float32 stays float32. Deviations by rounding (`uplift.colorimetry.sensor.SLACK`) are in gamut.
+    gamut : Gamut
+        The RGB space of ``rgb``: a cube's sensor, `Primaries`, or `SRGB`.
+    method : str
+        One of `METHODS`.
+
+    Returns
+    -------
+    GamutMapped
+        The colours before and after, and which of them were moved.
+
+    Raises
+    ------
+    ColourError
+        A colour that needs mapping is not finite, or lies outside [0, 1] and ``method`` is ``"error"``.
+    OptionError
+        The method is unknown.
+
+    Examples
+    --------
+    >>> from uplift.colorimetry.gamut import SRGB
+    >>> map_to_gamut([[0.2, 0.4, 0.6], [1.4, 0.2, -0.1]], SRGB, "clip").rgb.tolist()
+    [[0.2, 0.4, 0.6], [1.0, 0.2, 0.0]]
+    """
+    check_method(method)
+    requested = as_rgb(rgb)
+    outside = ~in_unit_cube(requested)
+    inside = np.clip(requested, 0, 1)
+    if outside.any():
+        rows = requested[outside].astype(float)
+        if method == "error":
+            raise_out_of_gamut(rows)
+        inside[outside] = np.clip(_map_rows(rows, gamut, method), 0, 1)  # removes rounding errors
+    return GamutMapped(requested, inside, outside)
+
+
+def check_method(method: str) -> None:
+    """Validate the name of a gamut mapping method."""
+    if method not in METHODS:
+        raise OptionError(
+            f"unknown gamut mapping '{method}'", code="unknown-gamut-mapping", hint=f"use one of {', '.join(METHODS)}"
+        )
+
+
+def as_rgb(rgb: ArrayLike) -> Values:
+    """Convert to an array of RGB triples. Shapes: ``rgb`` (…, 3) → (…, 3)."""
+    is_single = isinstance(rgb, np.ndarray) and rgb.dtype == np.float32
+    try:
+        array: Values = np.asarray(rgb) if is_single else np.asarray(rgb, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ColourError("a colour is three numbers", code="rgb-not-numeric") from error
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise ColourError(f"a colour is three numbers, got an array of shape {array.shape}", code="rgb-wrong-shape")
+    return array
+
+
+def raise_out_of_gamut(outside: Array) -> NoReturn:
+    """Raise the error for colours outside [0, 1]. Shapes: ``outside`` (n, 3)."""
+    raise ColourError(
+        f"linear RGB {_format_rgb(outside[0])} lies outside [0, 1]",
+        code="rgb-out-of-gamut",
+        hint="map it with uplift.colorimetry.gamut.map_to_gamut, or convert 8-bit codes with Cube.decode",
+    )
+
+
+def _map_rows(rgb: Array, gamut: Gamut, method: str) -> Array:
+    finite = np.isfinite(rgb).all(axis=1)
+    if not finite.all():
+        first = rgb[int(finite.argmin())]
+        raise ColourError(
+            f"linear RGB {_format_rgb(first)} is not finite", code="rgb-not-finite", hint="fix its source"
+        )
+    blocks = (rgb[first : first + BLOCK] for first in range(0, len(rgb), BLOCK))
+    return np.concatenate([MAPPINGS[method](block, gamut) for block in blocks])
+
+
+def _format_rgb(rgb: Array) -> str:
+    return "(" + ", ".join(f"{value:g}" for value in rgb) + ")"
