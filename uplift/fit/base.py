@@ -101,6 +101,7 @@ def smooth(
 
 
 def _grey(model: Model, rgb: Array, power: float) -> Array:
+    # mean(x′)^⅔, as multipliers of a constant
     level = np.clip(rgb.mean(axis=1) ** power, MIN_LEVEL, MAX_LEVEL)
     return model.unsquash(level)[:, None] * model.constant()
 
@@ -117,7 +118,7 @@ def learn_base(
     # arbitrary, and would spoil the interpolation between nodes.
     table = nodes_of(TABLE, problem.sensor, MARGIN)
     bright = table.goal(table.points)
-    plain = smooth(problem.model, problem.forward, bright)
+    plain = smooth(problem.model, problem.forward, bright)  # s(x′)
     model, sensor = problem.model, problem.sensor
     if not families or plain.nodes is None or not isinstance(model, Moments):
         return plain, (1.0,) * len(families)
@@ -133,6 +134,7 @@ def learn_base(
         parts = kriging.contributions(locations) * plain.brightness(rgb)
         relevance = learn_relevance(problem.lights, locations, expected, parts, entries.measured[order])
 
+    # s(x′) + d(x) / k at the nodes x′ of the table, inside (0, 1), as coefficients
     spectra = evaluate(model, model.from_storage(plain.nodes), sensor.wavelengths)
     colours = plain.darkened(bright)
     deviations = kriging(rgb_to_lab(sensor, colours), relevance)

@@ -43,6 +43,7 @@ def lattice_error(problem: Problem, lattice: Lattice, prior: Prior, blend: Entry
         np.asarray(problem.model.squash(matmul_rows(each, problem.forward.basis.T)))
         for each in (fitted, entries.multipliers)
     )
+    # What the interpolation of the lattice answers at the colours of the entries
     corners, weights = lattice.corners(entries.rgb)
     answers = weighted_sum(spectra, np.searchsorted(points, corners), weights)
     return np.max([delta_e_spectra(light, answers, own) for light in problem.lights], axis=0)

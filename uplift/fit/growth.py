@@ -110,6 +110,7 @@ def grow_from_prior(
     waiting = mask_of(nodes.lattice, nodes.points)
     rounds = strides(nodes.lattice.dim)
     for number, stride in enumerate(rounds):
+        # Of every stride-th node, those that no coarser round has had; the seeds come first.
         _, points = nodes.lattice.thinned(stride)
         points = np.union1d(points, seeds) if number == 0 else points
         points = points[waiting[points]]
@@ -152,6 +153,7 @@ class _Corrections:
         """Store the corrections (k, C) of nodes, unless they are too large."""
         rows = self._row[points]
         rows, correction = rows[rows >= 0], correction[rows >= 0]
+        # |R⁻¹ (p − p₀)|∞; the last column is the weight of a known correction.
         size = np.abs(matmul_rows(correction, self._to_metric)).max(axis=1)
         self._table[rows, :-1], self._table[rows, -1] = correction, size <= MAX_CORRECTION
 
@@ -180,6 +182,7 @@ def _fit_round(
     """Fit nodes from their prior and correction. What the first pass leaves is fitted at the end, all at once."""
     rest = [(points[:0], growth.multipliers[:0], growth.multipliers[:0])]
     for block in blocks(points):
+        # From p₀ + R δ, with the correction δ of the nodes around, to the spectrum of the colour nearest to p₀.
         prior = expected(block)
         start = prior + (0.0 if correction is None else correction(block))
         solution = growth.attempt(block, start, number, prior, max_passes=1)
@@ -217,6 +220,7 @@ def _frontier(growth: Growth, fresh: Indices) -> tuple[Indices, Array]:
         adjacent = (inside & is_fresh[neighbours]).any(axis=1)
         neighbours, inside = neighbours[adjacent], inside[adjacent]
         known = inside & fitted[neighbours]
+        # Mean over the fitted neighbours, column by column: all 26 at once would take 26 times the memory.
         total = np.zeros((len(neighbours), multipliers.shape[1]))
         for column in range(neighbours.shape[1]):
             total += np.where(known[:, column, None], multipliers[neighbours[:, column]], 0)

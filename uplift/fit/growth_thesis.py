@@ -29,6 +29,7 @@ def grow_from_neighbours(
         away = np.abs(2 * nodes.lattice.position(nodes.points) - (nodes.lattice.dim - 1)).sum(axis=1)
         seeds = nodes.points[[int(away.argmin())]]
         start = growth.multipliers[seeds]
+    # Shell by shell: waiting neighbours of the nodes that the last round fitted.
     fresh = _try(growth, seeds, start, 0)
     number = 1
     while fresh.size:

@@ -87,6 +87,7 @@ def _shape(wavelengths: Array) -> Array:
 
 def _linear_design(sensor: Sensor, goal: LookGoal, expected: Array, near: Array, shape: Array) -> Array:
     """Reflectance (N,) of least squares, with L*a*b* linearised at the colours of the reflectance ``near``."""
+    # |E (W g − rgb)|² + Σ_lights |ΔE00|² + |shape (g − expected)|² in the change of the reflectance g, 0 ≤ g ≤ 1
     rows, values = [EXACT * sensor.matrix], [EXACT * (goal.rgb - sensor.matrix @ expected)]
     for light, wish, xyz in zip(goal.lights, goal.xyz, goal.colours(near), strict=True):
         wished, current = lab(wish, light.white), lab(xyz, light.white)

@@ -43,6 +43,7 @@ def moment_matrix(model: Moments, wavelengths: Array) -> Array:
     phase = -np.pi * (np.arange(NODES) + 0.5) / NODES
     at = np.interp(phase, model.phase(wavelengths), np.arange(len(wavelengths)))
     samples = np.stack([np.interp(at, np.arange(len(wavelengths)), row) for row in np.eye(len(wavelengths))])
+    # c_j = (1/π) ∫ g(φ) cos jφ dφ by midpoints
     weights = cosine_basis(phase, model.count) / NODES
     weights[:, 1:] /= 2
     return np.asarray(samples @ weights)
@@ -59,6 +60,7 @@ class _Step:
         self.squares = (basis[:, :, None] * basis[:, None, :]).reshape(len(basis), -1) / len(basis)
 
     def __call__(self, multipliers: Array, goal: Array) -> Array:
+        # With g = S(B p), minimise mean (g − goal)² + Σ |w ΔL*a*b*|²: p − (JᵀJ + μ I)⁻¹ Jᵀ r.
         count = multipliers.shape[1]
         x = multipliers @ self.basis.T
         difference, colour_difference = self._differences(x, goal)
@@ -66,6 +68,7 @@ class _Step:
         to_lab = LIGHTS_WEIGHT * lab_jacobian(self._xyz(self.model.squash(x)), self.whites)
         change = (slope @ self.colours).reshape(len(x), -1, 3, count)
         change = (to_lab @ change).reshape(len(x), -1, count)
+        # JᵀJ of the spectra is Σ_λ S′(x)² b bᵀ / N; that of the colours is the product of their changes.
         matrix = ((slope * slope) @ self.squares).reshape(-1, count, count) + change.mT @ change
         damping = DAMPING * np.trace(matrix, axis1=1, axis2=2) / count
         matrix[:, np.arange(count), np.arange(count)] += damping[:, None]

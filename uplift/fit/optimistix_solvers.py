@@ -130,6 +130,7 @@ def solve_with(
     with jax.enable_x64(True):
         constants = replicate(forward)
         for number in range(min(max_passes, MAX_ROUNDS)):
+            # ε of the round: the first answers are near the prior, those of later rounds near the colour.
             closeness = jnp.asarray(CLOSENESS / 100**number)
             for part, width in batches(len(rows)):
                 own = rows[part]
@@ -161,6 +162,7 @@ def _solve(
     """Multipliers, residuals and numbers of steps of a batch."""
 
     def residuals(y: jax.Array, args: Any) -> tuple[jax.Array, jax.Array]:
+        # t − r(R y), and ε (y − y₀), with y = R⁻¹ p
         expected, rgb, weight = args
         colour = residual(model, forward, (forward.root @ y)[None], rgb[None])[0]
         return colour, weight * (y - expected)

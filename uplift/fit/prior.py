@@ -56,6 +56,7 @@ class Prior:
         coefficients = self.base.coefficients(rgb)
         if self.kriging is None:
             return self.model.from_storage(coefficients)
+        # c = s(x) + d(x), as multipliers
         return _bounded(self.model, coefficients, self.kriging(rgb_to_lab(self.sensor, rgb)))
 
     def describe(self) -> dict[str, float]:
@@ -72,6 +73,7 @@ class Prior:
             return None
         lab = rgb_to_lab(self.sensor, rgb)
         sums = kernel_sums(lab, self.errors.locations, self.errors.columns, NEIGHBOURHOOD)
+        # Expected square v(x) Σ k e² / Σ k + f, and the learnt radius of 68 % in its root
         squares = self.errors.combine(*sums)[:, 0] + self.errors.floor
         return np.asarray(self.errors.radii.standard * np.sqrt(squares))
 

@@ -96,6 +96,7 @@ def nodes_of(lattice: Lattice, sensor: Sensor, margin: float, points: Indices | 
     """
     points = np.arange(lattice.size) if points is None else points
     limits = solid(sensor.matrix)
+    # Of each block, the colours outside the solid {W g: 0 ≤ g ≤ 1}
     outside, nearest = [points[:0]], [np.zeros((0, 3))]
     # The solid is convex: with the corners of RGB it contains everything between them.
     if not limits.contains(CORNERS.astype(float)).all():

@@ -71,6 +71,7 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
     order = np.lexsort([*rgb.T, nearest])
     owner: dict[int, int] = {}
     crowded = [int(entry) for entry in order if owner.setdefault(int(queue[entry, 0]), int(entry)) != entry]
+    # Then the corners of the cells, one for every entry in turn, nearest first.
     primaries = len(owner)
     for _ in CORNERS:
         for entry in order:

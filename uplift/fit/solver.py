@@ -70,6 +70,7 @@ def take_step(
     change = anchored_step(model, forward, y, state.residual, state.damping, anchored)
     trial = y + matmul_rows(change, forward.root.T)
     residual = residual_of(trial)
+    # A step is accepted where it reduces the squared residual; μ follows the success of the linearisation.
     better = ((residual**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (abs(trial).max(axis=1) <= MAX_MULTIPLIER)
     accept = (better & (state.distance > tolerance))[:, None]
     after = SolverState(
@@ -135,6 +136,7 @@ def solve(
     given = _Given(start, anchor, np.full(count, FIRST_DAMPING), anchor_weight, target)
     with jax.enable_x64(True):
         constants = replicate(forward)
+        # One step at a time while most problems converge, then several, to pass through fewer batches.
         for number in range(max_passes if count else 0):
             steps = 1 if number < SINGLE_STEPS else MORE_STEPS
             after = _pass(model, constants, tolerance, given, steps)
@@ -176,20 +178,12 @@ class _After(NamedTuple):
 
 def _pass(model: Model, forward: ForwardMap, tolerance: float, given: _Given, steps: int) -> _After:
     """Take up to ``steps`` steps in every problem, batch by batch."""
-    count, columns = given.multipliers.shape
-    after = _After(
-        multipliers=np.empty((count, columns)),
-        residual=np.empty((count, 3)),
-        distance=np.empty(count),
-        damping=np.empty(count),
-        anchor_weight=np.empty(count),
-        steps=np.empty(count, dtype=np.int64),
-    )
-    for rows, width in batches(count, MAX_SMALL_BATCHES):
+    parts = []
+    for rows, width in batches(len(given.target), MAX_SMALL_BATCHES):
         part = _Given(*(shard(array[rows], width) for array in given))
-        for array, values in zip(after, _advance(model, forward, tolerance, part, steps), strict=True):
-            array[rows] = np.asarray(values)[: rows.stop - rows.start]
-    return after
+        after = _advance(model, forward, tolerance, part, steps)
+        parts.append([np.asarray(array)[: rows.stop - rows.start] for array in after])
+    return _After(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
 
 
 @partial(jax.jit, static_argnums=0)

@@ -32,6 +32,7 @@ def store(growth: Growth, seeds: Seeds, standard_error: NDArray[np.float32] | No
     """
     nodes, threshold = growth.nodes, growth.problem.threshold
     coefficients, rgb, distance = _store_coefficients(growth)
+    # The entry that a node started from, and its status: later lines overrule earlier ones.
     entry = np.full(nodes.lattice.size, NO_ENTRY, dtype=np.int32)
     entry[seeds.points] = seeds.entry
     status = np.full(nodes.lattice.size, Status.REGULAR, dtype=np.uint8)
@@ -62,6 +63,7 @@ def _store_coefficients(growth: Growth) -> tuple[NDArray[Any], NDArray[np.float3
         values = rgb_of(problem, problem.model.from_storage(coefficients[block].astype(kind)))
         rgb[block], distance[block] = values, np.abs(growth.nodes.goal(block) - values).max(axis=1)
 
+    # Block by block; once a block loses too much in single precision, all sensitive nodes so far are evaluated again.
     sensitive = [points[:0]]
     for block in blocks(points):
         multipliers = growth.multipliers[block]

@@ -24,6 +24,7 @@ def dual(moments: Complex) -> tuple[Complex, Mask]:
         # The recursion determines the zeroth moment only up to integers.
         bounded = (orders[0].real >= 0) & (orders[0].real <= 1)
         h = _exponential_moments(orders)
+        # T q = e₀ with the Toeplitz matrix of a_0 = Re h_0, a_l = h_l / 2; p_l = (1 / i q_0) Σ_k n_{k+l} q̄_k
         column = h / 2
         column[0] = h[0].real
         q, scale, positive = levinson(column)

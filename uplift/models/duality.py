@@ -96,6 +96,7 @@ def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = PRECIS
     ndarray, shape (n, C)
         Moments.
     """
+    # T_2K = (T_K + M_K) / 2: the first rule and its midpoints together, then midpoints of those that need more.
     count, nodes = multipliers.shape[1], _FIRST_NODES
     found = quadrature.integrate(multipliers, *_trapezoid_and_midpoints(nodes, count))
     moments, change = found[:, :count].copy(), (found[:, count:] - found[:, :count]) / 2

@@ -79,6 +79,7 @@ class Moments(Model):
         return duality.cosine_basis(self.phase(wavelengths), self.count)
 
     def squash(self, x: Any) -> Any:
+        # g = ½ + arctan(x) / π with the linear part x = p₀ + 2 Σ p_l cos lφ (Peters et al. 2019)
         return 0.5 + arctan(x) / np.pi
 
     def slope(self, x: Any) -> Any:
@@ -104,6 +105,7 @@ class Moments(Model):
         return _by_rows(duality.multipliers_from_moments, coefficients)
 
     def rounds_safely(self, multipliers: Array) -> Mask:
+        # The linear part is at most |p₀| + 2 Σ |p_l|.
         largest = np.abs(multipliers[:, 0]) + 2 * np.abs(multipliers[:, 1:]).sum(axis=1)
         return np.asarray(largest <= MAX_SAFE_LINEAR)
 

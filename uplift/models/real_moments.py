@@ -28,6 +28,7 @@ def dual(moments: Array) -> tuple[Array, Mask]:
         polynomials, scale, positive = _recursion(*_series(orders))
         tangent = np.tan(np.pi / 2 * zeroth)
         polynomials *= np.sqrt(np.stack([tangent, 1 / tangent]) / (2 * scale))
+        # p_l is the coefficient of (τ |A|² − |B|² / τ) / 2κ at lag l, with τ = tan(π c₀ / 2) and κ = Π (1 − g²).
         multipliers = np.empty_like(orders)
         for lag, row in enumerate(multipliers):
             first, second = np.einsum("kpn,kpn->pn", polynomials[lag:], polynomials[: len(orders) - lag])

@@ -51,6 +51,7 @@ class Sigmoid(Model):
         return np.stack([x * x, x, np.ones_like(x)], axis=-1)
 
     def squash(self, x: Any) -> Any:
+        # S(t) = ½ + t / (2√(1 + t²)): Jakob & Hanika 2019, eq. 5
         return 0.5 + x / (2 * (1 + x * x) ** 0.5)
 
     def slope(self, x: Any) -> Any:
