@@ -14,7 +14,7 @@ from uplift.fit.match_spectra import match_spectra, moment_matrix
 from uplift.fit.problem import Problem
 from uplift.fit.solver import solve
 from uplift.models import Moments, Phase, Sigmoid, evaluate
-from uplift.models.minimum_norm import forward_map, residual
+from uplift.models.minimum_norm import residual
 
 LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))
 GRID = observer.grid()
@@ -60,15 +60,6 @@ def test_smooth_spectra_of_dark_colours_stay_dark_outside_the_visible_range(prob
 
     assert at_760(smooth(model, forward)(DARK)).max() < 0.4
     assert at_760(np.zeros((len(DARK), 9))).max() > 0.9  # from a grey
-
-
-@pytest.mark.parametrize("model", [Moments(3), Sigmoid()], ids=lambda m: m.name)
-def test_models_of_three_coefficients_start_from_a_grey(model, sensor):
-    rgb = np.array([[0.2, 0.5, 0.1], [0, 0, 0], [1, 1, 1]])
-    start = smooth(model, forward_map(model, sensor.wavelengths, sensor.matrix))(rgb)
-    spectra = model.squash(start @ model.basis(sensor.wavelengths).T)
-    assert np.ptp(spectra, axis=1).max() < 1e-12
-    assert (np.diff(spectra[[1, 0, 2], 0]) > 0).all()
 
 
 def answers(problem, sensor, base, rgb):
@@ -182,7 +173,3 @@ def test_colours_of_measured_spectra_survive(model):
         return np.max([delta_e_spectra(light, spectra, measured) for light in LIGHTS], axis=0).mean()
 
     assert worst(matched) < 0.7 * worst(plain)
-
-
-def test_no_spectra_give_none():
-    assert match_spectra(Moments(5), GRID, np.zeros((0, 81)), LIGHTS).shape == (0, 5)

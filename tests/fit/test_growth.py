@@ -97,11 +97,6 @@ def test_growth_proceeds_from_a_coarse_lattice_to_finer_ones(sensor):
     assert improvements == ()
 
 
-@pytest.mark.parametrize(("dim", "steps"), [(2, [1]), (7, [1]), (8, [2, 1]), (32, [8, 4, 2, 1])])
-def test_the_coarsest_lattice_has_at_least_four_cells_an_axis(dim, steps):
-    assert strides(dim) == steps
-
-
 def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch):
     """All at once, from every second node, and over three rounds; few points differ."""
     lattice = Lattice(observer.axis_nodes("srgb", 17))
@@ -162,16 +157,6 @@ def test_improvement_fixes_points_with_a_vanishing_gradient(sensor):
     assert by_name["from grey"].fixed > 300
 
 
-def test_improvement_does_not_change_fitted_points(sensor):
-    points, _ = fitted(MODEL, sensor, LATTICE)
-    multipliers = MODEL.from_storage(points.coefficients)
-    growth = Growth(Problem(sensor, MODEL), all_nodes(LATTICE), ignore_progress)
-    growth.multipliers[:], growth.distance[:] = multipliers, np.minimum(points.distance, 1e-6)
-    steps = improve(growth)
-    np.testing.assert_array_equal(growth.multipliers, multipliers)
-    assert steps == ()
-
-
 def grey(points):
     return np.zeros((len(points), 9))
 
@@ -188,22 +173,6 @@ def test_without_seeds_rounds_are_the_shells_around_the_middle(sensor):
     assert (growth.round != NOT_FITTED).mean() > 0.95
     late = growth.round > steps_from(np.array([LATTICE.size // 2]))
     assert late.mean() < 0.05
-
-
-def test_rounds_are_the_shells_around_the_seeds(sensor):
-    seeds = np.array([0 + LATTICE.index(np.array(p)) for p in ((1, 1, 1), (5, 4, 2))])
-    growth = grow_from_neighbours(Problem(sensor, MODEL), all_nodes(LATTICE), grey, seeds, ignore_progress)
-    fitted = growth.round != NOT_FITTED
-    assert (growth.round[seeds] == 0).all()
-    assert (growth.round[fitted] >= steps_from(seeds)[fitted]).all()
-    assert growth.round.max() < 6
-
-
-def test_only_active_points_are_fitted(sensor):
-    active = np.flatnonzero(LATTICE.points[:, 0] < 0.2)
-    growth = grow_from_neighbours(Problem(sensor, MODEL), all_nodes(LATTICE, active), grey, NO_SEEDS, ignore_progress)
-    assert not np.isfinite(growth.distance[np.setdiff1d(np.arange(LATTICE.size), active)]).any()
-    assert (growth.round[active] != NOT_FITTED).mean() > 0.9
 
 
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")

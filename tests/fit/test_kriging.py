@@ -99,11 +99,6 @@ def test_a_large_atlas_tells_its_kernel(truth):
     assert truth.nugget / 10 <= learnt.nugget <= truth.nugget * 10
 
 
-def test_families_and_mixtures_differ():
-    family, mixture = (learn_kernel(MANY, drawn_from(Kernel(30.0, nugget)), ALL_VISIBLE) for nugget in (0.01, 2))
-    assert family.nugget < mixture.nugget
-
-
 def test_few_entries_keep_the_default():
     few = slice(0, MIN_ENTRIES - 1)
     deviations = LEARNING.normal(size=(150, 3))

@@ -90,13 +90,6 @@ def test_nearest_colour_is_that_of_a_linear_program(sensor, materials):
     assert (-best.fun - towards @ expected) / length > 0.2 * length
 
 
-def test_softened_goal_lies_between(sensor, materials):
-    goal, expected = impossible(sensor, materials)
-    halfway = goal.softened(expected, 0.5)
-    np.testing.assert_allclose(halfway.xyz, (goal.xyz + goal.colours(expected)) / 2)
-    assert goal.softened(expected, 1).delta_e(expected) == pytest.approx(goal.delta_e(expected))
-
-
 def test_the_prior_follows_looks_nearby_only(sensor, materials):
     measured, expected = materials
     light = observer.light("FL11")

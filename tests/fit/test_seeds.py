@@ -30,15 +30,6 @@ def nearest_points(rgb):
 
 
 @given(atlases)
-def test_every_entry_has_a_primary_point_or_is_crowded(rgb):
-    seeds = seed(LATTICE, rgb)
-    with_primary = set(seeds.entry[seeds.primary])
-    lost = set(seeds.crowded)
-    assert with_primary | lost == set(range(len(rgb)))
-    assert not with_primary & lost
-
-
-@given(atlases)
 def test_points_are_unique_and_corners_of_the_cell_of_their_entry(rgb):
     seeds = seed(LATTICE, rgb)
     assert len(set(seeds.points)) == len(seeds.points)
@@ -85,10 +76,6 @@ def test_the_nearer_of_two_entries_owns_the_primary_point():
     assert seeds.entry[seeds.primary].tolist() == [1]
 
 
-def test_an_empty_atlas_has_no_seeds():
-    assert len(seed(LATTICE, np.zeros((0, 3))).points) == 0
-
-
 MODEL = Moments(5)
 RGB = np.array([[0.33, 0.5, 0.71], [0.42, 0.42, 0.42]])
 ENTRIES = np.random.default_rng(0).normal(size=(2, 5)) / 3
@@ -127,12 +114,6 @@ def test_far_corners_start_from_the_prior_alone_but_the_nearest_point_from_the_e
     np.testing.assert_array_equal(start[seeds.primary], ENTRIES[seeds.entry[seeds.primary]])
 
 
-def test_near_corners_start_from_the_entry_alone(prior):
-    seeds, distance, start = starts_by_distance(prior, Lattice(np.linspace(0, 1, 64)), EntryBlend(near=1.0))
-    assert distance.max() < NEAR
-    np.testing.assert_array_equal(start, ENTRIES[seeds.entry])
-
-
 def test_seed_corners_start_from_the_entry_at_any_distance(prior):
     seeds, distance, start = starts_by_distance(prior, LATTICE, FULL_ENTRY)
     assert distance.max() > FAR
@@ -155,12 +136,6 @@ def test_all_other_points_start_from_the_prior(prior):
     points = np.setdiff1d(np.arange(LATTICE.size), seeds.points)
     start = InitialGuess(prior, seeds, ENTRIES)(points, LATTICE.points[points])
     np.testing.assert_array_equal(start, prior(LATTICE.points[points]))
-
-
-def test_without_entries_all_points_start_from_the_prior(prior):
-    unconstrained = InitialGuess(prior, seed(LATTICE, np.zeros((0, 3))), np.zeros((0, 5)), EntryBlend(0.5))
-    points = np.arange(LATTICE.size)
-    np.testing.assert_array_equal(unconstrained(points, LATTICE.points), prior(LATTICE.points))
 
 
 @pytest.mark.parametrize(("nugget", "share"), [(0.0, 0.5), (0.03, 0.55), (0.3, 1.0), (2.0, 1.0)])

@@ -67,10 +67,3 @@ def test_double_precision_is_used_where_single_is_inaccurate(problem, monkeypatc
     assert stored.coefficients.dtype == np.float64
     np.testing.assert_allclose(stored.coefficients, coefficients, atol=1e-12)
     np.testing.assert_allclose(stored.distance, here, atol=1e-7)
-
-
-def test_progress_is_reported_for_every_block(problem, monkeypatch):
-    monkeypatch.setattr("uplift.fit.growth.BLOCK_POINTS", 256)
-    events = []
-    store(grown(problem, greys(problem, np.full(DIM**3, 0.5)), events.append), NOBODY, None)
-    assert [done.done for done in events] == [256, 512, 729]

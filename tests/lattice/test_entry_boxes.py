@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from uplift.fit.seeds import half_widths
+from uplift.fit.seeds import MAX_HALF_WIDTH, half_widths
 from uplift.lattice import Lattice
 from uplift.lattice.entry_boxes import EntryBoxes
 
@@ -72,3 +72,19 @@ def test_touched_cells_are_those_of_boxes():
     cells = LATTICE.index(LATTICE.cell(rgb)[0])
     np.testing.assert_array_equal(found.touched_cells[cells], np.isin(cells, found.cells[0]))
     assert found.touched_cells.sum() == len(found.cells[0]) == 27
+
+
+@given(arrays(float, st.tuples(st.integers(0, 12), st.just(3)), elements=unit))
+def test_no_two_boxes_overlap(rgb):
+    widths, steps = half_widths(LATTICE, rgb), LATTICE.to_steps(rgb)
+    assert ((widths >= 0) & (widths <= MAX_HALF_WIDTH)).all()
+    for first in range(len(rgb)):
+        for second in range(first):
+            if widths[first] and widths[second]:
+                apart = np.abs(steps[first] - steps[second]).max()
+                assert widths[first] + widths[second] <= apart + 1e-12
+
+
+def test_only_the_first_entry_of_a_colour_has_a_box():
+    rgb = np.array([[0.2, 0.2, 0.2], [0.2, 0.2, 0.2], [0.9, 0.9, 0.9], [0.2, 0.2, 0.2]])
+    assert half_widths(LATTICE, rgb).tolist() == [MAX_HALF_WIDTH, 0, MAX_HALF_WIDTH, 0]

@@ -10,7 +10,7 @@ from hypothesis.extra.numpy import arrays
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
-from uplift.lattice import Lattice, Status
+from uplift.lattice import Lattice
 
 UNEVEN = Lattice(np.array([0.0, 0.01, 0.2, 0.7, 1.0]))
 colours = arrays(float, (7, 3), elements=st.floats(0, 1))
@@ -55,15 +55,3 @@ def test_neighbours_are_those_within_one_step():
 def test_nodes_must_increase(nodes):
     with raises(OptionError, "option"):
         Lattice(np.array(nodes))
-
-
-def test_statuses_have_labels():
-    assert [status.label for status in Status] == [
-        "atlas primary",
-        "atlas corner",
-        "regular",
-        "improved",
-        "unfitted",
-        "unrealisable",
-        "absent",
-    ]

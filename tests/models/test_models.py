@@ -7,13 +7,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from colour.recovery import sd_Jakob2019
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
-from uplift.models import Moments, Phase, Sigmoid, from_description
+from uplift.models import Moments, Phase, Sigmoid, evaluate, from_description
 from uplift.models.sigmoid import evaluate_unscaled
 
 GRID = np.arange(380.0, 781.0, 5.0)
@@ -32,11 +32,29 @@ def test_linear_part_of_constant_multipliers_is_1(model):
 
 
 @each
-@given(x=arrays(float, 5, elements=st.floats(-1e6, 1e6)))
-def test_squash_is_bounded_and_odd_about_one_half(model, x):
-    y = model.squash(x)
+@given(x=arrays(float, 6, elements=st.floats(-1e12, 1e12)))
+def test_squash_is_increasing_bounded_and_odd_about_one_half(model, x):
+    y = model.squash(np.sort(x))
+    assert (np.diff(y) >= -1e-16).all()
     assert ((y >= 0) & (y <= 1)).all()
-    np.testing.assert_allclose(y + model.squash(-x), 1, atol=1e-15)
+    np.testing.assert_allclose(model.squash(x) + model.squash(-x), 1, atol=1e-15)
+    np.testing.assert_allclose(model.squash(np.array([-1e9, 1e9])), [0, 1], atol=1e-9)
+
+
+@each
+@given(y=arrays(float, 5, elements=st.floats(1e-6, 1 - 1e-6)))
+def test_unsquash_is_the_inverse_of_squash(model, y):
+    np.testing.assert_allclose(model.squash(model.unsquash(y)), y, rtol=1e-9)
+    limits = np.array([0.0, 1.0])
+    np.testing.assert_allclose(model.squash(model.unsquash(limits)), limits, atol=1e-12)
+
+
+@each
+@given(data=st.data())
+def test_all_multipliers_give_reflectances(model, data):
+    multipliers = data.draw(arrays(float, (3, model.count), elements=st.floats(-1e9, 1e9)))
+    spectra = evaluate(model, multipliers, GRID)
+    assert ((spectra >= 0) & (spectra <= 1)).all()
 
 
 @each
@@ -133,3 +151,14 @@ def test_unscaled_sigmoid_agrees_with_the_model(sensor):
     expected = Sigmoid().squash(sensor.wavelengths**2 * 1e-5 - sensor.wavelengths * 1e-2 + 2)
     found = evaluate_unscaled(np.array([[1e-5, -1e-2, 2]]), sensor.wavelengths)
     np.testing.assert_allclose(found, expected[None], atol=1e-12)
+
+
+@settings(max_examples=40)
+@given(st.data(), st.integers(3, 17))
+def test_reconstruction_has_the_given_moments_at_every_count(data, count):
+    model = Moments(count)
+    multipliers = data.draw(arrays(float, (4, count), elements=st.floats(-3, 3)))
+    stored = model.to_storage(multipliers)
+    assert ((stored[:, 0] > 0) & (stored[:, 0] < 1)).all()
+    again = model.to_storage(model.from_storage(stored))
+    np.testing.assert_allclose(again, stored, rtol=0, atol=1e-9)

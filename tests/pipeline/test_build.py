@@ -47,22 +47,14 @@ def delta_e(cube, rgb, mode):
     return delta_e_rgb(sensor, rgb, back)
 
 
-def test_every_point_of_the_macbeth_cube_is_fitted(macbeth_cube):
-    assert fresh_distance(macbeth_cube).max() <= 1e-4
-    assert macbeth_cube.data.points.distance.max() <= 1e-4
-    assert Status.UNFITTED not in macbeth_cube.data.points.status
-
-
 @pytest.mark.parametrize(
     "options",
     [
         {"atlas": MACBETH, "dim": 16},
         {"atlas": MACBETH, "dim": 64},
         {"atlas": None, "dim": 32},
-        {"atlas": None, "dim": 16},
         {"atlas": None, "dim": 64},
         {"atlas": MACBETH, "dim": 16, "model": "sigmoid"},
-        {"atlas": MACBETH, "dim": 32, "model": "sigmoid"},
         {"atlas": None, "dim": 32, "model": "sigmoid"},
         {"atlas": MACBETH, "dim": 16, "coefficients": 3},
         {"atlas": MACBETH, "dim": 16, "coefficients": 17},
@@ -165,16 +157,6 @@ def test_models_without_more_coefficients_store_entries_once(options):
     assert uplift.build(greys(one=0.2), dim=3, **options).data.atlas.spectra is None
 
 
-def test_a_cube_without_an_atlas_has_one_model():
-    assert uplift.build(dim=3).data.atlas.spectra is None
-
-
-@pytest.mark.parametrize("count", [8, 18])
-def test_entries_cannot_have_fewer_coefficients_than_nodes_or_more_than_17(count):
-    with raises(OptionError, "entry-coefficients-out-of-range"):
-        uplift.build(dim=3, entry_coefficients=count)
-
-
 def test_dim_auto_records_the_chosen_lattice():
     cube = uplift.build(greys(one=0.2, other=0.24), dim="auto")
     options = cube.data.provenance["options"]
@@ -241,24 +223,21 @@ def test_equal_input_gives_equal_bytes(tmp_path):
         ({"dim": 1}, OptionError, "dim-too-small"),
         ({"dim": "large"}, OptionError, "dim-not-a-number"),
         ({"dim": 10**400}, OptionError, "option"),
-        ({"dim": 100000}, OptionError, "option"),
         ({"threshold": 0}, OptionError, "threshold-out-of-range"),
         ({"threshold": 0.2}, OptionError, "threshold-out-of-range"),
         ({"threshold": float("nan")}, OptionError, "threshold-out-of-range"),
-        ({"threshold": 5e-324}, OptionError, "threshold-out-of-range"),
-        ({"threshold": 10**400}, OptionError, "threshold-out-of-range"),
         ({"threshold": "1e-4"}, OptionError, "option"),
         ({"auto_tolerance": -1.0}, OptionError, "auto-tolerance-out-of-range"),
-        ({"auto_tolerance": float("inf")}, OptionError, "auto-tolerance-out-of-range"),
         ({"auto_tolerance": float("nan")}, OptionError, "auto-tolerance-out-of-range"),
         ({"dim": True}, OptionError, "dim-not-a-number"),
+        ({"entry_coefficients": 8}, OptionError, "entry-coefficients-out-of-range"),
+        ({"entry_coefficients": 18}, OptionError, "entry-coefficients-out-of-range"),
         ({"coefficients": 9.0}, OptionError, "option"),
         ({"coefficients": 10**5000}, OptionError, "coefficients-out-of-range"),
         ({"space": 3}, OptionError, "option"),
         ({"lights": ("D65", 3)}, OptionError, "option"),
         ({"lights": ("D65",) * 65}, OptionError, "option"),
         ({"debug": 1}, OptionError, "option"),
-        ({"coefficients": 2}, OptionError, "coefficients-out-of-range"),
         ({"model": "moment"}, UnknownNameError, "unknown-model"),
         ({"axis": "sqrt"}, UnknownNameError, "unknown-axis-spacing"),
         ({"space": "sRGBB"}, UnknownNameError, "unknown-rgb-space"),
@@ -270,14 +249,11 @@ def test_equal_input_gives_equal_bytes(tmp_path):
         ({"solver": "custom"}, UnknownNameError, "unknown-solver"),
         ({"solver": 3}, OptionError, "option"),
         ({"shortest": 299}, OptionError, "option"),
-        ({"shortest": 390}, OptionError, "option"),
         ({"longest": 700}, OptionError, "option"),
-        ({"longest": 1001}, OptionError, "option"),
         ({"longest": float("nan")}, OptionError, "option"),
         ({"longest": 830, "step": 10, "shortest": 375}, OptionError, "range-not-in-steps"),
         ({"step": 2}, OptionError, "unsupported-step"),
         ({"step": 10, "space": "camera", "observer": "Nikon 5100 (NPL)"}, OptionError, "unsupported-step"),
-        ({"step": 0}, OptionError, "unsupported-step"),
         ({"warp": "visions"}, OptionError, "unknown-warp"),
         ({"scene": []}, OptionError, "scene-without-colours"),
     ],
@@ -302,11 +278,3 @@ def test_a_build_without_a_scene_imports_nothing_above_the_core():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
-
-
-def test_builds_in_wide_gamuts_report_unrealisable_points():
-    cube = uplift.build(dim=3, space="ProPhoto RGB", illuminant="D50")
-    counts = cube.data.points.counts()
-    assert counts["unrealisable"] > 0
-    assert counts["unfitted"] == 0
-    assert (fresh_distance(cube) > 1e-4).sum() == counts["unrealisable"]

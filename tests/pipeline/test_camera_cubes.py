@@ -10,10 +10,9 @@ import pytest
 import uplift
 from tests.helpers import raises
 from uplift.colorimetry import observer
-from uplift.colorimetry.camera import CAMERA, Camera
+from uplift.colorimetry.camera import CAMERA
 from uplift.common.errors import ColourError, CubeFileError
 from uplift.cube import digest
-from uplift.cube.file import contents
 from uplift.io.export.coeff import write_coeff
 from uplift.lookup import Cube, query, query_xyz
 from uplift.pipeline.rebuild import rebuild
@@ -50,14 +49,6 @@ def test_a_stored_cube_is_read_and_rebuilt_without_its_file(cube, table, tmp_pat
     assert digest(rebuild(stored, path).data) == digest(cube.data)
 
 
-def test_a_name_a_file_and_arrays_give_the_same_sensor(table):
-    camera = observer.find_camera(NIKON)
-    given = (NIKON, str(table), Camera("mine", camera.wavelengths, camera.sensitivities))
-    first, *others = (observer.sensor(CAMERA, "A", each).matrix for each in given)
-    for each in others:
-        assert each.tobytes() == first.tobytes()
-
-
 def test_answers_have_the_raw_values_and_xyz_of_the_spectrum(cube):
     sensor = cube.data.sensor
     for result, raw in zip(query(cube, GREYS, mode="refined"), GREYS, strict=True):
@@ -90,9 +81,3 @@ def test_files_with_invalid_sensitivities_are_refused(cube, tmp_path, monkeypatc
     monkeypatch.undo()
     with raises(CubeFileError, code):
         uplift.load(path)
-
-
-def test_the_feature_announces_the_sensitivities(cube, small_cube):
-    for data, expected in ((cube.data, True), (small_cube.data, False)):
-        tensors, metadata = contents(data)
-        assert ("sensor.sensitivities" in tensors, "camera" in metadata["features"]) == (expected, expected)

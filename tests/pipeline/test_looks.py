@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import uplift
-from tests.conftest import ATLASES, MACBETH
+from tests.conftest import MACBETH
 from tests.helpers import raises, warns
 from uplift import Look, LookError
 from uplift.colorimetry.delta_e import delta_e_rgb
@@ -71,16 +71,6 @@ def test_looks_are_met_and_other_entries_unchanged(cubes):
         )
     rgb = looked.data.atlas.rgb
     np.testing.assert_allclose(looked.data.sensor.rgb(looked.reflectance(rgb)), rgb, atol=1e-5)
-
-
-def test_half_a_look_is_half_way(cubes):
-    plain, looked = cubes
-    (screen,) = display_sensors(["A"], plain.observer)
-    rgb, wish = LOOKS[2].rgb, np.array(LOOKS[2].lights["A"])
-    expected = screen.rgb(plain.reflectance(rgb))
-    halfway = (wish + expected) / 2
-    assert delta_e_rgb(screen, screen.rgb(looked.reflectance(rgb)), halfway) < 0.5
-    assert delta_e_rgb(screen, wish, expected) > 1
 
 
 def test_colours_near_a_look_follow_it_and_others_hardly(cubes):
@@ -228,6 +218,11 @@ def test_models_without_freedom_are_refused(options):
         uplift.build(dim=2, looks=RED, **options)
 
 
-def test_looks_and_other_atlases_share_auto_dim():
-    cube = quietly(ATLASES / "macbeth.txt", dim="auto", auto_tolerance=20, looks=RED)
-    assert "brick" in cube.data.atlas.names
+def test_half_a_look_is_half_way(cubes):
+    plain, looked = cubes
+    (screen,) = display_sensors(["A"], plain.observer)
+    rgb, wish = LOOKS[2].rgb, np.array(LOOKS[2].lights["A"])
+    expected = screen.rgb(plain.reflectance(rgb))
+    halfway = (wish + expected) / 2
+    assert delta_e_rgb(screen, screen.rgb(looked.reflectance(rgb)), halfway) < 0.5
+    assert delta_e_rgb(screen, wish, expected) > 1

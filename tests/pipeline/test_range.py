@@ -12,7 +12,6 @@ from tests.pipeline.test_build import quietly
 from uplift.atlas import Atlas, Entry, read_atlas
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import on_range
-from uplift.cube import digest
 from uplift.report.assessment import assess
 from uplift.report.live_page import page
 from uplift.report.regression import compare_rebuilt
@@ -84,13 +83,6 @@ def test_the_range_is_recorded_and_survives_the_file(infrared, tmp_path):
         "step": 5,
     }
     np.testing.assert_array_equal(found.reflectance([0.5, 0.2, 0.1]), infrared.reflectance([0.5, 0.2, 0.1]))
-
-
-def test_the_default_range_is_that_of_earlier_versions():
-    first = quietly(dim=2, coefficients=3)
-    second = quietly(dim=2, coefficients=3, shortest=380, longest=780, step=5)
-    assert digest(first.data) == digest(second.data)
-    assert first.wavelengths.tolist() == list(range(380, 781, 5))
 
 
 def test_everything_that_compares_under_lights_takes_the_range():

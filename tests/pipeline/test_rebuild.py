@@ -6,7 +6,6 @@ import dataclasses
 import itertools
 import shutil
 
-import numpy as np
 import pytest
 
 import uplift
@@ -72,10 +71,6 @@ def test_a_modified_cube_differs_from_its_rebuild(tiny_cube, repository):
     assert digest(again.data) == digest(tiny_cube.data)
 
 
-def test_rebuild_repeats_no_warnings(tiny_cube, repository):
-    rebuild(tiny_cube, "cube.uplift", [repository / "atlases"])  # warnings are errors here
-
-
 @pytest.mark.parametrize("place", [".", "atlases"])
 def test_atlases_are_found_next_to_the_cube_and_in_the_folder_atlases(tiny_cube, repository, home, place):
     folder = home.parent / "elsewhere"
@@ -98,11 +93,6 @@ def test_a_recorded_name_opens_no_file_outside_the_folder_of_the_cube(tiny_cube,
     assert not opened
 
 
-def test_a_missing_atlas_is_named(tiny_cube, home):
-    error = rebuild_error("atlas-not-found", tiny_cube, home / "cube.uplift", [home / "none"])
-    assert "macbeth.txt" in error.problem
-
-
 def test_a_shipped_atlas_is_found_in_any_folder(tiny_cube, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "macbeth.txt").write_text("Entry ID: other\n", encoding="utf-8")
@@ -122,31 +112,17 @@ def test_a_changed_atlas_is_refused(tiny_cube, repository, home):
     assert str(home / "macbeth.txt") in error.problem
 
 
-def test_a_changed_atlas_does_not_hide_the_recorded_one(tiny_cube, repository, home):
-    (home / "macbeth.txt").write_text("Entry ID: other\n", encoding="utf-8")
-    again = rebuild(tiny_cube, home / "cube.uplift", [home, repository / "atlases"])
-    assert digest(again.data) == digest(tiny_cube.data)
-
-
 @pytest.mark.parametrize(
     "options",
     [
-        {"kriging": True},
         {"progress": None},
         {"atlas": None},
         {"model": "spline"},
         {"illuminant": "D66"},
         {"lights": ["D65", "D66"]},
-        {"space": "sRGBB"},
-        {"axis": "cubic"},
         {"dim": 1},
-        {"dim": "eight"},
-        {"lights": 5},
         {"lights": []},
-        {"lights": ["D65"] * 100_000},
-        {"threshold": 5e-324},
         {"coefficients": 99},
-        {"start": "corners"},
         {"solver": "newton"},
     ],
 )
@@ -184,11 +160,6 @@ def test_another_recorded_dim_is_reported_before_the_build(tiny_cube, monkeypatc
     rebuild_error("lattice-mismatch", with_option(tiny_cube, dim=400), "cube.uplift")
 
 
-def test_other_options_give_another_cube(tiny_cube, repository):
-    other = rebuild(with_option(tiny_cube, axis="linear"), "cube.uplift", [repository / "atlases"])
-    assert not np.array_equal(other.data.lattice.nodes, tiny_cube.data.lattice.nodes)
-
-
 def test_stored_cubes_cover_models_sizes_and_atlases(repository):
     cubes = [uplift.load(path).data for path in (repository / "cubes").glob("*.uplift")]
     kinds = {(cube.model.name, cube.lattice.dim, bool(cube.atlas.names)) for cube in cubes}
@@ -196,6 +167,7 @@ def test_stored_cubes_cover_models_sizes_and_atlases(repository):
     assert kinds == set(expected)
 
 
-def test_the_default_cube_is_one_of_the_stored_cubes(repository):
-    own = (repository / "uplift" / "lookup" / "default.uplift").read_bytes()
-    assert own == (repository / "cubes" / "moments-16.uplift").read_bytes()
+def test_a_changed_atlas_does_not_hide_the_recorded_one(tiny_cube, repository, home):
+    (home / "macbeth.txt").write_text("Entry ID: other\n", encoding="utf-8")
+    again = rebuild(tiny_cube, home / "cube.uplift", [home, repository / "atlases"])
+    assert digest(again.data) == digest(tiny_cube.data)
