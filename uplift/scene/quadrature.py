@@ -31,15 +31,7 @@ NODE_TOLERANCE = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class QuadratureRule:
-    """``sum(weights * f(nodes))`` approximates ``sum(masses * f(points))``.
-
-    Parameters
-    ----------
-    nodes : ndarray, shape (n,)
-        Nodes in ascending order, within the range of the points.
-    weights : ndarray, shape (n,)
-        Weights, of both signs where the masses are.
-    """
+    """``sum(weights * f(nodes))`` approximates ``sum(masses * f(points))``; nodes (n,) ascend within the points."""
 
     nodes: Array
     weights: Array
@@ -50,15 +42,7 @@ class QuadratureRule:
 
 @dataclass(frozen=True, eq=False)
 class UndefinedRule:
-    """An order for which the measure has no rule.
-
-    Parameters
-    ----------
-    order : int
-        Number of nodes.
-    reason : str
-        Explanation for a message.
-    """
+    """An order, or number of nodes, for which the measure has no rule, and an explanation for a message."""
 
     order: int
     reason: str
@@ -67,30 +51,10 @@ class UndefinedRule:
 def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRule | UndefinedRule:
     """Compute the rule of ``order`` nodes that is exact for polynomials of degree below ``2 * order``.
 
-    Masses of one sign have a rule of every order up to their number. Masses of both signs have no rule of an order
-    without orthogonal polynomial, or whose nodes are complex, coincide, or lie outside the points.
+    Points (N,) ascend. Masses (N,) of one sign have a rule of every order up to their number. Masses of both signs have
+    no rule of an order without orthogonal polynomial, or whose nodes are complex, coincide, or lie outside the points.
+    Raises `OptionError`.
 
-    Parameters
-    ----------
-    points : array_like, shape (N,)
-        Points in ascending order.
-    masses : array_like, shape (N,)
-        Mass at each point, finite, not all 0.
-    order : int
-        Number of nodes, 1 to the number of masses that are not 0.
-
-    Returns
-    -------
-    QuadratureRule or UndefinedRule
-        The rule, or the reason why there is none.
-
-    Raises
-    ------
-    OptionError
-        The points, the masses or the order are invalid.
-
-    Examples
-    --------
     >>> gauss_rule([-1, 0, 1], [1, 1, 1], 2).nodes.round(4)
     array([-0.8165,  0.8165])
     """
@@ -110,24 +74,9 @@ def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRu
 
 
 def interpolatory_rule(nodes: ArrayLike, points: ArrayLike, masses: ArrayLike) -> QuadratureRule:
-    """Compute the rule at given nodes that is exact for polynomials of degree below their number.
+    """Compute the rule at distinct nodes (n,) that is exact for polynomials of degree below their number.
 
-    Parameters
-    ----------
-    nodes : array_like, shape (n,)
-        Distinct nodes.
-    points, masses : array_like, shape (N,)
-        The measure, as in `gauss_rule`.
-
-    Returns
-    -------
-    QuadratureRule
-        The rule, its nodes in ascending order.
-
-    Raises
-    ------
-    OptionError
-        The points or the masses are invalid, or two nodes coincide.
+    The measure is that of `gauss_rule`. Raises `OptionError`.
     """
     points, masses = _checked(points, masses)
     nodes = np.sort(np.asarray(nodes, dtype=float))
