@@ -23,8 +23,8 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write, check_output
 from uplift.cube.data import CubeData
-from uplift.io.slices import exr
-from uplift.io.slices.slices import blue_slices
+from uplift.io import exr
+from uplift.io.slices import blue_slices
 from uplift.viz.figure import figure_text
 from uplift.viz.format import pluralise
 

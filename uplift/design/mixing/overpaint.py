@@ -13,7 +13,7 @@ from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Array
 from uplift.design.mixing.coats import Coat
-from uplift.io.slices import exr
+from uplift.io import exr
 from uplift.io.texture.colours import Counts, Floats, check_encoding
 from uplift.io.texture.uplifter import Converter
 from uplift.lookup import Cube

@@ -12,7 +12,7 @@ from uplift.colorimetry.observer import sensor
 from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.io.slices import exr
+from uplift.io import exr
 from uplift.io.texture.channels import ColourChannels
 from uplift.io.texture.colours import Counts, Floats, check_encoding, linear_reader, reads_codes, source_space
 from uplift.io.texture.image import Part, Values

@@ -22,7 +22,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace, find_space
 from uplift.common.errors import OptionError, TextureError
 from uplift.common.files import check_regular
-from uplift.io.slices import exr
+from uplift.io import exr
 from uplift.io.texture.channels import ColourChannels, coloured_parts
 from uplift.io.texture.colours import Counts, Floats, check_encoding, make_decoder
 from uplift.io.texture.image import Image, Part, Values

@@ -14,7 +14,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import OutputError
 from uplift.common.files import check_output
 from uplift.cube.data import CubeData
-from uplift.io.slices import exr
+from uplift.io import exr
 
 COMMENTS = (
     "A blue slice of a spectral uplifting cube. A pixel is a lattice point: red rises to the right, green "
