@@ -1,6 +1,5 @@
 // RGB is linear in the spectrum. The colours of all nodes under both lights are therefore computed once per light, those
 // of the pixels are interpolated once per image and light, and a frame only mixes the two.
-const byId = id => document.getElementById(id);
 const { columns, rows, points, wavelengths, lights, entries } = JSON.parse(byId("numbers").textContent);
 const canvas = byId("view");
 const gl = canvas.getContext("webgl2", { preserveDrawingBuffer: true });
@@ -237,7 +236,7 @@ function inspect(x, y) {
   const [low, high] = [wavelengths[0], wavelengths.at(-1)];
   const place = (nm, value) => `${(8 + (304 * (nm - low)) / (high - low)).toFixed(1)} ${(104 - 96 * value).toFixed(1)}`;
   byId("curve").setAttribute("d", "M" + wavelengths.map((nm, k) => place(nm, g[k])).join("L"));
-  const hex = "#" + codes.map(code => code.toString(16).padStart(2, "0")).join("");
+  const hex = hexOfCodes(codes);
   byId("pixel").textContent = `${x}, ${y}: ${hex}`;
   byId("swatch").style.background = hex;
 }

@@ -69,7 +69,7 @@ def page(data: CubeData) -> str:
         numbers=numbers,
         kernel=Markup(program.replace("</", "< /")),
         table=base64.b64encode(image.astype("<f4").tobytes()).decode(),
-        script=resource("report/live_page.js"),
+        script=resource("viz/draw.js", "report/live_page.js"),
     )
 
 

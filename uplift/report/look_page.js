@@ -1,6 +1,4 @@
 // Colours of reflectances: XYZ, L*a*b* and sRGB, as uplift/colorimetry computes them.
-const dot = (first, second) => first.reduce((sum, value, i) => sum + value * second[i], 0);
-const multiply = (matrix, vector) => matrix.map(row => dot(row, vector));
 const compress = t => (t > (6 / 29) ** 3 ? Math.cbrt(t) : (t * (29 / 6) ** 2) / 3 + 4 / 29);
 const expand = f => (f > 6 / 29 ? f ** 3 : (f - 4 / 29) * 3 * (6 / 29) ** 2);
 
@@ -33,9 +31,7 @@ function desaturate(rgb, luminance) {
   return rgb.map(value => Math.min(Math.max(grey + kept * (value - grey), 0), 1));
 }
 
-const encode = value => (value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055);
 const toCodes = (rgb, luminance) => desaturate(rgb, luminance).map(value => Math.round(255 * encode(value)));
-const toHex = codes => "#" + codes.map(code => code.toString(16).padStart(2, "0")).join("");
 // Spectra 1 / (1 + exp(−x − B q)), where x is that of the cube's answer. The solver moves q, in the metric of least
 // change, to goals for a* and b* under some lights, and keeps the RGB.
 const RGB_WEIGHT = 300; // a residual of linear RGB counts as much as this one of a* or b*
@@ -161,14 +157,6 @@ const CURVE = { left: 8, right: 312, top: 8, bottom: 104 };
 const PIXELS = 96;
 const MIN_EXTENT = 5;
 const NEARLY = 0.999;
-const byId = id => document.getElementById(id);
-
-function createSvg(tag, attributes, ...children) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children);
-  return element;
-}
 
 // A square of a* and b* around the region, and its map to the plot.
 function scaleOf(points) {
@@ -292,7 +280,7 @@ function show() {
 }
 
 function showSwatch(name, light, reflectance) {
-  const codes = [toHex(codesOf(light, answer)), toHex(codesOf(light, reflectance))];
+  const codes = [hexOfCodes(codesOf(light, answer)), hexOfCodes(codesOf(light, reflectance))];
   [...byId(`swatch-${name}`).children].forEach((half, i) => (half.style.background = codes[i]));
   const displayed = isInGamut(linearRgb(light, multiply(light.xyz, reflectance))) ? "" : ", outside sRGB";
   byId(`code-${name}`).textContent = codes[1] + displayed;
@@ -327,7 +315,7 @@ function toml(reflectance) {
   const written = value => (typeof value === "string" ? `"${value}"` : `[${value.join(", ")}]`);
   const lines = [...goals.keys()].sort((a, b) => a - b).map(i => {
     const rgb = linearRgb(lights[i], multiply(lights[i].xyz, reflectance));
-    const colour = isInGamut(rgb) ? toHex(toCodes(rgb, luminance)) : rgb.map(value => Number(value.toFixed(5)));
+    const colour = isInGamut(rgb) ? hexOfCodes(toCodes(rgb, luminance)) : rgb.map(value => Number(value.toFixed(5)));
     return `${/^[\w-]+$/.test(lights[i].name) ? lights[i].name : JSON.stringify(lights[i].name)} = ${written(colour)}`;
   });
   return ["[[look]]", `rgb = ${written(numbers.rgb)}`, ...lines].join("\n");

@@ -67,7 +67,7 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
         numbers=_model(sensor, found[0].reflectance[0], rgb)
         | {"build": _view(sensor.light, conversion(sensor, SRGB) @ sensor.xyz_to_rgb), "lights": lights}
         | {"rgb": written, "luminance": SRGB.rgb_to_xyz[1].tolist()},
-        script=resource("report/look_page.js"),
+        script=resource("viz/draw.js", "report/look_page.js"),
     )
 
 

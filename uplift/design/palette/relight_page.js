@@ -1,4 +1,4 @@
-// Inverse of packing.py: base64 of deflated byte planes, the first bytes of all numbers before the second ones.
+// Inverse of `pack` of relight_page.py: base64 of deflated byte planes, the first bytes of all numbers before the second ones.
 async function unpackBytes(id, width) {
   const text = atob(document.getElementById(id).textContent);
   const deflated = Uint8Array.from(text, letter => letter.charCodeAt(0));
@@ -23,10 +23,9 @@ async function unpackHalves(id) {
 }
 // Linear sRGB to display codes (IEC 61966-2-1) with a table; its step is at most a twentieth of an 8-bit code.
 const STEPS = 65535;
-const encode = linear => 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055);
-const CODES = Uint8Array.from({ length: STEPS + 1 }, (_, step) => Math.round(encode(step / STEPS)));
+const CODES = Uint8Array.from({ length: STEPS + 1 }, (_, step) => Math.round(255 * encode(step / STEPS)));
 const code = linear => CODES[linear > 0 ? (linear < 1 ? (linear * STEPS + 0.5) | 0 : STEPS) : 0];
-const hex = rgb => "#" + rgb.map(linear => code(linear).toString(16).padStart(2, "0")).join("");
+const hex = rgb => hexOfCodes(rgb.map(code));
 const opaque = (r, g, b) => 0xff000000 | (code(b) << 16) | (code(g) << 8) | code(r);
 const TOLERANCE = 1 / 510;
 const outOfRange = linear => linear < -TOLERANCE || linear > 1 + TOLERANCE;
@@ -52,8 +51,6 @@ function light(pixels, labels, matrix, out) {
   return clipped;
 }
 // Weights of the lights. Positions are on a disc of radius 1 with y pointing down.
-const dot = (a, b) => a.reduce((total, value, k) => total + value * b[k], 0);
-const multiply = (matrix, vector) => matrix.map(row => dot(row, vector));
 const weightedSum = (weights, rows) => rows[0].map((_, k) => dot(weights, rows.map(row => row[k])));
 
 // Positions of the lights on the rim, the first at the top.
@@ -78,14 +75,6 @@ function clampToDisc([x, y]) {
 // Drawing of the dial and of the spectrum.
 const DISC = 84;
 const SPECTRUM = { left: 8, right: 312, top: 4, bottom: 78 };
-const byId = id => document.getElementById(id);
-
-function createSvg(tag, attributes, ...children) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children);
-  return element;
-}
 
 // Disc in the colours of white under each mix, scaled to the display; lights around it; handle.
 function drawDial(names, white) {

@@ -112,7 +112,7 @@ def page(view: Relighting) -> str:
         numbers=_numbers(view),
         pixels=pack(to_half(view.pixels)),
         labels=pack(view.labels),
-        script=resource("design/palette/relight_page.js"),
+        script=resource("viz/draw.js", "design/palette/relight_page.js"),
     )
 
 
