@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.path import Path
 
 from uplift.colorimetry.mismatch import mesh_volume
-from uplift.colorimetry.sphere import COUNTS, sphere
+from uplift.colorimetry.sphere import COUNTS, outline, sphere
 
 
 @pytest.mark.parametrize("divisions", range(4))
@@ -27,3 +28,21 @@ def test_parents_are_near():
     assert (found.parents[children] < children).all()
     near = (found.directions[children] * found.directions[found.parents[children]]).sum(axis=1)
     assert near.min() > 0.85
+
+
+def test_a_sphere_has_a_round_outline():
+    found = sphere(3)
+    moved = found.directions[:, :2] + np.array([3.0, -2.0])
+    radius = np.hypot(*(outline(moved, found.faces) - np.array([3.0, -2.0])).T)
+    assert radius.min() > 0.99
+    assert radius.max() <= 1 + 1e-12
+
+
+def test_all_points_lie_within_the_outline():
+    found = sphere(2)
+    points = found.directions[:, :2] * [2.0, 1.0] + 0.2 * found.directions[:, 2:]
+    limits = outline(points, found.faces, angles=360)
+    centre = points.mean(axis=0)
+    inside = Path(centre + 1.01 * (limits - centre)).contains_points(points)
+    assert inside.all()
+    assert not Path(centre + 0.95 * (limits - centre)).contains_points(points).all()

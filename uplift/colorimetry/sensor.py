@@ -82,14 +82,17 @@ class Sensor:
     @cached_property
     def light(self) -> Light:
         """The build illuminant."""
+        # X, Y, Z of g are Σ x̄ S g / Σ ȳ S, and so on: the perfect reflector, g = 1, has Y = 1.
         weights = self.cmfs * self.power[:, None]
         return Light(self.illuminant, (weights / weights[:, 1].sum()).T)
 
     @cached_property
     def matrix(self) -> Array:
         """W, shape (3, N): ``W @ reflectance`` is linear RGB; the perfect reflector gives (1, 1, 1)."""
+        # W_ci = Σ_k M_ck · XYZ weights of k at wavelength i: colours are linear in the reflectance.
         if self.sensitivities is None:
             return self.xyz_to_rgb @ self.light.xyz
+        # Raw values of a camera: each channel is divided by that of the perfect reflector.
         weights = self.sensitivities * self.power[:, None]
         return np.asarray((weights / weights.sum(axis=0)).T)
 

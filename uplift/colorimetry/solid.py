@@ -82,6 +82,7 @@ class Solid:
         fractions = [np.zeros(0)]
         for first in range(0, len(target), BLOCK):
             start, end = origin[first : first + BLOCK], target[first : first + BLOCK]
+            # On start + f · (end − start), facet i is met at f = (offset_i − n_i · start) / n_i · (end − start).
             margin = np.maximum(self.offsets - start @ self.normals.T, 0)
             speed = (end - start) @ self.normals.T
             fractions.append(np.divide(margin, speed, out=np.ones_like(margin), where=speed > margin).min(axis=1))
@@ -98,6 +99,7 @@ def toward_grey(limits: Solid, grey: Array, target: Array, margin: float) -> Arr
     result = target.copy()
     near = np.flatnonzero(limits.signed_distance(target) > -2 * margin)
     grey, chroma = grey[near], target[near] - grey[near]
+    # With x = grey + f · chroma, the boundary is at f = 2 · ray_fraction; results stay a margin inside of it.
     inward = margin / np.maximum(np.abs(chroma).max(axis=1), margin)
     reach = 2 * limits.ray_fraction(grey, grey + 2 * chroma) - inward
     moved = reach < 1
@@ -107,12 +109,14 @@ def toward_grey(limits: Solid, grey: Array, target: Array, margin: float) -> Arr
 
 def solid(matrix: Array) -> Solid:
     """Compute the object-colour solid of a sensor. Shapes: ``matrix`` (3, N)."""
+    # The zonotope is Σ_i [0, 1] · W_i. A facet is spanned by two segments: its normal is n = ± W_i × W_j.
     segments = matrix.T
     first, second = np.triu_indices(len(segments), k=1)
     cross = np.cross(segments[first], segments[second])
     length = np.linalg.norm(cross, axis=1)
     kept = length > 1e-12 * np.linalg.norm(segments[first], axis=1) * np.linalg.norm(segments[second], axis=1)
     normals = cross[kept] / length[kept, None]
+    # The farthest colour along n takes every W_k with n · W_k > 0: the offset is Σ_k max(0, n · W_k).
     along = normals @ matrix
     offsets = np.maximum(along, 0).sum(axis=1), np.maximum(-along, 0).sum(axis=1)
     return Solid(np.concatenate([normals, -normals]), np.concatenate(offsets))

@@ -1,4 +1,4 @@
-"""Directions spread over the sphere: an icosahedron whose triangles are divided into four."""
+"""Triangle meshes: directions spread over the sphere, and the outline of a body in a plane."""
 
 from __future__ import annotations
 
@@ -10,6 +10,9 @@ from uplift.common.arrays import Array, Indices
 
 COUNTS = (12, 42, 162, 642, 2562)
 """Directions after 0 to 4 divisions."""
+ANGLES = 120
+MIN_ROUNDNESS = 1e-12
+"""Smallest ratio of the variances along the axes of a shape that is made round."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +28,7 @@ class Sphere:
 
 
 def sphere(divisions: int) -> Sphere:
-    """Divide the icosahedron."""
+    """Divide every triangle of an icosahedron into four, so many times."""
     found = _icosahedron()
     for _ in range(divisions):
         found = _divided(found)
@@ -54,3 +57,23 @@ def _divided(coarse: Sphere) -> Sphere:
     (a, b, c), (ab, bc, ca) = coarse.faces.T, (which.reshape(-1, 3) + len(coarse.directions)).T
     faces = np.concatenate([np.stack(each, axis=1) for each in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))])
     return Sphere(np.concatenate([coarse.directions, middles]), faces, np.concatenate([coarse.parents, edges[:, 0]]))
+
+
+def outline(points: Array, faces: Indices, angles: int = ANGLES) -> Array:
+    """Compute the outline of a triangle mesh that is projected to a plane.
+
+    Shapes: ``points`` (D, 2), ``faces`` (F, 3) → (angles, 2).
+    """
+    centre = points.mean(axis=0)
+    values, axes = np.linalg.eigh(np.cov(points.T))
+    lengths = np.sqrt(np.maximum(values, MIN_ROUNDNESS * values.max() + np.finfo(float).tiny))
+    round_points = (points - centre) @ axes / lengths
+    turns = np.arange(angles) * (2 * np.pi / angles)
+    along, across = (np.stack([np.cos(turns + shift), np.sin(turns + shift)]) for shift in (0.0, np.pi / 2))
+    edges = np.unique(np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+    first, second = (round_points[edges[:, end]] for end in (0, 1))
+    side_1, side_2 = first @ across, second @ across
+    crosses = (side_1 <= 0) != (side_2 <= 0)
+    share = np.divide(side_1, side_1 - side_2, out=np.zeros_like(side_1), where=crosses)
+    radius = np.where(crosses, first @ along + share * ((second - first) @ along), 0).max(axis=0)
+    return np.asarray(centre + (radius[:, None] * along.T * lengths) @ axes.T)

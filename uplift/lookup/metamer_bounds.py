@@ -9,9 +9,9 @@ import numpy as np
 from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.largest_difference import LargestDifference, largest_difference
 from uplift.colorimetry.mismatch import DIVISIONS, MismatchVolumes, mismatch_volumes
-from uplift.colorimetry.outline import outline
 from uplift.colorimetry.sensor import Light, in_unit_cube
 from uplift.colorimetry.solid import solid_volume
+from uplift.colorimetry.sphere import outline
 from uplift.common.arrays import Array
 from uplift.lookup.cube import Cube
 from uplift.lookup.light_errors import lab_errors
