@@ -1,4 +1,7 @@
-"""Programs for renderers and shaders: one C-like source, preceded by macros of each language."""
+"""Programs for renderers and shaders: one C-like source, preceded by macros of each language.
+
+In ``source/``, ``UP_READS`` and ``UP_TABLE`` are the parameter and the argument by which CUDA passes the table.
+"""
 
 from __future__ import annotations
 
@@ -24,6 +27,12 @@ from uplift.io.export.table import COLUMNS, MODES, Table, make_table
 
 LARGE = 16_000_000
 """Size in bytes above which compilation of a header is slow."""
+LOOP = re.compile(
+    r"^(?P<indent> *)UP_UNROLL\n *for \(int (?P<name>\w+) = (?P<start>.+); \w+ < (?P<stop>.+); \+\+\w+\) "
+    r"(?P<body>\{\n(?:(?P=indent) .*\n)*(?P=indent)\}\n|[^{].*\n)",
+    re.MULTILINE,
+)
+"""A loop to be written out: its statement is on the same line, or in braces."""
 
 
 @dataclass(frozen=True)
@@ -117,6 +126,7 @@ def compose(kind: str, table: Table, style: str, stem: str, form: str, words: di
     text = text.replace("${macros}", "".join(_read(each) for each in language.macros))
     text = text.replace("${calls}", _read(f"{kind}_calls{language.calls}"))
     text = text.replace("${table}", _read(f"table_{form}.c"))
+    text = _unroll(text, {f"UP_{key}": value for key, value in table.constants.items()})
     text = re.sub(r"\bup_", f"{name}_", text)
     text = re.sub(r"\bUP_", f"{name.upper()}_", text)
     constants = (f"#define {name.upper()}_{key} {_literal(value)}" for key, value in table.constants.items())
@@ -163,6 +173,17 @@ def comment(text: str) -> str:
 
 def _read(name: str) -> str:
     return (files("uplift.io.export") / "source" / name).read_text(encoding="ascii")
+
+
+def _unroll(text: str, constants: dict[str, Any]) -> str:
+    """Write out loops marked by ``UP_UNROLL``, outer ones first: few compilers of shaders unroll, none all loops."""
+
+    def copies(loop: re.Match[str]) -> str:
+        bounds = (eval(each.replace("/", "//"), {}, constants) for each in (loop["start"], loop["stop"]))
+        numbered = (re.sub(rf"\b{loop['name']}\b", str(value), loop["body"]) for value in range(*bounds))
+        return _unroll("".join(f"{loop['indent']}{body}" for body in numbered), constants)
+
+    return LOOP.sub(copies, text)
 
 
 def _literal(value: float) -> str:

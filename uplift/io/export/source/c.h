@@ -24,19 +24,16 @@
 #define UP_SQRT sqrtf
 #define UP_TANH tanhf
 #define UP_COPYSIGN copysignf
-/* Loops over wavelengths and lanes are vectorised, not unrolled; short loops in them are unrolled. */
+/* Loops over wavelengths and lanes are vectorised, not unrolled. */
 #if defined(__clang__)
 #define UP_EXPANDED static inline __attribute__((always_inline))
 #define UP_VECTORISE _Pragma("clang loop vectorize(enable) interleave_count(1)")
-#define UP_UNROLL _Pragma("clang loop unroll(full)")
 #elif defined(__GNUC__)
 #define UP_EXPANDED static inline __attribute__((always_inline))
 #define UP_VECTORISE _Pragma("GCC ivdep") _Pragma("GCC unroll 1")
-#define UP_UNROLL _Pragma("GCC unroll 64")
 #else
 #define UP_EXPANDED static inline
 #define UP_VECTORISE
-#define UP_UNROLL
 #endif
 ${constants}
 

@@ -119,8 +119,9 @@ UP_FUNCTION void up_tabulate(UP_IN float wavelengths[UP_WIDTH], UP_OUT float bas
         UP_ARRAY(cosine, UP_COUNT);
         cosine[1] = 2.0f * up_sine_of_turn(up_phase(wavelengths[w]));
         UP_UNROLL
-        for (int k = 2; k < UP_COUNT; ++k)
+        for (int k = 2; k < UP_COUNT; ++k) {
             cosine[k] = cosine[k / 2] * cosine[k - k / 2] - (k % 2 == 0 ? 2.0f : cosine[1]);
+        }
         basis[w] = 1.0f;
         UP_UNROLL
         for (int k = 1; k < UP_COUNT; ++k) basis[k * UP_WIDTH + w] = cosine[k];
@@ -136,9 +137,10 @@ UP_FUNCTION float up_polynomial(
     float even = values[0] * basis[w] + values[2] * basis[2 * UP_WIDTH + w];
     float odd = values[1] * basis[UP_WIDTH + w];
     UP_UNROLL
-    for (int k = 3; k < UP_COUNT; k += 2) odd += values[k] * basis[k * UP_WIDTH + w];
-    UP_UNROLL
-    for (int k = 4; k < UP_COUNT; k += 2) even += values[k] * basis[k * UP_WIDTH + w];
+    for (int k = 3; k < UP_COUNT; ++k) {
+        if (k % 2 == 0) even += values[k] * basis[k * UP_WIDTH + w];
+        else odd += values[k] * basis[k * UP_WIDTH + w];
+    }
     return even + odd;
 }
 
@@ -147,6 +149,7 @@ UP_FUNCTION void up_evaluate_block(
     UP_IN float multipliers[UP_COUNT], UP_IN float basis[UP_COUNT * UP_WIDTH], UP_OUT float total[UP_WIDTH])
 {
     UP_ARRAY(values, UP_STRIDE);
+    UP_UNROLL
     for (int k = 0; k < UP_COUNT; ++k) values[k] = multipliers[k];
     UP_VECTORISE
     for (int w = 0; w < UP_WIDTH; ++w) total[w] = 0.5f + up_deviation(1.0f, up_polynomial(values, basis, w));
@@ -294,17 +297,15 @@ UP_FUNCTION void up_answer(
 UP_FUNCTION void up_sum_nodes(UP_READS UP_IN float place[4], UP_OUT float coefficients[UP_COUNT])
 {
     UP_ARRAY(sides, 6);
-    UP_ARRAY(sum, UP_STRIDE);
     int first = up_weigh(UP_TABLE place, sides);
-    for (int k = 0; k < UP_STRIDE; ++k) sum[k] = 0.0f;
+    for (int k = 0; k < UP_COUNT; ++k) coefficients[k] = 0.0f;
     for (int red = 0; red < 2; ++red)
         for (int green = 0; green < 2; ++green)
             for (int blue = 0; blue < 2; ++blue) {
                 UP_ROW(values, first + (red * UP_DIM + green) * UP_DIM + blue);
                 float weight = sides[red] * sides[2 + green] * sides[4 + blue];
-                for (int k = 0; k < UP_STRIDE; ++k) sum[k] += weight * values[k];
+                for (int k = 0; k < UP_COUNT; ++k) coefficients[k] += weight * values[k];
             }
-    for (int k = 0; k < UP_COUNT; ++k) coefficients[k] = sum[k];
 }
 
 /* Weighted coefficients of the lattice and of an entry, in as many coefficients. */
@@ -331,7 +332,7 @@ UP_FUNCTION UP_BOOL up_dual(UP_IN float coefficients[UP_COUNT], UP_OUT float mul
 #else
 
 /* Multipliers of moments by Schur's algorithm [Schur 1917, see uplift.models.real_moments]; false where it breaks down.
-   Loops have constant bounds and no branches, so that compilers unroll them and compute several colours side by side. */
+   No branches, so that compilers compute several colours side by side. */
 UP_EXPANDED UP_BOOL up_dual(UP_IN float moments[UP_COUNT], UP_OUT float multipliers[UP_COUNT])
 {
     float middle = moments[0] - 0.5f;
@@ -355,11 +356,10 @@ UP_EXPANDED UP_BOOL up_dual(UP_IN float moments[UP_COUNT], UP_OUT float multipli
         even[order] *= 1.0f / UP_REAL(order);
         odd[order] *= 1.0f / UP_REAL(order);
         UP_UNROLL
-        for (int k = 2; k < UP_COUNT; ++k)
-            if (k > order) {
-                even[k] -= slope[k - order] * odd[order];
-                odd[k] += slope[k - order] * even[order];
-            }
+        for (int k = order + 1; k < UP_COUNT; ++k) {
+            even[k] -= slope[k - order] * odd[order];
+            odd[k] += slope[k - order] * even[order];
+        }
     }
     UP_UNROLL
     for (int k = 0; k < UP_COUNT - 1; ++k) {
@@ -374,22 +374,20 @@ UP_EXPANDED UP_BOOL up_dual(UP_IN float moments[UP_COUNT], UP_OUT float multipli
         room = rest < room ? rest : room;
         scale *= rest;
         UP_UNROLL
-        for (int k = 0; k < UP_COUNT - 2; ++k)
-            if (k < UP_COUNT - 2 - order) {
-                float held = upper[k + 1] - g * lower[k + 1];
-                lower[k] -= g * upper[k];
-                upper[k] = held;
-            }
+        for (int k = 0; k < UP_COUNT - 2 - order; ++k) {
+            float held = upper[k + 1] - g * lower[k + 1];
+            lower[k] -= g * upper[k];
+            upper[k] = held;
+        }
         UP_UNROLL
-        for (int k = 0; k < UP_COUNT / 2; ++k)
-            if (k < order / 2 + 1) {
-                float held = first[k];
-                first[k] += g * first[order + 1 - k];
-                first[order + 1 - k] += g * held;
-                held = second[k];
-                second[k] -= g * second[order + 1 - k];
-                second[order + 1 - k] -= g * held;
-            }
+        for (int k = 0; k < order / 2 + 1; ++k) {
+            float held = first[k];
+            first[k] += g * first[order + 1 - k];
+            first[order + 1 - k] += g * held;
+            held = second[k];
+            second[k] -= g * second[order + 1 - k];
+            second[order + 1 - k] -= g * held;
+        }
         if (order % 2 == 1) {
             first[(order + 1) / 2] *= 1.0f + g;
             second[(order + 1) / 2] *= 1.0f - g;
@@ -402,11 +400,10 @@ UP_EXPANDED UP_BOOL up_dual(UP_IN float moments[UP_COUNT], UP_OUT float multipli
     for (int lag = 0; lag < UP_COUNT; ++lag) {
         float first_sum = first[0] * first[lag], second_sum = second[0] * second[lag];
         UP_UNROLL
-        for (int k = 1; k < UP_COUNT; ++k)
-            if (k < UP_COUNT - lag) {
-                first_sum += first[k] * first[k + lag];
-                second_sum += second[k] * second[k + lag];
-            }
+        for (int k = 1; k < UP_COUNT - lag; ++k) {
+            first_sum += first[k] * first[k + lag];
+            second_sum += second[k] * second[k + lag];
+        }
         multipliers[lag] = first_weight * first_sum - second_weight * second_sum;
     }
     return room > 0.0f && scale > 1e-30f;

@@ -10,10 +10,8 @@
 #endif
 #ifdef __CUDACC__
 #define UP_FUNCTION static __host__ __device__ inline
-#define UP_UNROLL _Pragma("unroll")
 #else
 #define UP_FUNCTION static inline
-#define UP_UNROLL
 #endif
 #define UP_EXPANDED UP_FUNCTION
 #define UP_VECTORISE

@@ -6,7 +6,7 @@ precision highp int;
 #endif
 #define UP_VEC3 vec3
 #define UP_VEC4 vec4
-#define UP_UNROLL
+#define UP_ROW(name, index) float name[UP_STRIDE]; up_load_row(index, name)
 uniform highp sampler2D up_table;
 
 vec4 up_texel(int index)
