@@ -15,7 +15,8 @@ from benchmarks.materials import errors, materials
 from uplift.atlas import on_grid
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.lab.chart import judge
+from uplift.lab.chart.method import at_1_nm
+from uplift.lab.chart.method import round_trip as judge_round_trip
 from uplift.lab.timing import time_calls
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube
@@ -48,7 +49,7 @@ def main() -> None:
     fitted, round_trips = [], []
     for name, cube in cubes():
         fitted.append({"cube": name, **fit_quality(cube)})
-        fine = judge.at_1_nm(cube.data.sensor)
+        fine = at_1_nm(cube.data.sensor)
         round_trips.append(
             {
                 "cube": name,
@@ -95,7 +96,7 @@ def fit_quality(cube: Cube) -> Row:
 
 def round_trip(cube: Cube, sensor: Sensor, mode: str = "spectra") -> list[float]:
     """Return the mean and the largest ΔE00 between the requested colours and those of the spectra, for a judge."""
-    found = judge.round_trip(sensor, QUERIES, cube.reflectance(QUERIES, sensor.wavelengths, mode))
+    found = judge_round_trip(sensor, QUERIES, cube.reflectance(QUERIES, sensor.wavelengths, mode))
     return [float(found.mean()), float(found.max())]
 
 
@@ -104,7 +105,7 @@ def at_range(shortest: int, longest: int, step: int) -> Row:
     cube, atlas = uplift.build(MACBETH, shortest=shortest, longest=longest, step=step), uplift.read_atlas(MACBETH)
     measured = dict(zip(atlas.names, on_grid(atlas, VISIBLE), strict=True))
     off = cube.reflectance(cube.data.atlas.rgb, VISIBLE) - [measured[name] for name in cube.data.atlas.names]
-    fine = round_trip(cube, judge.at_1_nm(cube.data.sensor))
+    fine = round_trip(cube, at_1_nm(cube.data.sensor))
     rms = float(np.sqrt((off**2).mean()))
     return {"range": f"{shortest}–{longest} nm", "step": step, "fine": fine, "rms": rms}
 

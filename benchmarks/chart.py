@@ -12,13 +12,10 @@ from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.files import write_text
 from uplift.common.progress import Progress
 from uplift.lab.chart.measure import measure_methods
+from uplift.lab.chart.method import Effort, make_task
 from uplift.lab.chart.methods import select_methods
-from uplift.lab.chart.page import render_chart
-from uplift.lab.chart.panels import all_panels, panels_of
-from uplift.lab.chart.picture import write_panel, write_pictures
-from uplift.lab.chart.recommend import MEASURED
-from uplift.lab.chart.table import Chart, MethodResult, State, chart_csv, read_chart
-from uplift.lab.chart.task import Effort, make_task
+from uplift.lab.chart.picture import render_chart, write_panel, write_pictures
+from uplift.lab.chart.table import MEASURED, Chart, MethodResult, State, all_panels, chart_csv, panels_of, read_chart
 
 ERRORS = (*CHART_LIGHTS, "rms", "own_lights")
 UNSEEN = ("lights", "rms")

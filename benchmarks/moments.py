@@ -12,9 +12,8 @@ import numpy as np
 import uplift
 from benchmarks import ATLASES, DOCS, REFERENCE, record
 from uplift.colorimetry.lights import REPORT_LIGHTS
-from uplift.lab.study.moments import MomentsResult, MomentsStudy, study_moments
+from uplift.lab.study.moments import TECHNIQUES, MomentsResult, MomentsStudy, Technique, study_moments
 from uplift.lab.study.moments_plots import Curve, curves, plot_errors, plot_patches, plot_worst
-from uplift.lab.study.technique import TECHNIQUES, Technique
 
 PICTURES = DOCS / "moments"
 THESIS = REFERENCE / "moments_todova2020.csv"

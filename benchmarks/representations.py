@@ -14,11 +14,17 @@ import uplift
 from benchmarks import ATLASES, DOCS, REFERENCE, record
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
+from uplift.lab.comparison.compare import (
+    Comparison,
+    RepresentationResult,
+    Scene,
+    cheapest,
+    compare,
+    error_statistics,
+    make_scene,
+)
 from uplift.lab.comparison.filters import NONE, TunedFilter, tune_filters
-from uplift.lab.comparison.measure import Comparison, RepresentationResult, compare, error_statistics
 from uplift.lab.comparison.pictures import KINDS, write_picture
-from uplift.lab.comparison.recommend import cheapest
-from uplift.lab.comparison.scene import Scene, make_scene
 from uplift.scene.representations import all_representations
 from uplift.scene.representations.composite import ENHANCED_THRESHOLD, Composite, enhanced_riemann
 from uplift.scene.representations.samples import (

@@ -16,13 +16,11 @@ from benchmarks import CUBES, DATA, DOCS, MACBETH, record
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.progress import Progress
 from uplift.lab.study import sensitivity
-from uplift.lab.study.locality import MOVED_DELTA_E, NOISE
 from uplift.lab.study.pointwise import EVALUATIONS
+from uplift.lab.study.sensitivity import MOVED_DELTA_E, NOISE
 from uplift.lab.study.sensitivity_plots import plot_locality, plot_steepness
-from uplift.lab.study.stability import NO_ATLAS, study_stability
-from uplift.lab.study.stability_design import DesignSpace, design, grids
+from uplift.lab.study.stability import NO_ATLAS, SYNTHETIC_ATLASES, DesignSpace, design, grids, study_stability
 from uplift.lab.study.stability_plots import plot_map
-from uplift.lab.study.synthetic_atlases import SYNTHETIC_ATLASES
 from uplift.lab.timing import environment
 from uplift.pipeline.rebuild import recorded_atlas
 

@@ -15,8 +15,7 @@ from ..params.options import atlas_option, force_option
 from ..startup import enable_jit_cache, use_one_blas_thread
 
 if TYPE_CHECKING:
-    from uplift.lab.chart.recommend import Requirement
-    from uplift.lab.chart.table import Chart
+    from uplift.lab.chart.table import Chart, Requirement
 
 PRINTED = ("round_trip", "lights")
 """Errors whose Pareto fronts are printed; the page has all."""
@@ -91,7 +90,7 @@ def command(
     enable_jit_cache()
     use_one_blas_thread()
     if recommend:
-        from uplift.lab.chart.recommend import Requirement
+        from uplift.lab.chart.table import Requirement
 
         _recommend(source, Requirement(time_ns, delta_e, light, atlas_materials))
         return
@@ -107,7 +106,7 @@ def command(
 
 
 def _recommend(source: str | None, requirement: Requirement) -> None:
-    from uplift.lab.chart.recommend import recommend_cube, shipped_chart
+    from uplift.lab.chart.table import recommend_cube, shipped_chart
     from uplift.viz.format import format_error, format_size, format_time
 
     row = recommend_cube(_read(source) if source is not None else shipped_chart(), requirement)
@@ -128,8 +127,8 @@ def _read(source: str) -> Chart:
 
 def _measure(files: tuple[str, ...], patterns: tuple[str, ...], colours: int, *, quick: bool) -> Chart:
     from uplift.lab.chart.measure import measure_methods
+    from uplift.lab.chart.method import QUICK, Effort, make_task
     from uplift.lab.chart.methods import select_methods
-    from uplift.lab.chart.task import QUICK, Effort, make_task
 
     methods = select_methods(patterns, quick=quick)
     colours_and_spectra = make_task(read_atlases(files), colours, QUICK if quick else Effort())
@@ -139,8 +138,7 @@ def _measure(files: tuple[str, ...], patterns: tuple[str, ...], colours: int, *,
 
 def _write(chart: Chart, folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
-    from uplift.lab.chart.page import render_chart
-    from uplift.lab.chart.picture import write_pictures
+    from uplift.lab.chart.picture import render_chart, write_pictures
     from uplift.lab.chart.table import chart_csv
 
     table, png, svg, html = (folder / name for name in FILES)
@@ -150,8 +148,7 @@ def _write(chart: Chart, folder: Path, *, force: bool) -> None:
 
 
 def _print_fronts(chart: Chart) -> None:
-    from uplift.lab.chart.panels import all_panels
-    from uplift.lab.chart.table import State
+    from uplift.lab.chart.table import State, all_panels
     from uplift.viz.format import format_size
 
     say("Pareto fronts, from the fastest to the most accurate")

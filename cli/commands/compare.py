@@ -16,9 +16,8 @@ from ..params.options import atlas_option, force_option, format_option, light_op
 from ..startup import use_one_blas_thread
 
 if TYPE_CHECKING:
+    from uplift.lab.comparison.compare import Comparison, Scene
     from uplift.lab.comparison.filters import TunedFilter
-    from uplift.lab.comparison.measure import Comparison
-    from uplift.lab.comparison.scene import Scene
 
 FILES = ("compare.csv", "compare-boxes.png", "compare-cost.png", "compare.html")
 FILTERS = "compare-filters.csv"
@@ -75,7 +74,7 @@ def command(
     """
     use_one_blas_thread()
     if target is not None:
-        from uplift.lab.comparison.recommend import check_target
+        from uplift.lab.comparison.compare import check_target
 
         check_target(target)
     folder = _folder(output, files, filters=filters, force=force)
@@ -103,8 +102,7 @@ def _folder(output: str | None, inputs: tuple[str, ...], *, filters: bool, force
 def _measure(
     files: tuple[str, ...], lights: tuple[str, ...], *, filters: bool, quick: bool
 ) -> tuple[Comparison, tuple[TunedFilter, ...]]:
-    from uplift.lab.comparison.measure import QUICK, TimingOptions, compare
-    from uplift.lab.comparison.scene import make_scene
+    from uplift.lab.comparison.compare import QUICK, TimingOptions, compare, make_scene
     from uplift.scene.representations import all_representations
 
     tested = make_scene(read_atlases(files), lights)
@@ -125,9 +123,9 @@ def _tune(tested: Scene, *, quick: bool) -> tuple[TunedFilter, ...]:
 
 def _write(comparison: Comparison, tuned: tuple[TunedFilter, ...], folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
-    from uplift.lab.comparison.page import render_comparison
-    from uplift.lab.comparison.pictures import write_picture
-    from uplift.lab.comparison.table import filter_records, records
+    from uplift.lab.comparison.compare import records
+    from uplift.lab.comparison.filters import filter_records
+    from uplift.lab.comparison.pictures import render_comparison, write_picture
     from uplift.lab.records import write_csv
 
     table, boxes, cost, html = (folder / name for name in FILES)
@@ -149,7 +147,8 @@ def _print_table(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None
 
 
 def _records(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> dict[str, Any]:
-    from uplift.lab.comparison.table import filter_records, records
+    from uplift.lab.comparison.compare import records
+    from uplift.lab.comparison.filters import filter_records
 
     return {
         "facts": dict(comparison.facts),

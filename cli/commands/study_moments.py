@@ -64,8 +64,8 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
 
 def _write(study: MomentsStudy, folder: Path, *, force: bool) -> None:
     from uplift.lab.records import write_csv
+    from uplift.lab.study.moments import records
     from uplift.lab.study.moments_plots import curves, plot_errors, plot_patches, plot_worst
-    from uplift.lab.study.moments_table import records
 
     table, errors, patches, worst = (folder / name for name in FILES)
     write_csv(records(study), table, force=force)
@@ -76,20 +76,20 @@ def _write(study: MomentsStudy, folder: Path, *, force: bool) -> None:
 
 
 def _print_json(study: MomentsStudy) -> None:
-    from uplift.lab.study.moments_table import records
+    from uplift.lab.study.moments import records
 
     print_json(records(study))
 
 
 def _print_csv(study: MomentsStudy) -> None:
     from uplift.lab.records import records_csv
-    from uplift.lab.study.moments_table import records
+    from uplift.lab.study.moments import records
 
     print_csv_text(records_csv(records(study)))
 
 
 def _print_table(study: MomentsStudy) -> None:
-    from uplift.lab.study.technique import TECHNIQUES
+    from uplift.lab.study.moments import TECHNIQUES
 
     caption = (
         f"mean / largest ΔE76 under D65 of {len(study.names)} entries; "

@@ -19,8 +19,7 @@ from ..params.options import atlas_option, force_option, format_option, output_f
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
-    from uplift.lab.study.stability import RunResult
-    from uplift.lab.study.stability_design import DesignSpace
+    from uplift.lab.study.stability import DesignSpace, RunResult
 
 FILES = ("stability.csv", "stability.json", "stability.png")
 MACBETH = "macbeth"
@@ -82,19 +81,22 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
     """
     enable_jit_cache()
     from uplift.common.files import check_folder
-    from uplift.lab.study import stability_design as design
-    from uplift.lab.study.stability import NO_ATLAS, study_stability
-    from uplift.lab.study.synthetic_atlases import SYNTHETIC_ATLASES
+    from uplift.lab.study.stability import (
+        NO_ATLAS,
+        QUICK_DESIGN,
+        SYNTHETIC_ATLASES,
+        DesignSpace,
+        design,
+        study_stability,
+    )
 
     atlases = read_atlases(files or (MACBETH,)) | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
     given = {name: value for name, value in options.items() if value is not None}
-    axes = replace(
-        design.QUICK_DESIGN if quick else design.DesignSpace(), **({"atlases": (NO_ATLAS, *atlases)} | given)
-    )
+    axes = replace(QUICK_DESIGN if quick else DesignSpace(), **({"atlases": (NO_ATLAS, *atlases)} | given))
     if output is not None:
         check_folder(output, FILES, inputs=files, force=force)
     with progress_bar("builds") as progress:
-        runs = study_stability(design.design(axes), atlases, progress)
+        runs = study_stability(design(axes), atlases, progress)
     if output is not None:
         _write(axes, runs, Path(output), force=force)
     PRINTERS[style](runs)
@@ -103,7 +105,7 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
 def _write(axes: DesignSpace, runs: Sequence[RunResult], folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
     from uplift.lab.records import write_csv
-    from uplift.lab.study.stability_design import grids
+    from uplift.lab.study.stability import grids
     from uplift.lab.study.stability_plots import plot_map
 
     table, text, picture = (folder / name for name in FILES)

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 from .console import make_table, say, show
 
 if TYPE_CHECKING:
+    from uplift.lab.comparison.compare import Comparison, Statistics
     from uplift.lab.comparison.filters import TunedFilter
-    from uplift.lab.comparison.measure import Comparison
-    from uplift.lab.comparison.statistics import Statistics
 
 
 def print_comparison(comparison: Comparison) -> None:
     """Print a ranked table for each set of lights."""
-    from uplift.lab.comparison.statistics import HEADINGS
+    from uplift.lab.comparison.compare import HEADINGS
     from uplift.viz.format import format_time
 
     tables = []
@@ -30,7 +29,7 @@ def print_comparison(comparison: Comparison) -> None:
 
 def print_filters(tuned: tuple[TunedFilter, ...]) -> None:
     """Print the best filter of each kind."""
-    from uplift.lab.comparison.statistics import HEADINGS
+    from uplift.lab.comparison.compare import HEADINGS
 
     title = "point sampling after the best low-pass filter of each kind"
     table = make_table(("lights", "samples", "filter", "parameters"), HEADINGS, title=title)
@@ -42,7 +41,7 @@ def print_filters(tuned: tuple[TunedFilter, ...]) -> None:
 
 def print_advice(comparison: Comparison, target: float) -> None:
     """Print the cheapest sufficient representation for each set of lights."""
-    from uplift.lab.comparison.recommend import cheapest, most_accurate
+    from uplift.lab.comparison.compare import cheapest, most_accurate
     from uplift.viz.format import format_error, format_time
 
     for name, title in comparison.sets.items():

@@ -21,8 +21,7 @@ from tests.parts import MITSUBA, need
 from tools import render_docs
 from tools.render_docs import number, page_file, pick, read_data, render, stale, table
 from uplift.lab.chart.table import read_chart
-from uplift.lab.study.stability import NO_ATLAS, UPLIFT
-from uplift.lab.study.stability_design import SPACES
+from uplift.lab.study.stability import NO_ATLAS, SPACES, UPLIFT
 
 DOCS = ROOT / "docs"
 RENDERED = render_docs.pages()

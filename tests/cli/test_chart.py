@@ -13,9 +13,8 @@ from click.testing import CliRunner
 from uplift_cli.main import main
 
 from tests.lab.chart import faulty
-from uplift.lab.chart import methods, task
-from uplift.lab.chart.recommend import MEASURED, shipped_chart
-from uplift.lab.chart.table import chart_csv, read_chart
+from uplift.lab.chart import method, methods
+from uplift.lab.chart.table import MEASURED, chart_csv, read_chart, shipped_chart
 from uplift.lab.timing import ONE_THREAD
 
 FILES = ["chart.csv", "chart.html", "chart.png", "chart.svg"]
@@ -29,7 +28,7 @@ def quick(repository, tmp_path_factory):
     folder = tmp_path_factory.mktemp("quick")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        patch.setattr(task, "QUICK", replace(task.QUICK, seconds_per_error=0.1, lap=0.002, longest=0.02))
+        patch.setattr(method, "QUICK", replace(method.QUICK, seconds_per_error=0.1, lap=0.002, longest=0.02))
         for name, value in ONE_THREAD.items():
             patch.setenv(name, value)
         atlas = str(repository / "atlases" / "macbeth.txt")
@@ -108,7 +107,7 @@ def test_box_spectra_have_the_largest_errors_under_other_lights(numbers):
     ("limit", "reasons"),
     [
         (
-            task.QUICK.limit,
+            method.QUICK.limit,
             {
                 "abort": ("broken", f"crashed: signal 6; it needs {faulty.NEEDS}"),
                 "lack": ("not installed", f"needs {faulty.NEEDS}"),
@@ -119,7 +118,7 @@ def test_box_spectra_have_the_largest_errors_under_other_lights(numbers):
     ],
 )
 def test_methods_that_crash_hang_or_are_missing_have_rows(run, macbeth, monkeypatch, limit, reasons):
-    monkeypatch.setattr(task, "QUICK", replace(task.QUICK, limit=limit))
+    monkeypatch.setattr(method, "QUICK", replace(method.QUICK, limit=limit))
     monkeypatch.setattr(methods, "FAMILIES", (*methods.FAMILIES, faulty.FAMILY))
     names = [f"--methods=faulty-{name}" for name in reasons]
     result = run("chart", "--quick", "--atlas", macbeth, "--methods", "mallett2019", *names, "-o", "out")

@@ -85,7 +85,7 @@ def test_every_table_fits(run, tables, repository, name, monkeypatch):
 def test_check_and_chart_fit(run, tables, monkeypatch):
     from uplift_cli.commands.chart import _print_fronts
 
-    from uplift.lab.chart.recommend import shipped_chart
+    from uplift.lab.chart.table import shipped_chart
 
     monkeypatch.setenv("COLUMNS", "60")
     run("check", "missing.uplift", code=1)

@@ -25,9 +25,7 @@ from uplift.common.colour_science import colour_science
 from uplift.common.errors import UpliftError
 from uplift.design.palette import FactorModel, design, matrix, read_palette, standard_model
 from uplift.io.scene_colours import file_digest
-from uplift.lab.chart.panels import all_panels
-from uplift.lab.chart.recommend import Requirement, recommend_cube
-from uplift.lab.chart.table import read_chart
+from uplift.lab.chart.table import Requirement, all_panels, read_chart, recommend_cube
 from uplift.lookup import Cube, load
 from uplift.pipeline.options import Options, check_memory
 from uplift.scene.plan import read_plan, read_scene_file

@@ -6,7 +6,7 @@ import functools
 
 import uplift
 from tests.conftest import MACBETH
-from uplift.lab.comparison.scene import Scene, make_scene
+from uplift.lab.comparison.compare import Scene, make_scene
 
 
 @functools.cache

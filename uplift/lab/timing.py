@@ -28,17 +28,8 @@ SOURCES = Path(__file__).parents[1]
 class Spread:
     """Median and range of several runs.
 
-    Parameters
-    ----------
-    median, min, max : float
-        Median, smallest and largest value.
-    runs : int
-        Number of runs.
-
-    Examples
-    --------
-    >>> print(f"{Spread(2.0, 1.0, 4.0, 3):.1f}")
-    2.0 (1.0–4.0)
+    ``median``, ``min``, ``max``: median, smallest and largest value.
+    ``runs``: number of runs.
     """
 
     median: float
@@ -50,34 +41,12 @@ class Spread:
         return f"{self.median:{spec}} ({self.min:{spec}}–{self.max:{spec}})"
 
     def scaled(self, factor: float) -> Spread:
-        """Multiply all values by a factor.
-
-        Parameters
-        ----------
-        factor : float
-            The factor.
-
-        Returns
-        -------
-        Spread
-            The products, of as many runs.
-        """
+        """Multiply all values by a factor."""
         return Spread(self.median * factor, self.min * factor, self.max * factor, self.runs)
 
 
 def spread(values: list[float]) -> Spread:
-    """Summarise the values of several runs.
-
-    Parameters
-    ----------
-    values : list of float
-        At least one value.
-
-    Returns
-    -------
-    Spread
-        Median and range.
-    """
+    """Summarise the values of several runs."""
     return Spread(statistics.median(values), min(values), max(values), len(values))
 
 
@@ -85,18 +54,6 @@ def time_calls(function: Callable[[], object], runs: int) -> tuple[Spread, Sprea
     """Measure repeated calls of a function.
 
     The caller has called it once to warm up. Asynchronous results must be complete when the function returns.
-
-    Parameters
-    ----------
-    function : callable
-        Function without arguments.
-    runs : int
-        Number of calls.
-
-    Returns
-    -------
-    wall, cpu : Spread
-        Wall seconds, and CPU seconds of all threads.
     """
     wall, cpu = [], []
     for _ in range(runs):
@@ -123,13 +80,7 @@ def time_process(command: list[str], runs: int, variables: dict[str, str] | None
 
 
 def environment() -> dict[str, str]:
-    """Describe where measurements are taken.
-
-    Returns
-    -------
-    dict of str to str
-        ``machine``, ``versions`` and ``commit``.
-    """
+    """Describe where measurements are taken."""
     cpu = next(
         (line.split(":")[1].strip() for line in _lines("/proc/cpuinfo") if line.startswith("model name")),
         platform.processor() or platform.machine(),
@@ -143,13 +94,7 @@ def environment() -> dict[str, str]:
 
 
 def commit() -> str:
-    """Return the last commit that changed this code. Commits of pages and tests alone do not count.
-
-    Returns
-    -------
-    str
-        Its abbreviated hash, with a remark if files have changed; ``unknown`` outside a working tree of this package.
-    """
+    """Return the last commit that changed this code. Commits of pages and tests alone do not count."""
     if not _git("ls-files", "--", __file__):
         return "unknown"
     changed = _git("status", "--porcelain", "--", *CODE)

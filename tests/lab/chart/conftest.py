@@ -7,9 +7,8 @@ import pytest
 
 from uplift.atlas import read_atlas
 from uplift.colorimetry.lights import CHART_LIGHTS
-from uplift.lab.chart.method import Family, Method, PreparedMethod
+from uplift.lab.chart.method import Effort, Family, Method, PreparedMethod, make_task
 from uplift.lab.chart.table import TEXTS, Chart, MethodResult, State
-from uplift.lab.chart.task import Effort, make_task
 
 FACTS = dict.fromkeys(("machine", "versions", "commit", "colours", "spectra", "effort"), "stated")
 BATCHES = (1, 64)

@@ -11,13 +11,11 @@ from tests.lab.chart.conftest import BATCHES
 from tests.pages import Page
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.progress import Progress
-from uplift.lab.chart.judge import ours
 from uplift.lab.chart.measure import MAX_CLAIM_RATIO, SLOW_STEP, measure_method, measure_methods
-from uplift.lab.chart.method import Claims, Method, NotInstalledError, PreparedMethod
+from uplift.lab.chart.method import Claims, Method, NotInstalledError, PreparedMethod, ours
 from uplift.lab.chart.methods.mallett2019 import FAMILIES
-from uplift.lab.chart.page import render_chart
-from uplift.lab.chart.panels import all_panels
-from uplift.lab.chart.table import State
+from uplift.lab.chart.picture import render_chart
+from uplift.lab.chart.table import State, all_panels
 from uplift.lab.study.held_out import spectrum_errors
 
 

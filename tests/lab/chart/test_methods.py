@@ -18,14 +18,12 @@ from uplift.common.errors import OptionError
 from uplift.common.processes import call_in_child
 from uplift.fit.families import families_with
 from uplift.lab.chart import methods
-from uplift.lab.chart.judge import RANGE, ours, published_srgb, round_trip
 from uplift.lab.chart.measure import measure_method
-from uplift.lab.chart.method import Family, NotInstalledError
+from uplift.lab.chart.method import RANGE, Family, NotInstalledError, edges, ours, published_srgb, round_trip
 from uplift.lab.chart.methods import FAMILIES, c_export, mitsuba3, select_methods
 from uplift.lab.chart.methods.macadam1935 import boxes
 from uplift.lab.chart.methods.uplift_cubes import CubeOptions, built_cube
 from uplift.lab.chart.table import State
-from uplift.lab.chart.task import edges
 from uplift.lookup import MODES
 
 

@@ -12,11 +12,8 @@ from benchmarks.browser import browser
 from tests.browsing import check_page, open_page
 from tests.pages import Page, external_links
 from tests.parts import CHROMIUM, need
-from uplift.lab.chart.draw_panel import drawn_results
-from uplift.lab.chart.page import render_chart
-from uplift.lab.chart.panels import all_panels, panels_of
-from uplift.lab.chart.picture import SHOWN, write_panel, write_pictures
-from uplift.lab.chart.table import State
+from uplift.lab.chart.picture import SHOWN, drawn_results, render_chart, write_panel, write_pictures
+from uplift.lab.chart.table import State, all_panels, panels_of
 
 HOSTILE = "</script><b>x</b>"
 

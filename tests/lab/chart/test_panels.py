@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from uplift.lab.chart.panels import CLEAR_RATIO, MIN_ERROR, all_panels, panels_of
+from uplift.lab.chart.table import CLEAR_RATIO, MIN_ERROR, all_panels, panels_of
 
 PANELS = panels_of(64)
 ROUND_TRIP = PANELS[0]

@@ -10,7 +10,7 @@ from uplift_cli.main import main
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.lab.chart.recommend import Requirement, recommend_cube, shipped_chart
+from uplift.lab.chart.table import Requirement, recommend_cube, shipped_chart
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import numpy as np
 from tests.helpers import raises
 from uplift.atlas import Atlas, Entry, merge, on_grid, read_atlas
 from uplift.common.errors import AtlasError, OptionError
-from uplift.lab.chart.task import edges, make_task
+from uplift.lab.chart.method import edges, make_task
 
 
 def shipped(repository, *names):

@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.lab.comparison_scenes import colorchecker
-from uplift.lab.comparison.measure import Comparison, TimingOptions, compare
-from uplift.lab.comparison.scene import Scene
+from uplift.lab.comparison.compare import Comparison, Scene, TimingOptions, compare
 from uplift.scene.representations.composite import enhanced_riemann, sun_composite
 from uplift.scene.representations.models import trigonometric_moments
 from uplift.scene.representations.samples import point_samples, riemann_sums

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from uplift.lab.comparison.compare import error_statistics
 from uplift.lab.comparison.filters import NONE, tune_filters
-from uplift.lab.comparison.measure import error_statistics
 from uplift.scene.representations.filters import COARSE_STRIDE, candidates, filtered_point_samples
 from uplift.scene.representations.samples import point_samples
 

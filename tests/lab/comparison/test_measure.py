@@ -13,9 +13,14 @@ from tests.helpers import raises
 from tests.lab.comparison.conftest import EFFORT
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import AtlasError, UnknownNameError, UpliftError
-from uplift.lab.comparison.measure import compare, error_statistics
-from uplift.lab.comparison.scene import QUICK_SURFACES, make_scene
-from uplift.lab.comparison.statistics import HEADINGS, compute_statistics
+from uplift.lab.comparison.compare import (
+    HEADINGS,
+    QUICK_SURFACES,
+    compare,
+    compute_statistics,
+    error_statistics,
+    make_scene,
+)
 from uplift.scene.representations.samples import SampleRepresentation, point_samples, xyz_weights
 
 

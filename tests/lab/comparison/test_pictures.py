@@ -11,12 +11,19 @@ import pytest
 
 from tests.browsing import check_page
 from tests.pages import Page
-from uplift.lab.comparison.box_plots import page_figures
-from uplift.lab.comparison.cost import COSTS, front, numbered
-from uplift.lab.comparison.families import COLOURS, family_colour, family_colours
-from uplift.lab.comparison.page import render_comparison
-from uplift.lab.comparison.pictures import KINDS, write_picture
-from uplift.lab.comparison.table import records
+from uplift.lab.comparison.compare import records
+from uplift.lab.comparison.pictures import (
+    COLOURS,
+    COSTS,
+    KINDS,
+    family_colour,
+    family_colours,
+    front,
+    numbered,
+    page_figures,
+    render_comparison,
+    write_picture,
+)
 from uplift.viz.figure import OTHER
 
 

@@ -6,9 +6,7 @@ import pytest
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
-from uplift.lab.comparison.measure import Comparison, RepresentationResult
-from uplift.lab.comparison.recommend import cheapest, most_accurate
-from uplift.lab.comparison.statistics import Statistics
+from uplift.lab.comparison.compare import Comparison, RepresentationResult, Statistics, cheapest, most_accurate
 from uplift.lab.timing import Spread
 
 

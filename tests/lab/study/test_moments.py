@@ -13,8 +13,7 @@ from tests.helpers import raises
 from uplift.atlas import Atlas, read_atlas
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress
-from uplift.lab.study.moments import ALL_ATLASES, MAX_MOMENTS, MEASURES, study_moments
-from uplift.lab.study.technique import TECHNIQUES
+from uplift.lab.study.moments import ALL_ATLASES, MAX_MOMENTS, MEASURES, TECHNIQUES, study_moments
 
 MW, MNW, NMW, NMNW = TECHNIQUES
 

@@ -12,8 +12,15 @@ from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
 from uplift.lab.study import sensitivity
-from uplift.lab.study.input_noise import CONTINUOUS_MODES, perturb
-from uplift.lab.study.locality import Change, add_noise, build_baseline, remove_entry, reverse_entry
+from uplift.lab.study.sensitivity import (
+    CONTINUOUS_MODES,
+    Change,
+    add_noise,
+    build_baseline,
+    perturb,
+    remove_entry,
+    reverse_entry,
+)
 
 LIGHT = observer.light("FL11")
 

@@ -18,15 +18,20 @@ from uplift.lab.study.pointwise import (
     PointwiseProblem,
     fit_pointwise,
 )
-from uplift.lab.study.stability import NO_ATLAS, UPLIFT, RunConfig, RunResult, run, study_stability
-from uplift.lab.study.stability_design import (
+from uplift.lab.study.stability import (
+    NO_ATLAS,
     QUICK_DESIGN,
     SPACES,
+    UPLIFT,
     DesignSpace,
+    RunConfig,
+    RunResult,
     design,
     draw_sample,
     grids,
+    run,
     solver_runs,
+    study_stability,
 )
 from uplift.lattice import Lattice
 from uplift.models import Moments

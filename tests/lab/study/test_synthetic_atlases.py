@@ -7,7 +7,7 @@ import pytest
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import rgb_to_lab
-from uplift.lab.study.synthetic_atlases import SYNTHETIC_ATLASES, crowded, noisy, spiky
+from uplift.lab.study.stability import SYNTHETIC_ATLASES, crowded, noisy, spiky
 
 
 def values(atlas):

@@ -7,8 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 from uplift.colorimetry import observer
-from uplift.lab.study.moments import fine_grid
-from uplift.lab.study.technique import TECHNIQUES, Technique
+from uplift.lab.study.moments import TECHNIQUES, Technique, fine_grid
 from uplift.models import Moments, Phase, duality, evaluate
 
 MIRRORED = [technique for technique in TECHNIQUES if technique.mirrored]

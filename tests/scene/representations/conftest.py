@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.lab.comparison_scenes import colorchecker
-from uplift.lab.comparison.scene import Scene
+from uplift.lab.comparison.compare import Scene
 from uplift.scene.representations import all_representations
 
 

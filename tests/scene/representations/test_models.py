@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from uplift.colorimetry.observer import grid
-from uplift.lab.study.technique import Technique
+from uplift.lab.study.moments import Technique
 from uplift.models import Sigmoid
 from uplift.models.model import evaluate
 from uplift.scene.representations.models import fit_sigmoids, hero_wavelengths, linear_model, trigonometric_moments

@@ -5,28 +5,109 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Callable, Iterable
+from itertools import cycle, islice
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.arrays import Array
 from uplift.common.processes import ChildError, call_in_child
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.chart.judge import round_trip
 from uplift.lab.chart.method import (
     Claims,
+    Effort,
     Family,
     Method,
     NotInstalledError,
     PreparedMethod,
+    Task,
     Uplift,
+    round_trip,
     stopwatch,
 )
 from uplift.lab.chart.table import Chart, MethodResult, State
-from uplift.lab.chart.task import Task
-from uplift.lab.chart.timing import REFERENCE, affordable, call_times
 from uplift.lab.study.held_out import spectrum_errors
-from uplift.lab.timing import environment
+from uplift.lab.timing import Spread, environment, time_calls
+
+MIN_RUNS = 3
+MAX_LAPS = 15
+"""Duration of all runs together, in units of `Effort.lap`, unless `MIN_RUNS` take longer."""
+TRIAL = 512
+"""Colours from which the duration of the first batch of more than one is estimated."""
+INPUTS, INPUT_COLOURS = 64, 1 << 16
+"""Different inputs of repeated calls: at most so many, with so many colours in all."""
+REFERENCE = 65_536
+"""Colours per call of the time by which cubes are recommended."""
+
+Call = Callable[[Any], object]
+
+
+def call_times(uplift: Call, dtype: str, effort: Effort, *, batch: bool) -> dict[str, float]:
+    """Time calls with each number of colours of an effort, after one that warms up."""
+    numbers: dict[str, float] = {}
+    found, shortened = None, False
+    for size in effort.batches:
+        if shortened and found is not None:  # as many colours per call as before
+            numbers |= _time_numbers(size, *found)
+            continue
+        if found is not None and (found[1] > 1 or not batch):
+            count = _count(size, found[0].median, effort)
+        else:
+            count = affordable(uplift, dtype, size, effort, batch=batch)
+        found, shortened = (_timed(uplift, dtype, count, effort), count), count < size
+        numbers |= _time_numbers(size, *found)
+    reference = max((size for size in effort.batches if size <= REFERENCE), default=effort.batches[0])
+    return numbers | {"time_ns": numbers[f"ns_{reference}"]}
+
+
+def affordable(uplift: Call, dtype: str, size: int, effort: Effort, *, batch: bool = True) -> int:
+    """Return the number of colours, at most ``size``, that a call of `Effort.longest` has, from a call with few."""
+    count = min(size, TRIAL) if batch else 1
+    rgb = _colours(1, count, dtype)[0]
+    uplift(rgb)
+    _, cpu = time_calls(lambda: uplift(rgb), 1)
+    return _count(size, cpu.median / count, effort)
+
+
+def _count(size: int, seconds: float, effort: Effort) -> int:
+    return max(min(size, int(effort.longest / max(seconds, 1e-12))), 1)
+
+
+def _timed(uplift: Call, dtype: str, count: int, effort: Effort) -> Spread:
+    """CPU seconds per colour of calls with ``count`` colours."""
+    inputs = _colours(max(1, min(INPUTS, INPUT_COLOURS // count)), count, dtype)
+    _, once = time_calls(lambda: uplift(inputs[0]), 1)
+    if once.min < effort.lap * MAX_LAPS:
+        _, once = time_calls(lambda: uplift(inputs[0]), 1)
+    calls = max(1, min(int(effort.lap / 5 / max(once.min, 1e-9)), 1000))
+
+    def run() -> None:
+        for rgb in islice(cycle(inputs), calls):
+            uplift(rgb)
+
+    runs = int(MAX_LAPS * effort.lap / max(calls * once.min, 1e-9))
+    _, cpu = time_calls(run, min(max(runs, MIN_RUNS), effort.runs))
+    return cpu.scaled(1 / (calls * count))
+
+
+def _colours(inputs: int, count: int, dtype: str) -> NDArray[Any]:
+    """Random RGB (inputs, count, 3)."""
+    return np.random.default_rng(2).random((inputs, count, 3)).astype(dtype)
+
+
+def _time_numbers(size: int, seconds: Spread, count: int) -> dict[str, float]:
+    ns = seconds.scaled(1e9)
+    key = f"ns_{size}"
+    return {
+        key: ns.median,
+        f"{key}_least": ns.min,
+        f"{key}_most": ns.max,
+        f"{key}_runs": ns.runs,
+        f"{key}_colours": count,
+    }
+
 
 MAX_CLAIM_RATIO = 10
 """A method is broken if its mean round-trip error is larger than the claimed one by more than this factor."""
@@ -45,22 +126,7 @@ class BrokenError(Exception):
 def measure_methods(
     methods: Iterable[tuple[Family, Method]], task: Task, progress: ProgressCallback = ignore_progress
 ) -> Chart:
-    """Measure methods at a task.
-
-    Parameters
-    ----------
-    methods : iterable of (Family, Method)
-        The methods, in the order of the chart.
-    task : Task
-        Colours and spectra.
-    progress : callable, optional
-        Called with a `Progress` after each method.
-
-    Returns
-    -------
-    Chart
-        The results.
-    """
+    """Measure methods at a task."""
     methods, results, begin, machine = list(methods), [], time.perf_counter(), environment()
     for family, method in methods:
         results.append(measure_method(family, method, task))
@@ -77,22 +143,7 @@ def measure_methods(
 
 
 def measure_method(family: Family, method: Method, task: Task) -> MethodResult:
-    """Measure one method.
-
-    Parameters
-    ----------
-    family : Family
-        Its family.
-    method : Method
-        The method.
-    task : Task
-        Colours and spectra.
-
-    Returns
-    -------
-    MethodResult
-        The result; without numbers if the method is broken or not installed.
-    """
+    """Measure one method."""
     state, why, numbers = State.MEASURED, "", {}
     try:
         with warnings.catch_warnings():

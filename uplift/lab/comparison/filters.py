@@ -9,18 +9,17 @@ Kment 2011, section 6.3, tables A.1 and A.2.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict, dataclass
 from itertools import product
+from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.arrays import Array
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.comparison.measure import error_statistics
-from uplift.lab.comparison.scene import LightSet, Scene
-from uplift.lab.comparison.statistics import Statistics
+from uplift.lab.comparison.compare import LightSet, Scene, Statistics, error_statistics
 from uplift.scene.representations.filters import (
     FINE_STRIDE,
     KINDS,
@@ -40,18 +39,11 @@ NONE = "none"
 class TunedFilter:
     """The best filter of a kind.
 
-    Parameters
-    ----------
-    kind : str
-        Kind of the filter, ``none`` for unfiltered samples.
-    count : int
-        Number of samples.
-    lights : str
-        Name of the set of lights.
-    low_pass : Filter or None
-        The filter.
-    statistics : Statistics
-        Its errors.
+    ``kind``: kind of the filter, ``none`` for unfiltered samples.
+    ``count``: number of samples.
+    ``lights``: name of the set of lights.
+    ``low_pass``: the filter.
+    ``statistics``: its errors.
     """
 
     kind: str
@@ -76,26 +68,7 @@ def tune_filters(
     counts: Sequence[int] = COUNTS,
     progress: ProgressCallback = ignore_progress,
 ) -> tuple[TunedFilter, ...]:
-    """Search the best filter of each kind, for each number of samples and each set of lights.
-
-    Parameters
-    ----------
-    scene : Scene
-        Surfaces and lights.
-    stride : int
-        Step through the choices for each parameter, 1 for all.
-    kinds : sequence of str
-        Kinds of filters.
-    counts : sequence of int
-        Numbers of samples.
-    progress : callable, optional
-        Called with a `Progress` after each search.
-
-    Returns
-    -------
-    tuple of Tuned
-        Unfiltered samples first, then the filters.
-    """
+    """Search the best filter of each kind, for each number of samples and each set of lights."""
     results = [
         TunedFilter(NONE, count, light_set.name, None, error_statistics(point_samples(count), scene, light_set))
         for count in counts
@@ -130,3 +103,12 @@ def _mean_error(scene: Scene, light_set: LightSet, count: int) -> Callable[[Arra
         return float(delta_e_2000(light_set.lab(products @ weights), reference).mean())
 
     return mean_error
+
+
+def filter_records(tuned: Iterable[TunedFilter]) -> list[dict[str, Any]]:
+    """Convert tuned filters to records."""
+    return [
+        {"lights": each.lights, "samples": each.count, "filter": each.kind, "parameters": each.parameters}
+        | asdict(each.statistics)
+        for each in tuned
+    ]

@@ -39,22 +39,8 @@ def local_linear(data: CubeData, known: Array, rgb: Array) -> Array:
 
     Bandwidth and ridge have the least mean leave-one-out ΔE00 of the known materials under the lights of a build.
 
-    Parameters
-    ----------
-    data : CubeData
-        Sensor of RGB, and model of the steps to exact colours.
-    known : ndarray, shape (E, N)
-        Measured reflectances at the wavelengths of the sensor.
-    rgb : ndarray, shape (n, 3)
-        Linear RGB of the queries.
+    Shapes: ``known`` (E, N), ``rgb`` (n, 3); result (n, N).
 
-    Returns
-    -------
-    ndarray, shape (n, N)
-        Reflectances in [0, 1].
-
-    References
-    ----------
     Cleveland & Devlin 1988, "Locally weighted regression", JASA 83(403).
     """
     colours = np.clip(data.sensor.rgb(known), 0, 1)
@@ -111,24 +97,8 @@ def mismatch_centroids(sensor: Sensor, known: Array, rgb: Array, lights: Sequenc
     hundred measurements have hardly any metamers, so metamers are mixtures: of the nearest measurements, black and
     white. The corners of a body are mixtures of four of them.
 
-    Parameters
-    ----------
-    sensor : Sensor
-        RGB of the colours.
-    known : ndarray, shape (E, N)
-        Measured reflectances at the wavelengths of the sensor.
-    rgb : ndarray, shape (n, 3)
-        Linear RGB of the queries.
-    lights : sequence of Light
-        L other lights.
+    Shapes: ``known`` (E, N), ``rgb`` (n, 3); result (n, L, 3).
 
-    Returns
-    -------
-    ndarray, shape (n, L, 3)
-        XYZ under each light, NaN for colours that no mixture has.
-
-    References
-    ----------
     Zhang, Funt & Mirzaei 2016, "Metamer mismatching in practice versus theory", JOSA A 33(3), A238–A247.
     """
     distance = cdist(rgb_to_lab(sensor, rgb), rgb_to_lab(sensor, sensor.rgb(known)))

@@ -44,25 +44,15 @@ LOCAL_LINEAR, CENTROID = "local-linear regression", "centroid of mismatch"
 class SpectrumErrors:
     """Errors of n predicted spectra.
 
-    Parameters
-    ----------
-    rms : ndarray, shape (n,)
-        Root mean square over wavelength; NaN for a method that predicts colours only.
-    delta_e : ndarray, shape (n, L)
-        ΔE00 under L lights.
+    ``rms`` (n,): root mean square over wavelength; NaN for a method that predicts colours only.
+    ``delta_e`` (n, L): ΔE00 under L lights.
     """
 
     rms: Array
     delta_e: Array
 
     def means(self) -> Array:
-        """Average over the spectra.
-
-        Returns
-        -------
-        ndarray, shape (1 + L,)
-            Mean rms, then mean ΔE00 under each light.
-        """
+        """Average over the spectra. The result has shape (1 + L,)."""
         return np.concatenate([[self.rms.mean()], self.delta_e.mean(axis=0)])
 
 
@@ -70,16 +60,10 @@ class SpectrumErrors:
 class HoldoutSplit:
     """One split of an atlas and the errors on its held-out half of n entries.
 
-    Parameters
-    ----------
-    errors : dict of str to SpectrumErrors
-        Errors by the name of the cube or baseline.
-    actual : ndarray, shape (n,)
-        ΔE00 of the cube with half the atlas, under its reference illuminant.
-    predicted : ndarray, shape (n,), or None
-        Standard errors that this cube predicts, if it has any.
-    bound : ndarray, shape (n,), or None
-        Error bounds that it predicts, likewise.
+    ``errors``: errors by the name of the cube or baseline.
+    ``actual`` (n,): ΔE00 of the cube with half the atlas, under its reference illuminant.
+    ``predicted`` (n,): standard errors that this cube predicts, if it has any.
+    ``bound`` (n,): error bounds that it predicts, likewise.
     """
 
     errors: dict[str, SpectrumErrors]
@@ -89,20 +73,7 @@ class HoldoutSplit:
 
 
 def spectrum_errors(predicted: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS) -> SpectrumErrors:
-    """Compare predicted with measured reflectances.
-
-    Parameters
-    ----------
-    predicted, measured : ndarray, shape (n, N)
-        Reflectances on the wavelength grid of all sensors.
-    lights : sequence of str, optional
-        Names of the lights of ΔE00.
-
-    Returns
-    -------
-    SpectrumErrors
-        Errors of each spectrum.
-    """
+    """Compare predicted with measured reflectances. Shapes: ``predicted, measured`` (n, N)."""
     rms = np.sqrt(((predicted - measured) ** 2).mean(axis=1))
     delta_e = [delta_e_spectra(observer.light(name), predicted, measured) for name in lights]
     return SpectrumErrors(rms, np.stack(delta_e, axis=1))
@@ -115,19 +86,7 @@ def baseline_errors(
 
     A colour without a centroid, as no mixture of known materials has it, has the error of the regression.
 
-    Parameters
-    ----------
-    data : CubeData
-        Sensor of RGB, and model of the steps to exact colours.
-    known, measured : ndarray, shape (E, N) and (n, N)
-        Reflectances on the wavelength grid of all sensors.
-    lights : sequence of str, optional
-        Names of the lights of ΔE00.
-
-    Returns
-    -------
-    dict of str to SpectrumErrors
-        Errors by the name of the baseline.
+    Shapes: ``known, measured`` (E, N) and (n, N).
     """
     sensor = data.sensor
     rgb = np.clip(sensor.rgb(measured), 0, 1)
@@ -146,31 +105,7 @@ def baseline_errors(
 def holdout(
     atlas: Atlas, splits: int = 3, progress: ProgressCallback = ignore_progress, **options: Any
 ) -> tuple[HoldoutSplit, ...]:
-    """Build cubes from random halves of an atlas and predict the other halves.
-
-    Parameters
-    ----------
-    atlas : Atlas
-        Measurements.
-    splits : int, optional
-        Number of random splits.
-    progress : callable, optional
-        Called with the stage ``"builds"``.
-    **options
-        Options of `uplift.pipeline.build`. By default, the prior does not know the families of the shipped library that
-        contain spectra of the atlas (``leave_out``).
-
-    Returns
-    -------
-    tuple of HoldoutSplit
-        Errors of the cubes with half the atlas, of a cube without an atlas, of a sigmoid cube without an atlas, and of
-        the baselines.
-
-    Raises
-    ------
-    AtlasError
-        Too few entries lie within the RGB space.
-    """
+    """Build cubes from random halves of an atlas and predict the other halves. Raises `AtlasError`."""
     total = 2 + splits
     options = {"leave_out": families_with(resample(atlas, observer.grid()).values), **options}
     with warnings.catch_warnings():
@@ -189,18 +124,7 @@ def holdout(
 
 
 def pooled_calibration(splits: Sequence[HoldoutSplit]) -> Calibration | None:
-    """Compare predicted standard errors with actual errors over all splits.
-
-    Parameters
-    ----------
-    splits : sequence of HoldoutSplit
-        Results of `holdout`.
-
-    Returns
-    -------
-    Calibration or None
-        None if the cubes predict no standard errors.
-    """
+    """Compare predicted standard errors with actual errors over all splits."""
     parts = [(split.actual, split.predicted, split.bound) for split in splits if split.predicted is not None]
     if not parts:
         return None

@@ -35,16 +35,11 @@ MIN_SIDE = 1e-9
 class LipschitzConstants:
     """Largest rms change of the reflectance over wavelength per unit of change of the colour.
 
-    Parameters
-    ----------
-    cells : ndarray, shape (dim − 1, dim − 1, dim − 1)
-        Maximum in each cell per unit of linear RGB (Euclidean), without entries.
-    codes : ndarray, shape (dim − 1, dim − 1, dim − 1)
-        The same per 8-bit code of the RGB space, at the steepest part of its transfer curve in the cell.
-    wavelengths : ndarray, shape (N,)
-        Largest change at each wavelength per unit of linear RGB, over all cells.
-    boxes : ndarray, shape (E,)
-        Maximum in the box of each entry per unit of linear RGB; 0 for an entry without a box.
+    ``cells`` (dim − 1, dim − 1, dim − 1): maximum in each cell per unit of linear RGB (Euclidean), without entries.
+    ``codes`` (dim − 1, dim − 1, dim − 1): the same per 8-bit code of the RGB space, at the steepest part of its
+        transfer curve in the cell.
+    ``wavelengths`` (N,): largest change at each wavelength per unit of linear RGB, over all cells.
+    ``boxes`` (E,): maximum in the box of each entry per unit of linear RGB; 0 for an entry without a box.
     """
 
     cells: Array

@@ -1,28 +1,100 @@
 """Loss of trigonometric moments: four techniques and several counts, measured on atlases.
 
 Every measured spectrum is reduced to its moments, reconstructed, and compared with the measurement, as in Tódová 2020,
-*Constrained Spectral Uplifting*, table 4.1 and appendix B.1.
-"""
+*Constrained Spectral Uplifting*, table 4.1, sections 2.2.1 and 4.1.1, and appendix B.1."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from uplift.atlas import Atlas, merge, on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_2000, lab
 from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.colorimetry.sensor import Light
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Complex
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.study.technique import TECHNIQUES, Technique
+from uplift.models import duality
+from uplift.models.phase import Phase
 
-__all__ = ["MomentsResult", "MomentsStudy", "fine_grid", "study_moments"]
+
+@dataclass(frozen=True)
+class Technique:
+    """A mapping of the spectrum to the circle.
+
+    ``mirrored``: map [start, end] nm of `Phase` to the half circle [−π, 0] and mirror it, which makes the moments real.
+        Otherwise the range covers the circle [−π, π], and its two ends meet.
+    ``warped``: warp the phase towards wavelengths to which the eye is sensitive.
+    """
+
+    mirrored: bool
+    warped: bool
+
+    @property
+    def short(self) -> str:
+        """Abbreviation of the thesis: M&W, M&nW, nM&W or nM&nW."""
+        return f"{'' if self.mirrored else 'n'}M&{'' if self.warped else 'n'}W"
+
+    @property
+    def label(self) -> str:
+        """Full name, such as ``mirrored, warped``."""
+        return f"{'mirrored' if self.mirrored else 'unmirrored'}, {'warped' if self.warped else 'unwarped'}"
+
+    def floats(self, moments: int) -> int:
+        """Count the real numbers stored per spectrum."""
+        return moments + 1 if self.mirrored else 2 * moments + 1
+
+    def phase(self, wavelengths: ArrayLike) -> Array:
+        """Map wavelengths to phases. Shapes: ``wavelengths`` (N,); result (N,)."""
+        half = Phase(warp="vision" if self.warped else "none")(wavelengths)
+        return half if self.mirrored else 2 * half + np.pi
+
+    def moments(self, reflectance: Array, wavelengths: ArrayLike, moments: int) -> Complex | Array:
+        """Compute the moments of reflectances.
+
+        They are exact for the interpolant that is linear in the phase, so samples within [0, 1] have moments of a
+        reflectance.
+
+        Shapes: ``reflectance`` (n, N), ``wavelengths`` (N,); result (n, moments + 1).
+        """
+        phase = self.phase(wavelengths)
+        on_circle = _integrals(reflectance, phase, moments) / np.ptp(phase)
+        return np.ascontiguousarray(on_circle.real) if self.mirrored else on_circle
+
+    def reconstruct(self, moments: Complex | Array, wavelengths: ArrayLike) -> Array:
+        """Compute bounded maximum-entropy reflectances from moments.
+
+        Shapes: ``moments`` (n, C), ``wavelengths`` (N,); result (n, N). Raises `UpliftError`.
+        """
+        multipliers = duality.multipliers_from_moments(moments)
+        waves = duality.fourier_basis(self.phase(wavelengths), moments.shape[1])
+        return np.asarray(0.5 + np.arctan((multipliers @ waves.T).real) / np.pi)
+
+
+TECHNIQUES = tuple(Technique(mirrored, warped) for mirrored in (True, False) for warped in (True, False))
+"""All techniques, in the order of the tables of the thesis."""
+
+
+def _integrals(values: Array, phase: Array, moments: int) -> Complex:
+    """Integrals (n, moments + 1) of g exp(−ijφ) dφ, with g linear between ``values`` (n, N) at phases (N,).
+
+    Integrated by parts twice: a term of the two ends, and the slopes times the change of exp(−ijφ) in each interval.
+    """
+    orders = np.arange(1, moments + 1)
+    turn = np.exp(-1j * phase[:, None] * orders)
+    ends = values[:, -1:] * turn[-1] - values[:, :1] * turn[0]
+    slopes = np.diff(values, axis=1) / np.diff(phase)
+    integrals = np.empty((len(values), moments + 1), dtype=complex)
+    integrals[:, 0] = np.trapezoid(values, phase, axis=1)
+    integrals[:, 1:] = 1j * ends / orders + slopes @ np.diff(turn, axis=0) / orders**2
+    return integrals
+
 
 DEFAULT_MAX_MOMENTS, MAX_MOMENTS = 15, 32
 """Largest number of moments above the zeroth: in the thesis, and of cosines that a 5 nm grid still resolves."""
@@ -38,16 +110,10 @@ STEP = 1.0
 class MomentsStudy:
     """Errors of every entry for every technique and number of moments.
 
-    Parameters
-    ----------
-    names : tuple of str
-        Names of the E entries.
-    atlases : tuple of str
-        Atlas of each entry.
-    measured : ndarray, shape (E, N)
-        Reflectances at the wavelengths of `fine_grid`.
-    errors : ndarray, shape (4, max_moments + 1, E, len(MEASURES))
-        Errors, by the order of `TECHNIQUES` and by moments from 0.
+    ``names``: names of the E entries.
+    ``atlases``: atlas of each entry.
+    ``measured`` (E, N): reflectances at the wavelengths of `fine_grid`.
+    ``errors`` (4, max_moments + 1, E, len(MEASURES): errors, by the order of `TECHNIQUES` and by moments from 0.
     """
 
     names: tuple[str, ...]
@@ -66,37 +132,11 @@ class MomentsStudy:
         return (ALL_ATLASES, *dict.fromkeys(self.atlases))
 
     def rows(self, group: str = ALL_ATLASES) -> NDArray[np.intp]:
-        """Find the entries of a group.
-
-        Parameters
-        ----------
-        group : str, optional
-            One of `groups`.
-
-        Returns
-        -------
-        ndarray
-            Indices of the entries.
-        """
+        """Find the entries of a group."""
         return np.array([row for row, atlas in enumerate(self.atlases) if group in (ALL_ATLASES, atlas)])
 
     def result(self, technique: Technique, moments: int, group: str = ALL_ATLASES) -> MomentsResult:
-        """Summarise the errors of a group for one technique and number of moments.
-
-        Parameters
-        ----------
-        technique : Technique
-            One of `TECHNIQUES`.
-        moments : int
-            Number of moments above the zeroth, 0 to `max_moments`.
-        group : str, optional
-            One of `groups`.
-
-        Returns
-        -------
-        MomentsResult
-            Mean and largest errors.
-        """
+        """Summarise the errors of a group for one technique and number of moments."""
         rows = self.rows(group)
         errors = self.errors[TECHNIQUES.index(technique), moments, rows]
         worst = int(rows[errors[:, 0].argmax()])
@@ -114,18 +154,11 @@ class MomentsStudy:
 class MomentsResult:
     """Errors of a group for one technique and number of moments.
 
-    Parameters
-    ----------
-    group : str
-        Name of the group.
-    technique : Technique
-        The technique.
-    moments : int
-        Number of moments above the zeroth.
-    mean, max : ndarray, shape (len(MEASURES),)
-        Mean and largest error.
-    worst : int
-        Index of the entry with the largest ΔE76.
+    ``group``: name of the group.
+    ``technique``: the technique.
+    ``moments``: number of moments above the zeroth.
+    ``mean``, ``max`` (len(MEASURES): mean and largest error.
+    ``worst``: index of the entry with the largest ΔE76.
     """
 
     group: str
@@ -142,13 +175,7 @@ class MomentsResult:
 
 
 def fine_grid() -> Array:
-    """Make the wavelengths that moments are computed from.
-
-    Returns
-    -------
-    ndarray, shape (401,)
-        380–780 nm at 1 nm.
-    """
+    """Make the wavelengths that moments are computed from. The result has shape (401,)."""
     return np.arange(observer.START, observer.END + STEP / 2, STEP)
 
 
@@ -159,31 +186,7 @@ def study_moments(
 ) -> MomentsStudy:
     """Reduce every entry to 0 … ``max_moments`` moments, and reconstruct it, by all four techniques.
 
-    Parameters
-    ----------
-    atlases : mapping of str to Atlas
-        Measurements by name.
-    max_moments : int, optional
-        Largest number of moments above the zeroth, 0 to `MAX_MOMENTS`.
-    progress : callable, optional
-        Called with the stage ``"reconstructions"``.
-
-    Returns
-    -------
-    MomentsStudy
-        The errors.
-
-    Raises
-    ------
-    OptionError
-        ``max_moments`` is out of range.
-    AtlasError
-        No entries, or two entries with one name.
-
-    Warns
-    -----
-    UpliftWarning
-        An entry was clipped to [0, 1].
+    Raises `OptionError`, `AtlasError`.
     """
     if not 0 <= max_moments <= MAX_MOMENTS:
         raise OptionError(
@@ -225,3 +228,24 @@ def _error_function(measured: Array) -> Callable[[Array], Array]:
 
 def _lab(light: Light, reflectance: Array) -> Array:
     return lab(reflectance @ light.xyz.T, light.white)
+
+
+def records(study: MomentsStudy) -> list[dict[str, Any]]:
+    """Make a flat record for every group, technique and count, with the mean and maximum of every measure."""
+    return [_record(study, result) for result in study.results()]
+
+
+def _record(study: MomentsStudy, result: MomentsResult) -> dict[str, Any]:
+    errors: dict[str, float] = {}
+    for name, mean, largest in zip(MEASURES, result.mean, result.max, strict=True):
+        errors |= {f"{name}_mean": float(mean), f"{name}_max": float(largest)}
+    return {
+        "atlas": result.group,
+        "entries": len(study.rows(result.group)),
+        "mirrored": result.technique.mirrored,
+        "warped": result.technique.warped,
+        "moments": result.moments,
+        "floats": result.floats,
+        **errors,
+        "worst": study.names[result.worst],
+    }

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array, StrPath
-from uplift.lab.study.moments import MomentsStudy, fine_grid
-from uplift.lab.study.technique import TECHNIQUES, Technique
+from uplift.lab.study.moments import TECHNIQUES, MomentsStudy, Technique, fine_grid
 from uplift.viz.figure import figure_text, new_figure, style_axes, style_spectrum_axes, write_png
 
 FLOATS = 9

@@ -45,14 +45,9 @@ class NoDerivativeError(UpliftError):
 class PointwiseProblem:
     """Least-squares problem of one colour.
 
-    Parameters
-    ----------
-    model : Model
-        Spectrum model with C coefficients.
-    sensor : Sensor
-        Sensor that the colour refers to.
-    unknowns : str
-        `IN_MOMENTS` or `IN_MULTIPLIERS`.
+    ``model``: spectrum model with C coefficients.
+    ``sensor``: sensor that the colour refers to.
+    ``unknowns``: `IN_MOMENTS` or `IN_MULTIPLIERS`.
     """
 
     model: Model
@@ -115,14 +110,9 @@ class PointwiseProblem:
 class PointwiseFit:
     """Result of `fit_pointwise`.
 
-    Parameters
-    ----------
-    distance : ndarray, shape (n,)
-        Largest difference in linear RGB at each lattice point.
-    starts : int
-        Number of solves.
-    rounds : int
-        Length of the longest chain of neighbours.
+    ``distance`` (n,): largest difference in linear RGB at each lattice point.
+    ``starts``: number of solves.
+    ``rounds``: length of the longest chain of neighbours.
     """
 
     distance: Array

@@ -11,7 +11,7 @@ from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.arrays import Array, StrPath
 from uplift.cube import CubeData
 from uplift.lab.study.lipschitz import LipschitzConstants
-from uplift.lab.study.locality import MOVED_DELTA_E, Change
+from uplift.lab.study.sensitivity import MOVED_DELTA_E, Change
 from uplift.viz.figure import colour_map, new_figure, style_axes, write_png
 
 CHANNELS = ("red", "green", "blue")

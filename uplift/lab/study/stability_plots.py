@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array, Mask, StrPath
-from uplift.lab.study.stability import RunConfig, RunResult
-from uplift.lab.study.stability_design import Grid
+from uplift.lab.study.stability import Grid, RunConfig, RunResult
 from uplift.viz.figure import colour_map, figure_text, new_figure, write_png
 
 HIGHLIGHT, FAINT, INK = "#ff5a00", "#ffcfae", "#1b2733"

@@ -13,13 +13,7 @@ __all__ = ["FAMILIES", "load_families", "select_methods"]
 
 
 def load_families() -> tuple[Family, ...]:
-    """Import all modules of this package.
-
-    Returns
-    -------
-    tuple of Family
-        The families of all modules.
-    """
+    """Import all modules of this package."""
     modules = (import_module(module.name) for module in iter_modules(__path__, f"{__name__}."))
     return tuple(family for module in modules for family in module.FAMILIES)
 
@@ -28,30 +22,7 @@ FAMILIES = load_families()
 
 
 def select_methods(patterns: tuple[str, ...] = (), *, quick: bool = False) -> list[tuple[Family, Method]]:
-    """Select methods by name.
-
-    Parameters
-    ----------
-    patterns : tuple of str, optional
-        Names, with ``*`` and ``?`` as in a shell; by default the usual methods are selected.
-    quick : bool, default False
-        Without patterns, select the methods of a quick run.
-
-    Returns
-    -------
-    list of (Family, Method)
-        The methods in the order of the chart.
-
-    Raises
-    ------
-    OptionError
-        If a pattern matches no method.
-
-    Examples
-    --------
-    >>> [method.name for _, method in select_methods(("s*1999", "mallett*9"))]
-    ['mallett2019', 'smits1999']
-    """
+    """Select methods by name. Raises `OptionError`."""
     methods = [(family, method) for family in FAMILIES for method in family.methods]
     if not patterns:
         return [(family, method) for family, method in methods if (method.quick if quick else method.usual)]

@@ -20,18 +20,18 @@ from numpy.typing import NDArray
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.io.export import write_program
-from uplift.lab.chart.judge import ours
 from uplift.lab.chart.method import (
     Claims,
     Family,
     Method,
     NotInstalledError,
     PreparedMethod,
+    Task,
     Uplift,
+    ours,
     stopwatch,
 )
 from uplift.lab.chart.methods.uplift_cubes import EXACT, CubeOptions, built_cube
-from uplift.lab.chart.task import Task
 
 COMPILER = "a C compiler, cc: apt install gcc"
 SECONDS = 60

@@ -17,10 +17,18 @@ from typing import Any
 from uplift.colorimetry.observer import aligned
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
-from uplift.lab.chart.judge import published_srgb
-from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, nbytes, one_by_one, stopwatch
+from uplift.lab.chart.method import (
+    Claims,
+    Family,
+    Method,
+    PreparedMethod,
+    Task,
+    nbytes,
+    one_by_one,
+    published_srgb,
+    stopwatch,
+)
 from uplift.lab.chart.methods.mitsuba3 import judge, table_file
-from uplift.lab.chart.task import Task
 from uplift.models.sigmoid import evaluate_unscaled
 
 SIZE = 5

@@ -19,9 +19,7 @@ from scipy.spatial import cKDTree
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.lab.chart.judge import ours
-from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, nbytes, stopwatch
-from uplift.lab.chart.task import Task
+from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, Task, nbytes, ours, stopwatch
 
 STEPS, HALVINGS = 6, 4
 """Steps of Newton's method, and halvings of a step that does not reduce the error; most edges converge in three."""
@@ -39,18 +37,11 @@ class Boxes:
 
     Wavelengths are cyclic: a box that extends beyond the last sample continues at the first, and is a stopped band.
 
-    Parameters
-    ----------
-    sensor : Sensor
-        The sensor.
-    weights : ndarray, shape (N, 3)
-        XYZ of each sample.
-    below : ndarray, shape (N, 3)
-        Sums of the weights of all samples before.
-    starts : ndarray, shape (S, 2)
-        Edges of the boxes that begin and end between samples.
-    tree : cKDTree
-        Their chromaticities.
+    ``sensor``: the sensor.
+    ``weights`` (N, 3): XYZ of each sample.
+    ``below`` (N, 3): sums of the weights of all samples before.
+    ``starts`` (S, 2): edges of the boxes that begin and end between samples.
+    ``tree``: their chromaticities.
     """
 
     sensor: Sensor

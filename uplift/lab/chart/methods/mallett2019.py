@@ -14,8 +14,7 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
-from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, in_both_types, stopwatch
-from uplift.lab.chart.task import Task
+from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, Task, in_both_types, stopwatch
 
 
 def prepare(task: Task, dtype: str = "float64") -> PreparedMethod:

@@ -14,9 +14,7 @@ from __future__ import annotations
 from uplift.colorimetry.observer import aligned
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
-from uplift.lab.chart.judge import published_srgb
-from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, nbytes, one_by_one
-from uplift.lab.chart.task import Task
+from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, Task, nbytes, one_by_one, published_srgb
 
 STEP = 10.0
 """nm. With half the step, twice as many unknowns take three times as long."""

@@ -23,9 +23,16 @@ import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.lab.chart.judge import stated_sensor
-from uplift.lab.chart.method import Claims, Family, Method, NotInstalledError, PreparedMethod, stopwatch
-from uplift.lab.chart.task import Task
+from uplift.lab.chart.method import (
+    Claims,
+    Family,
+    Method,
+    NotInstalledError,
+    PreparedMethod,
+    Task,
+    stated_sensor,
+    stopwatch,
+)
 from uplift.models.sigmoid import evaluate_unscaled
 
 VARIANT, COMPILED = "scalar_spectral", "llvm_ad_spectral"

@@ -17,9 +17,17 @@ import numpy as np
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
-from uplift.lab.chart.judge import stated_sensor
-from uplift.lab.chart.method import Claims, Family, Method, PreparedMethod, in_both_types, nbytes, stopwatch
-from uplift.lab.chart.task import Task
+from uplift.lab.chart.method import (
+    Claims,
+    Family,
+    Method,
+    PreparedMethod,
+    Task,
+    in_both_types,
+    nbytes,
+    stated_sensor,
+    stopwatch,
+)
 
 SECONDARIES, PRIMARIES = ("cyan", "magenta", "yellow"), ("red", "green", "blue")
 """Basis spectra by the smallest and by the largest component of RGB."""

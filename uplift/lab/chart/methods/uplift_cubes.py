@@ -14,18 +14,18 @@ from pathlib import Path
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.lab.chart.judge import ours
 from uplift.lab.chart.method import (
     DTYPES,
     Claims,
     Family,
     Method,
     PreparedMethod,
+    Task,
     Uplift,
     nbytes,
+    ours,
     stopwatch,
 )
-from uplift.lab.chart.task import Task
 from uplift.lookup import MODES, Cube, load
 from uplift.models import Moments, Sigmoid
 from uplift.pipeline.options import ModelName
@@ -98,21 +98,7 @@ LOOKUPS = (
 
 @cache
 def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
-    """Build a cube, store and load it, once for all methods that need it.
-
-    Parameters
-    ----------
-    task : Task
-        Its kept entries are the atlas. The learnt prior does not know the families of the shipped library that contain
-        its unseen spectra.
-    options : CubeOptions
-        Options of the build.
-
-    Returns
-    -------
-    tuple of Cube, float and float
-        The loaded cube, the CPU seconds of the last build, which does not include compilation, and those of loading.
-    """
+    """Build a cube, store and load it, once for all methods that need it."""
     from uplift.fit.families import families_with
     from uplift.pipeline.build import build
 
