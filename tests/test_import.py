@@ -34,6 +34,7 @@ def test_loading_a_cube_needs_only_numpy_and_safetensors():
 
 
 CORE = {"common", "colorimetry", "models", "lattice", "cube", "lookup"}
+HEAVY_OF_FITS = {"colour", "scipy", "jax", "equinox", "optimistix"}
 BUILD = CORE | {"atlas", "fit", "pipeline"}
 QUERY = "import uplift; uplift.load().reflectance([0.5, 0.5, 0.5], wavelengths=[400, 500]); "
 BUILD_2 = "import uplift; uplift.build(dim=2); "
@@ -53,15 +54,13 @@ def test_build_without_scene_loads_only_the_pipeline_and_the_core():
 def test_query_loads_only_the_numpy_part_of_the_core():
     subpackages, modules = loaded_subpackages(QUERY)
     assert subpackages == CORE
-    assert not modules & {
-        "uplift.colorimetry.observer",
-        "uplift.lookup.bulk",
-        "colour",
-        "scipy",
-        "jax",
-        "equinox",
-        "optimistix",
-    }
+    assert not modules & {"uplift.colorimetry.observer", "uplift.lookup.bulk", *HEAVY_OF_FITS}
+
+
+def test_queries_of_lights_load_the_table_and_the_numpy_part_of_the_core():
+    subpackages, modules = loaded_subpackages("import uplift; uplift.load_emission().spectrum([0.5, 0.5, 0.5])")
+    assert subpackages <= CORE | {"lights"}
+    assert not modules & {"uplift.colorimetry.observer", *HEAVY_OF_FITS}
 
 
 @pytest.mark.parametrize("subpackage", ["io", "viz", "report", "scene", "design", "lab"])

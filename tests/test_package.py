@@ -41,51 +41,21 @@ def test_every_module_is_in_it(wheel, repository):
         assert {f"{there}/{module}" for module in modules} <= set(wheel.namelist())
 
 
-def test_the_default_cube_is_in_it_byte_for_byte(wheel, repository):
-    cube = "uplift/lookup/default.uplift"
-    assert wheel.read(cube) == (repository / cube).read_bytes()
-
-
-def test_type_checkers_find_the_marker_file(wheel):
-    assert "uplift/py.typed" in wheel.namelist()
-
-
-def test_the_licence_is_in_it(wheel, repository):
+def test_data_marker_and_licence_are_in_it(wheel, repository):
+    for name in ("uplift/lookup/default.uplift", "uplift/lights/emission.uplift", "uplift/py.typed"):
+        assert wheel.read(name) == (repository / name).read_bytes()
     assert info(wheel, "licenses/LICENSE") == (repository / "LICENSE").read_text(encoding="utf-8")
 
 
 def test_nothing_else_is_in_it(wheel, repository):
-    assert {name.split("/")[0] for name in wheel.namelist()} == {
-        "uplift",
-        "uplift_atlases",
-        "uplift_cli",
-        INFO,
-    }
+    assert {name.split("/")[0] for name in wheel.namelist()} == {"uplift", "uplift_atlases", "uplift_cli", INFO}
     data = {name for name in wheel.namelist() if ".dist-info/" not in name and not name.endswith(".py")}
     tracked = {name for name in source_files(repository) if not name.endswith(".py")}
     library = {name for name in tracked if name.startswith("uplift/")}
     atlases = {f"uplift_{name}" for name in tracked if name.startswith("atlases/")}
     assert data == library | atlases
-    assert {Path(name).suffix for name in library} == {
-        ".c",
-        ".css",
-        ".csv",
-        ".cxf",
-        ".cuh",
-        ".exr",
-        ".glsl",
-        ".h",
-        ".hlsl",
-        ".j2",
-        ".js",
-        ".npz",
-        ".png",
-        ".ti3",
-        ".toml",
-        ".typed",
-        ".uplift",
-        ".xlsx",
-    }
+    suffixes = ".c .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .npz .png .ti3 .toml .typed .uplift .xlsx"
+    assert {Path(name).suffix for name in library} == set(suffixes.split())
     assert {Path(name).suffix for name in atlases} == {".md", ".txt"}
 
 
@@ -95,15 +65,10 @@ def test_the_command_is_installed_as_uplift(wheel):
     assert dict(points["console_scripts"]) == {"uplift": "uplift_cli.__main__:run"}
 
 
-def test_name_version_and_python_are_stated(wheel):
+def test_name_version_python_and_dependencies_are_stated(wheel):
     stated = email.message_from_string(info(wheel, "METADATA"))
     assert (stated["Name"], stated["Version"]) == (DISTRIBUTION, uplift.__version__)
-    assert stated["Requires-Python"] == ">=3.11"
-    assert stated["License-Expression"] == "BSD-3-Clause"
-
-
-def test_dependencies_and_extras_are_stated(wheel):
-    stated = email.message_from_string(info(wheel, "METADATA"))
+    assert (stated["Requires-Python"], stated["License-Expression"]) == (">=3.11", "BSD-3-Clause")
     assert {"optimistix>=0.1", "lineax>=0.1", "equinox>=0.13"} <= set(stated.get_all("Requires-Dist"))
     assert {"cluster", "mitsuba"} <= set(stated.get_all("Provides-Extra"))
 

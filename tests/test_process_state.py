@@ -35,24 +35,9 @@ def test_modules_leave_nothing_to_later_ones(tmp_path, fixture, failed):
     (tmp_path / "test_a.py").write_text(LEAVES)
     (tmp_path / "test_b.py").write_text(FINDS)
     clean = {name: value for name, value in os.environ.items() if name != "OMP_NUM_THREADS"}
-    command = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-q",
-        "-p",
-        "no:cacheprovider",
-        "--rootdir",
-        str(tmp_path),
-        str(tmp_path),
-    ]
-    done = subprocess.run(
-        command,
-        cwd=tmp_path,
-        env=clean | {"KEPT": "1", "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-    )
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir", tmp_path, tmp_path]
+    environment = clean | {"KEPT": "1", "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert done.returncode == failed, done.stdout + done.stderr
 
 
