@@ -201,25 +201,19 @@ def compose(data: CubeData) -> Sheet:
     layout = Layout(data.lattice.dim, len(all_panels))
     width, height = layout.size
     image = np.full((height, width, 3), BACKGROUND, dtype=np.float32)
-    labels = [_heading(data, layout)]
+    em, labels = layout.em, [_heading(data, layout)]
     for number, panel in enumerate(all_panels):
-        _paint_tiles(image, layout, number, panel)
-        _paint_keys(image, layout, number, panel.keys)
-        labels += _captions(layout, number, panel)
+        for blue, plane in enumerate(blue_slices(panel.colours, layout.dim)):
+            large = plane.repeat(layout.scale, axis=0).repeat(layout.scale, axis=1)
+            _paint(image, layout.tile(number, blue), large)
+        x, y = layout.origin(number)
+        labels.append(Label(x, y - em, panel.title, 1.2 * em))
+        for key, (left, top) in zip(panel.keys, _key_positions(layout, number), strict=False):
+            width = em if len(key.colours) == 1 else 6 * em  # a square, or a strip for a ramp
+            strip = key.colours[np.arange(width) * len(key.colours) // width]
+            _paint(image, (left, top), np.broadcast_to(strip, (em, width, 3)))
+            labels.append(Label(left + width + 0.6 * em, top + em / 2, key.text, em))
     return Sheet(image, tuple(labels))
-
-
-def _paint_tiles(image: NDArray[np.float32], layout: Layout, number: int, panel: Panel) -> None:
-    for blue, plane in enumerate(blue_slices(panel.colours, layout.dim)):
-        large = plane.repeat(layout.scale, axis=0).repeat(layout.scale, axis=1)
-        _paint(image, layout.tile(number, blue), large)
-
-
-def _paint_keys(image: NDArray[np.float32], layout: Layout, number: int, keys: tuple[Key, ...]) -> None:
-    for key, position in zip(keys, _key_positions(layout, number), strict=False):
-        width = _swatch_width(layout, key)
-        strip = key.colours[np.arange(width) * len(key.colours) // width]
-        _paint(image, position, np.broadcast_to(strip, (layout.em, width, 3)))
 
 
 def _paint(image: NDArray[np.float32], corner: tuple[int, int], patch: Array) -> None:
@@ -237,34 +231,17 @@ def _key_positions(layout: Layout, number: int) -> Iterator[tuple[int, int]]:
         yield x + half * width // 2, y + height + (1 + 2 * line) * layout.em
 
 
-def _swatch_width(layout: Layout, key: Key) -> int:
-    """Return the width of a key's swatch in pixels: a square, or a strip for a ramp."""
-    return layout.em if len(key.colours) == 1 else 6 * layout.em
-
-
-def _captions(layout: Layout, number: int, panel: Panel) -> Iterator[Label]:
-    em = layout.em
-    x, y = layout.origin(number)
-    yield Label(x, y - em, panel.title, 1.2 * em)
-    for key, (left, top) in zip(panel.keys, _key_positions(layout, number), strict=False):
-        yield Label(left + _swatch_width(layout, key) + 0.6 * em, top + em / 2, key.text, em)
-
-
 def _heading(data: CubeData, layout: Layout) -> Label:
-    model, sensor = data.model, data.sensor
+    model, sensor, points = data.model, data.sensor, data.points
+    present = "" if data.complete_cells is None else f"{np.count_nonzero(points.present):,} of "
     facts = (
-        f"{_present_of(data)}{data.lattice.dim}³ points",
+        f"{present}{data.lattice.dim}³ points",
         f"{model.name}, {model.count} coefficients",
         f"{sensor.space} under {sensor.illuminant}",
         f"{len(data.atlas.names)} atlas entries",
         f"threshold {data.threshold:g}",
     )
     return Label(2 * layout.em, 2.75 * layout.em, "  ·  ".join(facts), 1.4 * layout.em)
-
-
-def _present_of(data: CubeData) -> str:
-    """Return the number of present nodes if some are absent."""
-    return "" if data.complete_cells is None else f"{np.count_nonzero(data.points.present):,} of "
 
 
 BACKGROUND = 0.03
@@ -311,11 +288,11 @@ def panels(data: CubeData) -> tuple[Panel, ...]:
         quantities.append(_error_panel(data.points.standard_error, data.error_illuminant))
     if data.points.round is not None:
         quantities.append(_round_panel(data.points.round, data.points.round[data.points.present] < 0))
-    return tuple(replace(panel, colours=_grey_where_absent(data, panel.colours)) for panel in quantities)
-
-
-def _grey_where_absent(data: CubeData, colours: NDArray[np.floating]) -> NDArray[np.floating]:
-    return np.where(data.points.present[:, None], colours, colours.dtype.type(BACKGROUND))
+    present = data.points.present[:, None]
+    return tuple(
+        replace(panel, colours=np.where(present, panel.colours, panel.colours.dtype.type(BACKGROUND)))
+        for panel in quantities
+    )
 
 
 def _rgb_panel(data: CubeData) -> Panel:
