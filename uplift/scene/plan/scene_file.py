@@ -103,9 +103,6 @@ Lights = Annotated[
     BeforeValidator(_as_list),
     Field(min_length=1),
 ]
-Tolerance = Annotated[float, Field(strict=True, ge=MIN_TOLERANCE, le=MAX_TOLERANCE, allow_inf_nan=False)]
-Quantile = Annotated[float, Field(strict=True, ge=0.5, le=1, allow_inf_nan=False)]
-Encoding = Annotated[str, resolves(check_encoding)]
 Space = Annotated[str, resolves(observer.sensor)]
 Illuminant = Annotated[str, resolves(observer.illuminant_spd)]
 Observer = Annotated[str, resolves(observer.matching_functions)]
@@ -117,9 +114,9 @@ class _SceneTable(SpecModel):
     textures: Paths
     atlases: Paths = Field(default_factory=list)
     lights: Lights = Field(default_factory=lambda: list(SceneFile.lights))
-    tolerance: Tolerance = SceneFile.tolerance
-    quantile: Quantile = SceneFile.quantile
-    encoding: Encoding = SceneFile.encoding
+    tolerance: float = Field(SceneFile.tolerance, strict=True, ge=MIN_TOLERANCE, le=MAX_TOLERANCE, allow_inf_nan=False)
+    quantile: float = Field(SceneFile.quantile, strict=True, ge=0.5, le=1, allow_inf_nan=False)
+    encoding: Annotated[str, resolves(check_encoding)] = SceneFile.encoding
     space: Space = SceneFile.space
     illuminant: Illuminant = SceneFile.illuminant
     observer: Observer = SceneFile.observer
@@ -152,15 +149,14 @@ def read_scene_file(path: StrPath) -> SceneFile:
 
 
 def _expand(file: SpecFile, key: str, names: list[str]) -> tuple[Path, ...]:
-    """Expand patterns in the folder of the scene file."""
-    return tuple(path for number, name in enumerate(names) for path in _matches(file, (key, number), name))
-
-
-def _matches(file: SpecFile, keys: tuple[str, int], name: str) -> list[Path]:
-    folder = file.path.parent
-    is_pattern = glob.has_magic(name) and not os.path.exists(folder / name)
-    paths = [folder / each for each in sorted(glob.glob(name, root_dir=folder))] if is_pattern else [folder / name]
-    if not paths or not all(map(os.path.isfile, paths)):
-        text = f"no file named {format_value(name)}"
-        file.fail(keys, text, code="file-not-found", hint="paths start in the folder of the scene file")
-    return paths
+    """Expand patterns in the folder of the scene file. Raises `PlanFileError` for names of no file."""
+    folder, found = file.path.parent, []
+    for number, name in enumerate(names):
+        is_pattern = glob.has_magic(name) and not os.path.exists(folder / name)
+        paths = [folder / each for each in sorted(glob.glob(name, root_dir=folder))] if is_pattern else [folder / name]
+        if not paths or not all(map(os.path.isfile, paths)):
+            text = f"no file named {format_value(name)}"
+            hint = "paths start in the folder of the scene file"
+            file.fail((key, number), text, code="file-not-found", hint=hint)
+        found += paths
+    return tuple(found)
