@@ -10,8 +10,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from tests.io.export import shaders
-from tests.io.export.shaders import listed, padded
+from tests.io.export import webgl
 from tests.parts import CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need
 from uplift.common.processes import call_in_child
 
@@ -100,13 +99,25 @@ def _compiled(path, rgb, wavelengths, compiler, call, load):
     return np.frombuffer(done.stdout, np.float32).reshape(-1, 4)
 
 
+def listed(wavelengths):
+    return ", ".join(str(float(nm)) for nm in wavelengths)
+
+
+def padded(rgb, count):
+    """Return colours (count, 4) with a fourth channel."""
+    colours = np.zeros((count, 4), np.float32)
+    colours[: len(rgb), :3] = rgb
+    return colours
+
+
 def glsl(path, rgb, wavelengths, form="file"):
     """In Chromium, by WebGL 2."""
     need(CHROMIUM)
-    found = shaders.glsl(path, rgb, wavelengths)
+    side = int(np.ceil(np.sqrt(len(rgb))))
+    found = webgl.run(path, padded(rgb, side * side), listed(wavelengths))
     if found is None:
         pytest.skip("the browser has no WebGL 2")
-    return found.reflectances
+    return found[: len(rgb)]
 
 
 def hlsl(path, rgb, wavelengths, form="file"):

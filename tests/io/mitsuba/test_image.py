@@ -150,11 +150,6 @@ def test_the_stochastic_filter_chooses_texels_by_their_weights(texture, spectrum
     assert (values < 0.4).mean() == pytest.approx(0.8, abs=0.05)
 
 
-def test_scalar_variants_warn(mi, cube_path):
-    with warns("texture-in-python"):
-        mi.load_dict({"type": "uplift", "cube": cube_path, "bitmap": mi.Bitmap(IMAGE)})
-
-
 OPTIONS = [
     {"filter_type": filter_type, "wrap_mode": wrap_mode}
     for filter_type in ("bilinear", "nearest", "stochastic")

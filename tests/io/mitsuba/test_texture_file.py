@@ -7,12 +7,11 @@ import json
 import numpy as np
 import pytest
 
-from tests.helpers import raises
 from tests.io.mitsuba.images import write_channels, write_image
 from uplift.common.errors import TextureError
 from uplift.io import texture
 from uplift.io.mitsuba.texture_file import multipliers_of_rounded, read_texels
-from uplift.models import Moments, evaluate
+from uplift.models import Moments
 
 pytestmark = pytest.mark.filterwarnings("ignore:the texture calls Python:uplift.UpliftWarning")
 
@@ -37,17 +36,6 @@ def test_a_texture_has_the_spectra_of_the_cube(mi, spectrum, small_cube, tmp_pat
     found = mi.load_dict({"type": "uplift", "filename": str(tmp_path / "texture.exr"), "filter_type": "nearest"})
     expected = small_cube.reflectance(IMAGE[2, 1], WAVELENGTHS, mode=mode)
     np.testing.assert_allclose(spectrum(found, (0.4, 0.9), WAVELENGTHS), expected, rtol=0, atol=within)
-
-
-def test_half_precision_suffices_for_moments(small_cube, tmp_path):
-    write_image(tmp_path / "image.exr", IMAGE)
-    texels = []
-    for depth in ("half", "float"):
-        uplifter = texture.prepare(small_cube, texture.Moments(), depth=depth)
-        texture.convert(uplifter, tmp_path / "image.exr", tmp_path / f"{depth}.exr")
-        texels.append(read_texels(tmp_path / f"{depth}.exr"))
-    first, second = (evaluate(each.model, each.numbers.reshape(12, -1), WAVELENGTHS) for each in texels)
-    np.testing.assert_allclose(first, second, rtol=0, atol=0.02)
 
 
 def test_a_cube_is_not_accepted_with_a_texture(mi, cube_path, tmp_path):
@@ -89,7 +77,7 @@ def test_damaged_textures_raise(tmp_path):
     write_channels(tmp_path / "texture.exr", GREY)
     content = (tmp_path / "texture.exr").read_bytes()
     (tmp_path / "texture.exr").write_bytes(content[:-20])
-    with raises(TextureError, "texture"):
+    with pytest.raises(TextureError, match="damaged"):
         read_texels(tmp_path / "texture.exr")
 
 

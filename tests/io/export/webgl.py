@@ -4,15 +4,10 @@ from __future__ import annotations
 
 import base64
 import json
-from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from benchmarks.browser import browser
-
-Floats = NDArray[np.float32]
 
 FRAGMENT = """#version 300 es
 {code}
@@ -55,10 +50,6 @@ WEBGL = """(() => {
   gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
   gl.viewport(0, 0, side, side);
   gl.drawArrays(gl.TRIANGLES, 0, 3);
-  globalThis.again = times => {
-    for (let k = 0; k < times; k++) gl.drawArrays(gl.TRIANGLES, 0, 3);
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.FLOAT, new Float32Array(4));
-  };
   const found = new Float32Array(4 * side * side);
   gl.readPixels(0, 0, side, side, gl.RGBA, gl.FLOAT, found);
   let text = "";
@@ -67,53 +58,20 @@ WEBGL = """(() => {
 })()"""
 
 
-@dataclass(frozen=True, eq=False)
-class Run:
-    """Reflectances (n, 4) of a shader, and the fewest CPU seconds of all processes of the browser per run of it."""
-
-    reflectances: Floats
-    seconds: float
-
-
-def glsl(path: Path, rgb: Floats, wavelengths: list[float], runs: int = 0) -> Run | None:
-    """Evaluate linear RGB (n, 3) at four wavelengths, and time it; None without WebGL 2."""
-    side = int(np.ceil(np.sqrt(len(rgb))))
+def run(path, rgba, wavelengths):
+    """Return reflectances (side², 4) of colours (side², 4) at four wavelengths, given as text; None without WebGL 2."""
     table = path.with_suffix(".bin").read_bytes()
     data = {
-        "code": FRAGMENT.format(code=path.read_text(), wavelengths=listed(wavelengths)),
-        "table": text_of(table),
+        "code": FRAGMENT.format(code=path.read_text(), wavelengths=wavelengths),
+        "table": base64.b64encode(table).decode(),
         "columns": 2048,
         "rows": len(table) // (2048 * 16),
-        "colours": text_of(padded(rgb, side * side).tobytes()),
-        "side": side,
+        "colours": base64.b64encode(rgba.tobytes()).decode(),
+        "side": int(np.sqrt(len(rgba))),
     }
     page = path.with_suffix(".html")
     page.write_text("<!doctype html><main aria-busy='false'></main>")
-    seconds = np.inf
     with browser() as opened:
         opened.open(page)
-        found = opened.evaluate("{ " + WEBGL.replace("DATA", json.dumps(data)) + " }")
-        for _ in range(runs if found else 0):
-            begin = opened.cpu()
-            opened.evaluate("again(1)")
-            seconds = min(seconds, opened.cpu() - begin)
-    if found is None:
-        return None
-    return Run(np.frombuffer(base64.b64decode(found), np.float32).reshape(-1, 4)[: len(rgb)], float(seconds))
-
-
-def listed(wavelengths: list[float]) -> str:
-    """Return numbers as arguments of a function."""
-    return ", ".join(str(float(nm)) for nm in wavelengths)
-
-
-def padded(rgb: Floats, count: int) -> Floats:
-    """Return colours (count, 4) with a fourth channel."""
-    colours = np.zeros((count, 4), np.float32)
-    colours[: len(rgb), :3] = rgb
-    return colours
-
-
-def text_of(data: bytes) -> str:
-    """Return bytes as text."""
-    return base64.b64encode(data).decode()
+        found = opened.evaluate(WEBGL.replace("DATA", json.dumps(data)))
+    return None if found is None else np.frombuffer(base64.b64decode(found), np.float32).reshape(-1, 4)
