@@ -12,7 +12,7 @@ from scipy.linalg import toeplitz
 
 from tests.helpers import raises
 from uplift.common.errors import UpliftError
-from uplift.models import complex_moments, duality, real_moments
+from uplift.models import complex_moments, duality
 from uplift.models.roots import moments_by_roots
 
 small = st.floats(-3, 3)
@@ -69,7 +69,7 @@ def test_invalid_moments_raise(moments):
 @given(values=arrays(float, (5, 17), elements=st.floats(-3, 3)))
 def test_real_and_complex_arithmetic_agree(count, values):
     moments = duality.moments_from_multipliers(values[:, :count])
-    found, valid = real_moments.dual(moments)
+    found, valid = duality.real_dual(moments)
     expected, valid_on_circle = complex_moments.dual(moments.astype(complex))
     assert valid.all()
     assert valid_on_circle.all()
@@ -81,14 +81,14 @@ def test_dark_and_light_spectra():
     level = np.array([1e-4, 1e-2, 1 - 1e-2, 1 - 1e-4])
     ripple = 0.3 * level * (1 - level)
     moments = np.stack([level, ripple, ripple / 3, -ripple / 5], axis=1)
-    multipliers, valid = real_moments.dual(moments)
+    multipliers, valid = duality.real_dual(moments)
     assert valid.all()
     np.testing.assert_allclose(duality.moments_from_multipliers(multipliers), moments, atol=1e-12)
 
 
 def test_moments_outside_the_moment_space_are_invalid():
     moments = np.array([[0.5, 0.1, 0.0], [0.5, 0.4, 0.0], [1.5, 0.1, 0.0], [np.nan, 0, 0], [0.0, 0.1, 0.0]])
-    assert real_moments.dual(moments)[1].tolist() == [True, False, False, False, False]
+    assert duality.real_dual(moments)[1].tolist() == [True, False, False, False, False]
 
 
 def test_levinson_agrees_with_a_dense_solver():

@@ -25,8 +25,8 @@ from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.solver import solve
 from uplift.lattice import Lattice, weighted_sum
 from uplift.models import Model, Moments, evaluate
+from uplift.models.duality import real_dual
 from uplift.models.minimum_norm import ForwardMap
-from uplift.models.real_moments import dual
 
 BRIGHTENING = 0.5
 """Power of max(x) that a colour is divided by: 0 leaves it unchanged, 1 makes it as bright as possible."""
@@ -184,6 +184,6 @@ def _match_nodes(problem: Problem, model: Moments, goal: Array, factor: Array) -
         return model.to_storage(multipliers, COMPILED)
 
     nodes = match(goal * factor) / factor
-    _, valid = dual(nodes)
+    _, valid = real_dual(nodes)
     nodes[~valid] = match(goal[~valid])
     return nodes

@@ -1,6 +1,6 @@
 """Conversion between trigonometric moments and multipliers of bounded maximum-entropy spectra.
 
-`real_moments` and `complex_moments` compute multipliers; `roots` computes moments of nearly box-shaped spectra.
+`complex_moments` has the multipliers of signals on the full circle, `roots` the moments of nearly box-shaped spectra.
 
 References
 ----------
@@ -18,7 +18,7 @@ import numpy as np
 
 from uplift.common.arrays import Array, Complex, Mask
 from uplift.common.errors import UpliftError
-from uplift.models import complex_moments, real_moments
+from uplift.models import complex_moments
 from uplift.models.arctan import arctan
 from uplift.models.roots import moments_by_roots
 
@@ -31,8 +31,8 @@ _SAMPLES = 1 << 18
 """Samples in memory at a time."""
 _ROWS = 1 << 12
 """Spectra per block; their temporary arrays fit into the cache."""
-_GREY_SHARES = (1e-10, 1e-8, 1e-6, 1e-4)
-"""Shares of grey blended in, in turn, until the recursion succeeds."""
+_GREY_WEIGHTS = (1e-10, 1e-8, 1e-6, 1e-4)
+"""Weights of grey blended in, in turn, until the recursion succeeds."""
 
 
 def cosine_basis(phase: Array, count: int) -> Array:
@@ -61,14 +61,9 @@ def integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
 
 @dataclass(frozen=True)
 class Quadrature:
-    """How spectra are integrated to moments.
+    """How spectra are integrated to moments: `integrate` or a faster equivalent.
 
-    Parameters
-    ----------
-    integrate : callable, default `integrate`
-        `integrate`, or a faster equivalent.
-    converged : float, default 1e-8
-        Change by doubling the nodes at which a spectrum has converged. The error is about the square of it.
+    A spectrum has converged when doubling the nodes changes it by ``converged`` at most; the error is about the square.
     """
 
     integrate: Callable[[Array, Array, Array], Array] = integrate
@@ -79,22 +74,10 @@ PRECISE = Quadrature()
 
 
 def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = PRECISE) -> Array:
-    """Compute the moments of spectra by the trapezoid rule over the phase.
+    """Moments (n, C) of the spectra of multipliers (n, C), by the trapezoid rule over the phase.
 
     The rule converges geometrically, so its error is about the square of the last change. The nodes are doubled for
     spectra that have not converged. Nearly box-shaped spectra would need too many nodes; `roots` handles them.
-
-    Parameters
-    ----------
-    multipliers : ndarray, shape (n, C)
-        Multipliers.
-    quadrature : Quadrature
-        How spectra are integrated.
-
-    Returns
-    -------
-    ndarray, shape (n, C)
-        Moments.
     """
     # T_2K = (T_K + M_K) / 2: the first rule and its midpoints together, then midpoints of those that need more.
     count, nodes = multipliers.shape[1], _FIRST_NODES
@@ -114,37 +97,22 @@ def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = PRECIS
 
 
 def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
-    """Compute the multipliers of the bounded maximum-entropy spectra with given moments.
+    """Multipliers (n, C) of the bounded maximum-entropy spectra with given moments (n, C), real or complex.
 
     Complex moments are (1/2π) ∫ g(φ) exp(−ijφ) dφ with a real zeroth moment, where g = ½ + arctan(Re Σ p_l w_l) / π and
     w is the `fourier_basis`. The moments of an even g are real.
 
     Near the boundary of the moment space the recursion breaks down. Such moments are blended with those of grey, with
-    a share of 1e−10 at first and at most 1e−4.
-
-    Parameters
-    ----------
-    moments : ndarray, shape (n, C)
-        Moments, real or complex.
-
-    Returns
-    -------
-    ndarray, shape (n, C)
-        Multipliers.
-
-    Raises
-    ------
-    UpliftError
-        No reflectance has these moments.
+    a weight of 1e−10 at first and at most 1e−4. Raises `UpliftError` for moments that no reflectance has.
     """
     grey = np.zeros_like(moments[:1])
     grey[:, 0] = 0.5
     multipliers, valid = try_dual(moments)
-    for share in _GREY_SHARES:
+    for weight in _GREY_WEIGHTS:
         pending = np.flatnonzero(~valid)
         if not pending.size:
             return multipliers
-        blend = (1 - share) * moments[pending] + share * grey
+        blend = (1 - weight) * moments[pending] + weight * grey
         multipliers[pending], valid[pending] = try_dual(blend)
     if valid.all():
         return multipliers
@@ -156,7 +124,7 @@ def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
 
 def try_dual(moments: RealOrComplex) -> tuple[RealOrComplex, Mask]:
     """Compute the multipliers (n, C) of moments (n, C), and where (n,) they are valid: moments of a reflectance."""
-    dual: Any = real_moments.dual if np.isrealobj(moments) else complex_moments.dual
+    dual: Any = real_dual if np.isrealobj(moments) else complex_moments.dual
     multipliers, valid = np.empty_like(moments), np.empty(len(moments), dtype=bool)
     for first in range(0, len(moments), _ROWS):
         block = slice(first, first + _ROWS)
@@ -164,30 +132,85 @@ def try_dual(moments: RealOrComplex) -> tuple[RealOrComplex, Mask]:
     return multipliers, valid
 
 
-def _trapezoid(nodes: int, count: int) -> tuple[Array, Array]:
-    """Return synthesis (C, K + 1) and analysis (K + 1, C) of the trapezoid rule with K intervals."""
-    table = cosine_basis(np.linspace(-np.pi, 0, nodes + 1), count)
-    weights = np.full(nodes + 1, 1 / nodes)
-    weights[[0, -1]] /= 2
-    return table.T, _analysis(table, weights)
+def _rule(phase: Array, weights: Array, count: int) -> tuple[Array, Array]:
+    """Return synthesis (C, K) and analysis (K, C) of a rule with K nodes and weights."""
+    table = cosine_basis(phase, count)
+    analysis = weights[:, None] * table
+    analysis[:, 1:] /= 2
+    return table.T, analysis
 
 
 def _midpoints(nodes: int, count: int) -> tuple[Array, Array]:
-    """Return synthesis (C, K) and analysis (K, C) of the midpoints of the K intervals."""
-    table = cosine_basis(-np.pi * (np.arange(nodes) + 0.5) / nodes, count)
-    return table.T, _analysis(table, np.full(nodes, 1 / nodes))
+    """Return the rule of the midpoints of K intervals."""
+    return _rule(-np.pi * (np.arange(nodes) + 0.5) / nodes, np.full(nodes, 1 / nodes), count)
 
 
 def _trapezoid_and_midpoints(nodes: int, count: int) -> tuple[Array, Array]:
     """Return synthesis (C, 2K + 1) and analysis (2K + 1, 2C) of both rules, whose moments stand side by side."""
-    rules = (_trapezoid(nodes, count), _midpoints(nodes, count))
+    weights = np.full(nodes + 1, 1 / nodes)
+    weights[[0, -1]] /= 2
+    rules = (_rule(np.linspace(-np.pi, 0, nodes + 1), weights, count), _midpoints(nodes, count))
     synthesis = np.concatenate([rule[0] for rule in rules], axis=1)
     analysis = np.zeros((2 * nodes + 1, 2 * count))
     analysis[: nodes + 1, :count], analysis[nodes + 1 :, count:] = rules[0][1], rules[1][1]
     return synthesis, analysis
 
 
-def _analysis(table: Array, weights: Array) -> Array:
-    projection = weights[:, None] * table
-    projection[:, 1:] /= 2
-    return projection
+def real_dual(moments: Array) -> tuple[Array, Mask]:
+    """Compute multipliers (n, C) of real moments (n, C), and their validity (n,).
+
+    All reflection coefficients share one complex phase. Schur's algorithm (1917) therefore yields them from a real
+    series, and the orthogonal polynomials follow from two real recursions: half of the operations of Levinson's
+    recursion. Internally the order is the first axis, so that all arithmetic runs along contiguous spectra.
+    """
+    orders = np.ascontiguousarray(moments.T)
+    zeroth = orders[0]
+    with np.errstate(all="ignore"):
+        # The series determines the zeroth moment only up to integers.
+        bounded = (zeroth >= 0) & (zeroth <= 1)
+        polynomials, scale, positive = _recursion(*_series(orders))
+        tangent = np.tan(np.pi / 2 * zeroth)
+        polynomials *= np.sqrt(np.stack([tangent, 1 / tangent]) / (2 * scale))
+        # p_l is the coefficient of (τ |A|² − |B|² / τ) / 2κ at lag l, with τ = tan(π c₀ / 2) and κ = Π (1 − g²).
+        multipliers = np.empty_like(orders)
+        for lag, row in enumerate(multipliers):
+            first, second = np.einsum("kpn,kpn->pn", polynomials[lag:], polynomials[: len(orders) - lag])
+            row[:] = first - second
+    return multipliers.T, bounded & positive & np.isfinite(multipliers).all(axis=0)
+
+
+def _series(moments: Array) -> tuple[Array, Array]:
+    """Compute the series (m, n) of sin X / z and sin(π c₀ + X), X = π Σ_l c_l z^l, of moments (m + 1, n).
+
+    Both are parts of exp(iX), whose terms follow from its derivative iX' exp(iX), order by order.
+    """
+    count, spectra = moments.shape
+    slopes = np.pi * np.arange(count)[:, None] * moments
+    parts = np.empty((count, 2, spectra))
+    parts[0, 0], parts[0, 1] = 1, 0
+    for order in range(1, count):
+        np.einsum("kn,kpn->pn", slopes[order:0:-1], parts[:order, ::-1], out=parts[order])
+        parts[order, 0] /= -order
+        parts[order, 1] /= order
+    cosine, sine = parts[:, 0], parts[:, 1]
+    angle = np.pi * moments[0]
+    return sine[1:], np.sin(angle) * cosine[:-1] + np.cos(angle) * sine[:-1]
+
+
+def _recursion(upper: Array, lower: Array) -> tuple[Array, Array, Mask]:
+    """Compute polynomials A and B (C, 2, n), Π (1 − g²) (n,), and whether (n,) all |g| < 1, of ``upper / lower``.
+
+    Each g is the first term of the quotient; the remainder is a quotient again, one order shorter.
+    """
+    count, spectra = upper.shape
+    polynomials = np.zeros((count + 1, 2, spectra))
+    polynomials[0] = 1
+    scale, positive = np.ones(spectra), np.ones(spectra, dtype=bool)
+    for order in range(count):
+        g = upper[0] / lower[0]
+        upper, lower = upper[1:] - g * lower[1:], lower[:-1] - g * upper[:-1]
+        polynomials[1 : order + 2] += np.stack([g, -g]) * polynomials[order::-1]
+        factor = 1 - g * g
+        scale *= factor
+        positive &= factor > 0
+    return polynomials, scale, positive
