@@ -331,7 +331,7 @@ UP_FUNCTION UP_BOOL up_dual(UP_IN float coefficients[UP_COUNT], UP_OUT float mul
 
 #else
 
-/* Multipliers of moments by Schur's algorithm [Schur 1917, see uplift.models.real_moments]; false where it breaks down.
+/* Multipliers of moments by Schur's algorithm [Schur 1917, see uplift.models.duality]; false where it breaks down.
    No branches, so that compilers compute several colours side by side. */
 UP_EXPANDED UP_BOOL up_dual(UP_IN float moments[UP_COUNT], UP_OUT float multipliers[UP_COUNT])
 {
