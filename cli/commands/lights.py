@@ -207,7 +207,7 @@ def texture(
     \b
     Examples:
       uplift lights texture sky.exr -o sky-spectral.exr --wavelengths 400:700:10
-      uplift lights texture sky.exr -o lit.exr --depth half
+      uplift lights texture sky.exr -o half.exr --depth half
     """
     from uplift.io.texture import Spectrum, TextureSettings
     from uplift.lights.lookup import find_table
