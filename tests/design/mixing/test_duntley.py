@@ -56,16 +56,6 @@ def test_dyes():
     np.testing.assert_allclose(found.transmittance, np.exp([-0.6, -3]))
 
 
-def test_thick_layers():
-    """R∞ = Q' B / (K + B + γ) − P'."""
-    K, B = DIFFUSE.absorption, DIFFUSE.backward
-    P, Q = duntley.sources(BEAM, DIFFUSE)
-    expected = Q * B / (K + B + np.sqrt(K * (K + 2 * B))) - P
-    found = duntley.layer(BEAM, DIFFUSE, 200.0)
-    np.testing.assert_allclose(found.reflectance, expected)
-    np.testing.assert_allclose(found.transmittance, 0, atol=1e-12)
-
-
 def test_strong_forward_scattering_gives_the_two_constant_theory():
     """P' → 0 and Q' → 1: the beam becomes diffuse before anything else happens."""
     beam = Flux(BEAM.absorption, BEAM.backward, np.full(2, 1e7))
@@ -97,12 +87,6 @@ def test_energy_is_not_created(rng):
         assert (found.reflectance >= -1e-12).all()
         assert (found.transmittance >= -1e-12).all()
         assert (found.reflectance + found.transmittance <= 1 + 1e-9).all()
-
-
-def test_an_empty_layer_transmits_everything():
-    found = duntley.layer(Flux(NONE, NONE, NONE), Flux(NONE, NONE, NONE), 3.0)
-    np.testing.assert_array_equal(found.transmittance, 1)
-    np.testing.assert_array_equal(found.reflectance, 0)
 
 
 def test_isotropic_paint_in_a_beam_is_two_r_over_three_minus_r(rng):

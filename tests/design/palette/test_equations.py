@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from uplift.design.palette import ColourGoal, SpectrumSpec
+from uplift.design.palette import SpectrumSpec
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.equations import SPACING, equations, unknowns
 
@@ -91,16 +91,3 @@ def test_model_error_residuals_are_differences_between_colours(metamers, model, 
             obtained = model.rgb(model.light(power) * model.reflectance(surface))
             expected.append(3.0 / np.sqrt(3) * (screen @ (power * surface) - obtained))
     np.testing.assert_allclose(residuals(palette, model, x), np.concatenate(expected), atol=1e-10)
-
-
-def test_a_free_colour_may_be_tied_to_a_given_material(metamers, model, guess):
-    """A goal with given light and material determines the free colour."""
-    paint = SpectrumSpec("paint", np.full(81, 0.5))
-    palette = only(
-        metamers,
-        materials=(*metamers.materials, paint),
-        goals=(ColourGoal("paint", "day", free="coat"),),
-    )
-    obtained = screen_matrix(palette.sensor) @ (0.5 * palette.light("day").samples)
-    expected = (obtained - guess[unknowns(palette)["free", "coat"]]) / np.sqrt(3)
-    np.testing.assert_allclose(residuals(palette, model, guess), expected, atol=1e-12)

@@ -179,22 +179,6 @@ def test_an_invalid_spec_is_refused_with_its_key(read, text, code, key):
     assert caught.value.path.name == "spec.toml"
 
 
-@pytest.mark.parametrize(
-    ("text", "line"),
-    [
-        (HEAD + "\n\nsmothness = 1", 5),
-        ("[lights.day]\nilluminant = 'D65'\n[materials]\nnew = { design = true }\n[colours.new]\nday = 3", 6),
-        (HEAD + APART + 'light = "day"\ndelta-e = 1\n' + APART + 'light = "day"\ndelta-e = -1', 10),
-        ("[lights.day]\nilluminant = 'D65'\n[materials.new]\n[free.a]\n", 3),
-        (HEAD + '"lights".x."planck" = 3', 3),
-    ],
-)
-def test_errors_have_the_line_of_the_key(read, text, line):
-    with pytest.raises(PaletteError) as caught:
-        read(text)
-    assert caught.value.line == line
-
-
 def test_errors_of_other_files_are_their_own(read):
     with raises(UnknownNameError, "unknown-entry"):
         read(HEAD + f'materials.x = {{ atlas = "{MACBETH.as_posix()}", entry = "orang" }}')
