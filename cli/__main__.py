@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import gc
-import signal
+import sys
 
 COLLECT_AFTER = 100_000
 """New objects between searches for garbage: imports create a million, which all stay."""
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, as shells report it."""
 
 
 def run() -> None:
-    """Run the command line. A Ctrl-C while it is imported ends the process without a traceback."""
+    """Run the command line in a process of its own."""
     gc.set_threshold(COLLECT_AFTER)
-    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-    from .main import main
+    try:
+        from .main import main
+        from .startup import prepare_process
 
-    main(prog_name="uplift")
+        prepare_process()
+        main(prog_name="uplift")
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)
 
 
 if __name__ == "__main__":

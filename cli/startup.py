@@ -1,17 +1,45 @@
-"""Settings of the process that must precede the import of JAX or numpy."""
+"""Settings of the process: streams, signals, and variables that must precede the import of JAX or numpy."""
 
 from __future__ import annotations
 
+import io
 import os
+import signal
+import sys
 import warnings
 from pathlib import Path
 
 from uplift.common.errors import UpliftWarning
+from uplift.common.files import remove_temporaries
+
+ENDING = ("SIGTERM", "SIGHUP", "SIGBREAK")
+"""Signals that end a command and its worker processes, as well as Ctrl-C."""
 
 
-def draw_without_window() -> None:
-    """Use the backend of matplotlib that needs no display."""
-    os.environ["MPLBACKEND"] = "agg"
+def prepare_process() -> None:
+    """Prepare streams, signals and matplotlib for a command that has the process for itself."""
+    _open_closed_streams()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # characters that the encoding lacks
+    for name in ENDING:
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # not under nohup
+            signal.signal(number, _end)
+    os.environ["MPLBACKEND"] = "agg"  # which needs no display
+
+
+def _open_closed_streams() -> None:
+    """Open the null device in place of streams that the caller closed: another file would take their descriptors."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode))  # noqa: SIM115
+
+
+def _end(number: int, frame: object) -> None:
+    """End the process at once: an exception might be dropped, in an import or a callback of JAX."""
+    remove_temporaries()
+    os._exit(128 + number)  # as shells report the signal
 
 
 def hide_drawing_notes() -> None:
@@ -24,25 +52,24 @@ def hide_drawing_notes() -> None:
 def enable_jit_cache() -> None:
     """Keep compiled JAX code in the user's cache folder, so that later commands do not compile it again.
 
-    Warns if other users can write to the folder, which is not used then.
+    JAX runs the code that it finds there. A folder that other users can write to is not used, with a warning.
     """
     if "JAX_COMPILATION_CACHE_DIR" in os.environ:
         return
     from platformdirs import user_cache_dir
 
-    from .jit_cache import SharedFolderError, prepare
-
     try:
         folder = Path(user_cache_dir("uplift"))
-    except RuntimeError:  # a user without a home compiles every time
-        return
-    try:
-        if not prepare(folder):
+        if not folder.is_absolute():  # a user without a home compiles every time
             return
-    except SharedFolderError as error:
-        problem = f"other users can write to {error}: compiled code is not kept there"
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        status = folder.stat()
+    except (OSError, RuntimeError):
+        return
+    if os.name == "posix" and (status.st_uid != os.getuid() or status.st_mode & 0o022):
+        problem = f"other users can write to {folder}: compiled code is not kept there"
         hint = "remove the folder, or name another one by JAX_COMPILATION_CACHE_DIR"
-        warnings.warn(UpliftWarning(problem, code="shared-cache", hint=hint), stacklevel=2)
+        warnings.warn(UpliftWarning(problem, hint=hint), stacklevel=2)
         return
     os.environ["JAX_COMPILATION_CACHE_DIR"] = str(folder)
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0")

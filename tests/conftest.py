@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
-from uplift_cli import jit_cache
 
 import uplift
 from tests.process_state import kept_process_state
@@ -30,7 +29,7 @@ os.environ["UPLIFT_TRACEBACK"] = "1"
 # once, so workers that share a folder may read half of one.
 CACHE = ROOT / "out" / "cache"
 COMPILED = CACHE / "compiled" / os.environ.get("PYTEST_XDIST_WORKER", "main")
-jit_cache.prepare(COMPILED)
+COMPILED.mkdir(parents=True, exist_ok=True)
 os.environ |= {
     "DASK_TEMPORARY_DIRECTORY": str(CACHE / "dask"),
     "DRJIT_CACHE_DIR": str(CACHE / "drjit"),

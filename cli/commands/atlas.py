@@ -2,31 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.atlas_listing import Listing, Row, list_entries
+from ..completion import complete_atlas
+from ..options import force_option, format_option, scale_option, sensor_options
 from ..output.console import has_colours, make_table, paragraph, print_csv, print_json, say, show
-from ..output.shipped_listing import print_shipped
-from ..params.completion import complete_atlas
-from ..params.options import force_option, format_option, scale_option, sensor_options
 
 if TYPE_CHECKING:
-    from uplift.atlas import Source
+    from uplift.atlas import Atlas
+    from uplift.colorimetry.sensor import Sensor
 
-    from ..output.tables import SafeTable
+SHIPPED = ("name", "entries", "content", "source", "licence")
+"""Columns of the list of shipped atlases."""
+SOURCE = ("name", "digest", "format", "measured", "notes")
+"""Fields of the source of an atlas in JSON."""
 
 
 @click.command("atlas")
 @click.argument("files", metavar="[FILE]...", nargs=-1, shell_complete=complete_atlas)
-@scale_option()
+@scale_option
 @sensor_options
 @format_option("table", "json", "csv")
 @click.option("-o", "--output", metavar="FILE", type=click.Path(), help="Write all entries to FILE instead of a list.")
-@force_option()
+@force_option
 def command(
     files: tuple[str, ...],
     scale: Any,
@@ -60,25 +62,94 @@ def command(
             raise click.UsageError("--output needs an atlas to write.")
         print_shipped(style)
         return
-    from uplift.atlas import read_atlas
-
-    if output is not None:
-        _convert(files, scale, output, force)
-        return
-    atlas = read_atlas(*files, measured=scale)
-    from uplift.colorimetry.observer import DEFAULT_OBSERVER, sensor
-
-    PRINTERS[style](list_entries(atlas, sensor(space, illuminant, observer or DEFAULT_OBSERVER)))
-
-
-def _convert(files: tuple[str, ...], measured: Any, path: str, force: bool) -> None:
     from uplift.atlas import read_atlas, write_atlas
+    from uplift.colorimetry.observer import DEFAULT_OBSERVER, sensor
     from uplift.common.files import check_output
 
-    check_output(path, inputs=files, force=force)
-    atlas = read_atlas(*files, measured=measured)
-    write_atlas(atlas, path, force=force)
-    say(f"{path}: {len(atlas)} entries", err=True)
+    if output is not None:
+        check_output(output, inputs=files, force=force)
+    atlas = read_atlas(*files, measured=scale)
+    if output is None:
+        PRINTERS[style](_list_entries(atlas, sensor(space, illuminant, observer or DEFAULT_OBSERVER)))
+    else:
+        write_atlas(atlas, output, force=force)
+        say(f"{output}: {len(atlas)} entries", err=True)
+
+
+def print_shipped(style: str) -> None:
+    """Print the shipped atlases as table, JSON or CSV."""
+    from uplift.atlas import shipped_atlases
+
+    atlases = shipped_atlases()
+    rows = [{name: getattr(atlas, name) for name in SHIPPED} for atlas in atlases]
+    if style == "json":
+        files = [{"path": str(atlas.path), "digest": atlas.digest} for atlas in atlases]
+        print_json({"atlases": [row | file for row, file in zip(rows, files, strict=True)]})
+    elif style == "csv":
+        print_csv(SHIPPED, (list(row.values()) for row in rows))
+    else:
+        table = make_table()
+        for name in SHIPPED:
+            table.add_column(name, justify="right" if name == "entries" else "left", no_wrap=name in SHIPPED[:2])
+        for row in rows:
+            table.add_row(*map(str, row.values()))
+        show(table)
+        say()
+        paragraph("Use a name as --atlas NAME, or in place of FILE.")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One entry: range in nm, linear RGB, 8-bit sRGB, and warnings."""
+
+    name: str
+    start: float
+    end: float
+    step: float | None
+    rgb: tuple[float, float, float]
+    swatch: tuple[int, int, int]
+    in_gamut: bool
+    warnings: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Listing:
+    """An atlas, its colours under one sensor, and the smallest common RGB space that holds all of them."""
+
+    atlas: Atlas
+    sensor: Sensor
+    rows: tuple[Row, ...]
+    smallest_space: str | None
+
+
+def _list_entries(atlas: Atlas, sensor: Sensor) -> Listing:
+    """List all entries under a sensor, with reflectances clipped as in a build."""
+    from uplift.atlas import resample
+    from uplift.colorimetry.gamut import SRGB
+    from uplift.colorimetry.observer import sensor as make_sensor
+    from uplift.colorimetry.observer import smallest_space
+    from uplift.colorimetry.srgb import to_display_codes
+
+    resampled = resample(atlas, sensor.wavelengths)
+    display = make_sensor("sRGB", sensor.illuminant, sensor.observer)
+    clips = {clip.name: (str(clip),) for clip in resampled.clips}
+    colours = sensor.rgb(resampled.values).tolist()
+    codes = to_display_codes(display.rgb(resampled.values), SRGB).astype(int).tolist()
+    rows = [
+        Row(
+            entry.name,
+            float(entry.wavelengths[0]),
+            float(entry.wavelengths[-1]),
+            entry.step,
+            tuple(rgb),
+            tuple(code),
+            bool(sensor.contains(rgb)),
+            clips.get(entry.name, ()),
+        )
+        for entry, rgb, code in zip(atlas.entries, colours, codes, strict=True)
+    ]
+    smallest = smallest_space(resampled.values, sensor.illuminant, sensor.observer)
+    return Listing(atlas, sensor, tuple(rows), smallest)
 
 
 def _print_json(listing: Listing) -> None:
@@ -88,17 +159,12 @@ def _print_json(listing: Listing) -> None:
         "space": sensor.space,
         "illuminant": sensor.illuminant,
         "observer": sensor.observer,
-        "sources": [_source(source) for source in listing.atlas.sources],
+        "sources": [{name: getattr(source, name) for name in SOURCE} for source in listing.atlas.sources],
         "smallest_space": listing.smallest_space,
         "entries": rows,
         "skipped": [asdict(skipped) for skipped in listing.atlas.skipped],
     }
     print_json(fields)
-
-
-def _source(source: Source) -> dict[str, Any]:
-    names = ("name", "digest", "format", "measured", "notes")
-    return {name: getattr(source, name) for name in names}
 
 
 def _print_csv(listing: Listing) -> None:
@@ -111,16 +177,6 @@ def _print_csv(listing: Listing) -> None:
 
 
 def _print_table(listing: Listing) -> None:
-    show(_table(listing))
-    for row in listing.rows:
-        for warning in row.warnings:
-            paragraph(f"{row.name}: {warning}")
-    for source in listing.atlas.sources:
-        paragraph("; ".join((f"{source.name}: {source.format}", *source.notes)))
-    paragraph(_summary(listing))
-
-
-def _table(listing: Listing) -> SafeTable:
     from rich.text import Text
 
     sensor = listing.sensor
@@ -130,32 +186,29 @@ def _table(listing: Listing) -> SafeTable:
     for row in listing.rows:
         red, green, blue = row.swatch
         swatch = [Text("   ", style=f"on rgb({red},{green},{blue})")] * swatches
-        table.add_row(*swatch, *_cells(row))
-    return table
-
-
-def _cells(row: Row) -> Iterator[str]:
-    yield row.name
-    step = "" if row.step is None else f":{row.step:g}"
-    yield f"{row.start:g}:{row.end:g}{step}"
-    yield from (f"{channel:.4f}" for channel in row.rgb)
+        step = "" if row.step is None else f":{row.step:g}"
+        rgb = (f"{channel:.4f}" for channel in row.rgb)
+        table.add_row(*swatch, row.name, f"{row.start:g}:{row.end:g}{step}", *rgb)
+    show(table)
+    for row in listing.rows:
+        for warning in row.warnings:
+            paragraph(f"{row.name}: {warning}")
+    for source in listing.atlas.sources:
+        paragraph("; ".join((f"{source.name}: {source.format}", *source.notes)))
+    paragraph(_summary(listing))
 
 
 def _summary(listing: Listing) -> str:
+    """Return the numbers of entries, of those out of gamut with the space that holds all, and of skipped ones."""
     outside = [row.name for row in listing.rows if not row.in_gamut]
     skipped = [skipped.name for skipped in listing.atlas.skipped]
-    parts = [
-        f"{len(listing.rows)} entries",
-        _count(outside, f"out of the {listing.sensor.space} gamut"),
-        _count(skipped, "skipped"),
-    ]
-    return ", ".join(parts) + (f"; {_way_out(listing)}" if outside else "")
-
-
-def _way_out(listing: Listing) -> str:
-    if listing.smallest_space is None:
-        return "no common RGB space holds all"
-    return f"{listing.smallest_space} holds all {len(listing.rows)}"
+    text = f"{len(listing.rows)} entries, {_count(outside, f'out of the {listing.sensor.space} gamut')}, "
+    text += _count(skipped, "skipped")
+    if outside and listing.smallest_space is None:
+        text += "; no common RGB space holds all"
+    elif outside:
+        text += f"; {listing.smallest_space} holds all {len(listing.rows)}"
+    return text
 
 
 def _count(names: Sequence[str], label: str) -> str:

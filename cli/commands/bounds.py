@@ -2,29 +2,43 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import chain
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from uplift.colorimetry.lights import RELIGHT_LIGHTS
+from uplift.lookup.light_errors import LIKELY
 
-from ..output.bounds_output import write_bounds
-from ..params.options import force_option, format_option, light_option
-from ..params.plots import plot_option
-from .query import ColourCommand, ask, colour_options
+from ..options import force_option, format_option, light_option, plot_option
+from ..output.answers import format_rgb, hex_code, patch, print_fields
+from ..output.console import csv_writer, emit, make_table, print_json, print_json_stream, say, show
+from .query import ColourCommand, QueryStream, ask, colour_options, result_object
+
+if TYPE_CHECKING:
+    from uplift.lookup import Bounds, Cube, QueryResult
+
+Block = tuple[Sequence["QueryResult"], Sequence["Bounds"]]
+"""Answers, and their bounds under each light."""
+UNKNOWN = "–"
+LIKELY_TITLE = f"likely {LIKELY:.0%}"
+"""Heading of the error bounds: ΔE00 that this share of the materials like the atlas stay within."""
+DIVISIONS, SINGLE_DIVISIONS = 2, 3
+"""Density of the directions of bounds: 162 of each of many colours, 642 of a single one."""
 
 
 @click.command("bounds", cls=ColourCommand)
-@colour_options()
+@colour_options
 @light_option("Illuminant under which the bounds are shown", " ".join(RELIGHT_LIGHTS))
 @format_option("table", "json", "csv")
-@plot_option("--plot", "plot_path", "Plot the bounds")
+@plot_option("Plot the bounds")
 @click.option(
     "--html",
     metavar="FILE",
     help="Write a page on which the colour under each --light is dragged within its bounds, for a file of looks.",
 )
-@force_option()
+@force_option
 def command(
     lights: tuple[str, ...], style: str, plot_path: str | None, html: str | None, force: bool, **colours: Any
 ) -> None:
@@ -47,9 +61,125 @@ def command(
     from uplift.common.files import check_outputs
 
     check_outputs((plot_path, html), inputs=(colours["cube_path"], colours["input_path"]), force=force)
-    answers, results, single = ask(lights=lights or RELIGHT_LIGHTS, **colours)
+    stream, results, single = ask(lights=lights or RELIGHT_LIGHTS, **colours)
     if html is not None and not single:
         raise click.UsageError("--html shows one colour: give it on the command line.")
-    blocks = ((block, answers.bounds(block, single=single)) for block in results)
-    write_bounds(answers.cube, blocks, style, plot_path, html, single=single, force=force)
-    answers.warn()
+    blocks: Iterable[Block] = ((block, _bounds(stream, block, single=single)) for block in results)
+    if plot_path is not None or html is not None:
+        blocks = list(blocks)
+    if plot_path is not None:
+        from uplift.viz.plots import plot_bounds
+
+        plot_bounds(stream.cube, [found for _, found in blocks], plot_path, force=force)
+    if html is not None:
+        from uplift.report.look_page import write_look_page
+
+        write_look_page(stream.cube, next(iter(blocks))[1], html, force=force)
+        say(f"{html}: page to choose a look on", err=True)
+    WRITERS[style](stream.cube, blocks, single)
+    stream.warn()
+
+
+def _bounds(stream: QueryStream, block: Sequence[QueryResult], *, single: bool) -> list[Bounds]:
+    """Compute the bounds of a block under each light, from more directions for a single colour."""
+    import numpy as np
+
+    from uplift.lookup import bounds
+
+    rgb = np.stack([result.rgb for result in block])
+    divisions = SINGLE_DIVISIONS if single else DIVISIONS
+    return [bounds(stream.cube, rgb, light, stream.mode, divisions) for light in stream.lights]
+
+
+def _print_json(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
+    """Print one object for a colour given on the command line, else an array."""
+    objects = chain.from_iterable(_objects(cube, *block) for block in blocks)
+    if single:
+        print_json(next(objects), indent=None)
+    else:
+        print_json_stream(objects)
+
+
+def _objects(cube: Cube, results: Sequence[QueryResult], found: Sequence[Bounds]) -> Iterable[dict[str, Any]]:
+    for row, result in enumerate(results):
+        yield result_object(cube, result) | {"bounds": {each.light.name: _object(each, row) for each in found}}
+
+
+def _object(found: Bounds, row: int) -> dict[str, Any]:
+    from uplift.colorimetry.delta_e import lab
+
+    likely = found.likely(row)
+    return {
+        "lab": found.lab[row].tolist(),
+        "largest_delta_e_2000": float(found.largest.delta_e_2000[row]),
+        "largest_lab": lab(found.largest.xyz[row], found.light.white).tolist(),
+        "outer_delta_e_2000": float(found.largest.outer[row]),
+        "lab_range": found.box[row].tolist(),
+        "share": float(found.share[row]),
+        "outline": found.outline(row).tolist(),
+        "covariance": None if found.covariance is None else found.covariance[row].tolist(),
+        "likely": None if likely is None else likely.tolist(),
+        "likely_share": LIKELY,
+    }
+
+
+def _print_csv(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
+    """Print a row per colour and light."""
+    writer = csv_writer()
+    lab_range = [f"{name}_{end}" for end in ("min", "max") for name in ("L*", "a*", "b*")]
+    columns = ["r", "g", "b", "light", "L*", "a*", "b*", "standard_error", "error_bound"]
+    writer.write([*columns, "largest", "outer", *lab_range, "share"])
+    for results, found in blocks:
+        for row, result in enumerate(results):
+            for each in found:
+                light = each.light.name
+                errors = (
+                    result.standard_errors.get(light, ""),
+                    result.error_bounds.get(light, ""),
+                )
+                largest = each.largest
+                differences = [float(values[row]) for values in (largest.delta_e_2000, largest.outer)]
+                lab_range = each.box[row].ravel().tolist()
+                answer: list[object] = [*result.rgb.tolist(), light, *each.lab[row].tolist()]
+                writer.write([*answer, *errors, *differences, *lab_range, float(each.share[row])])
+
+
+def _print_table(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
+    """Print a line per colour and light; a single colour has its fields above."""
+    for number, (results, found) in enumerate(blocks):
+        if single:
+            rgb = results[0].rgb
+            fields = {"linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"}
+            print_fields(fields, {"linear RGB": patch(cube, rgb)})
+            emit("")
+        table = make_table(
+            ("hex",) * (not single) + ("light",),
+            ("L* a* b*", LIKELY_TITLE, "largest", "a*", "b*", "share"),
+            box=None,
+            show_header=number == 0,
+        )
+        for row, result in enumerate(results):
+            for column, each in enumerate(found):
+                code = hex_code(cube, result.rgb) if column == 0 else ""
+                table.add_row(*(code,) * (not single), *_cells(result.error_bounds, each, row))
+        show(table)
+
+
+def _cells(error_bounds: Mapping[str, float], found: Bounds, row: int) -> Iterable[str]:
+    error = error_bounds.get(found.light.name)
+    (_, least_a, least_b), (_, most_a, most_b) = found.box[row].tolist()
+    yield found.light.name
+    yield " ".join(f"{value:.1f}" for value in found.lab[row])
+    yield UNKNOWN if error is None else f"{error:.2f}"
+    yield f"{found.largest.delta_e_2000[row]:.2f}"
+    yield f"{least_a:.0f} to {most_a:.0f}"
+    yield f"{least_b:.0f} to {most_b:.0f}"
+    yield f"{found.share[row]:.2g}"
+
+
+WRITERS: dict[str, Callable[[Cube, Iterable[Block], bool], None]] = {
+    "table": _print_table,
+    "json": _print_json,
+    "csv": _print_csv,
+}
+"""Printers of blocks, each before the next one is computed."""

@@ -10,12 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
-from ..output.build_summary import print_improvements, print_summary
-from ..params.image_paths import expand_patterns
-from ..params.number_types import NUMBER, Whole
-from ..params.options import (
-    LatticeDim,
+from uplift.common.text import format_value, parse_whole
+
+from ..inputs import expand_patterns, parse_range
+from ..options import (
+    NUMBER,
+    Whole,
     atlas_option,
     coefficients_option,
     encoding_option,
@@ -28,20 +30,38 @@ from ..params.options import (
     sensor_options,
     verbose_option,
 )
-from ..params.wavelengths import parse_range
+from ..output.console import say
+from ..output.progress import build_progress
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.io.scene_colours import Images
     from uplift.lookup import Cube
 
-ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose")
+ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet", "verbose"}
 """Parameters that may accompany --plan."""
+OF_IMAGES = {"encoding": "--encoding", "method": "--out-of-gamut", "input_space": "--input-space"}
+"""Options of --scene images by parameter."""
+
+
+class LatticeDim(click.ParamType):  # type: ignore[type-arg]
+    """A whole number or 'auto'."""
+
+    name = "dim"
+
+    def convert(self, value: str | int, param: click.Parameter | None, ctx: click.Context | None) -> int | str:
+        """Return a whole number or 'auto'."""
+        if value == "auto" or isinstance(value, int):
+            return value
+        try:
+            return parse_whole(value)
+        except ValueError:
+            self.fail(f"{format_value(value)} is neither a whole number nor 'auto'", param, ctx)
 
 
 @click.command("build")
 @atlas_option("Measured spectra")
-@scale_option()
+@scale_option
 @click.option(
     "-o",
     "--output",
@@ -64,7 +84,7 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
     help="ΔE00 within which the lattice of --dim auto must reproduce the entries.",
 )
 @click.option("--model", default="moments", show_default=True, help="Spectrum model: moments or sigmoid.")
-@coefficients_option()
+@coefficients_option
 @click.option(
     "--entry-coefficients",
     type=Whole(),
@@ -146,9 +166,9 @@ ALLOWED_WITH_PLAN = ("plan_path", "output", "debug", "force", "quiet", "verbose"
     help="Start all eight nodes around an entry from it: closer near entries, less so for other materials.",
 )
 @click.option("--debug", is_flag=True, help="Store the round of every node, for 'uplift slices'.")
-@force_option()
-@quiet_option()
-@verbose_option()
+@force_option
+@quiet_option
+@verbose_option
 def command(
     plan_path: str | None,
     files: tuple[str, ...],
@@ -194,90 +214,91 @@ def command(
     enable_jit_cache()
     from uplift.common.files import check_output
 
-    from ..output.progress import build_progress
-
+    context = click.get_current_context()
+    given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
     build: Callable[..., Cube]
-    inputs: tuple[str | Path | None, ...]
-    if plan_path is None:
-        scene = _scene(images, encoding, method, input_space)
-        inputs = (
-            *files,
-            *options["library"],
-            options["looks"],
-            options["observer"],
-            *(scene.paths if scene else ()),
-        )
-        given = {name: value for name, value in options.items() if value not in (None, ())}
-        given["shortest"], given["longest"] = parse_range(limits)
-        build = partial(_build, files, scale, scene=scene, **given)
-        name = _default_name(files, images, options)
+    inputs: list[str | Path | None]
+    if plan_path is not None:
+        if others := [each.opts[-1] for each in context.command.params if each.name in given - ALLOWED_WITH_PLAN]:
+            raise click.UsageError(f"The plan already sets these options: leave out {', '.join(others)}.")
+        from uplift.scene.plan import read_plan
+        from uplift.scene.plan.commands import cube_name
+
+        plan = read_plan(plan_path)
+        build = partial(plan.build, debug=options["debug"])
+        name = cube_name(plan_path)
+        inputs = [plan_path, *plan.textures, *plan.atlases]
     else:
-        build, name, inputs = _planned_build(plan_path, click.get_current_context())
+        if not images and (useless := given & set(OF_IMAGES)):
+            names = ", ".join(OF_IMAGES[name] for name in sorted(useless))
+            raise click.UsageError(f"{names}: no --scene image is given to which this applies.")
+        scene = _scene(images, encoding, method, input_space)
+        options["shortest"], options["longest"] = parse_range(limits)
+        build = partial(_build, files, scale, scene=scene, **options)
+        name = _default_name(files, images, options)
+        inputs = [*files, *options["library"], options["looks"], options["observer"], *(scene.paths if scene else ())]
     path = check_output(name if output is None else output, inputs=inputs, force=force)
     begin = time.perf_counter()
     with build_progress(quiet=quiet, verbose=verbose) as progress:
         cube = build(progress=progress)
     cube.save(path, force=force)
     if verbose:
-        print_improvements(cube)
+        for step in cube.data.provenance["improvements"]:
+            say(f"improvement, {step['step']}: tried {step['tried']}, fixed {step['mended']}", err=True)
     if not quiet:
-        print_summary(cube, path, time.perf_counter() - begin)
+        _print_summary(cube, path, time.perf_counter() - begin)
 
 
 def _build(files: tuple[str, ...], scale: Any, **options: Any) -> Cube:
     from uplift.atlas import read_atlas
     from uplift.pipeline.build import build
 
-    return build(read_atlas(*files, measured=scale) if files else None, **options)
+    given = {name: value for name, value in options.items() if value not in (None, ())}
+    return build(read_atlas(*files, measured=scale) if files else None, **given)
 
 
 def _scene(images: tuple[str, ...], encoding: str, method: str, space: str | None) -> Images | None:
-    """Return the images of the scene. Raises click's error for their options without images."""
-    if images:
-        from uplift.io.scene_colours import Images
+    """Return the images of the scene, None without images."""
+    if not images:
+        return None
+    from uplift.io.scene_colours import Images
 
-        return Images(tuple(map(Path, expand_patterns(images))), encoding, method, space)
-    options = (
-        ("--encoding", encoding, "auto"),
-        ("--out-of-gamut", method, "clip"),
-        ("--input-space", space, None),
-    )
-    for option, value, default in options:
-        if value != default:
-            raise click.UsageError(f"{option} applies to --scene images, and no image is given.")
-    return None
-
-
-def _planned_build(path: str, context: click.Context) -> tuple[Callable[..., Cube], str, tuple[str | Path, ...]]:
-    """Return the build of a plan, the cube's name and the files to read.
-
-    Raises click's error for options that contradict the plan.
-    """
-    from uplift.scene.plan import read_plan
-    from uplift.scene.plan.commands import cube_name
-
-    source = click.core.ParameterSource.COMMANDLINE
-    given = [each for each in context.command.params if context.get_parameter_source(each.name or "") == source]
-    if others := [each.opts[-1] for each in given if each.name not in ALLOWED_WITH_PLAN]:
-        raise click.UsageError(f"The plan already sets these options: leave out {', '.join(others)}.")
-    plan = read_plan(path)
-    build = partial(plan.build, debug=context.params["debug"])
-    return build, cube_name(path), (path, *plan.textures, *plan.atlases)
+    return Images(tuple(map(Path, expand_patterns(images))), encoding, method, space)
 
 
 def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], options: dict[str, Any]) -> str:
-    space = re.sub("[ /]", "-", _space_name(options["space"])).lower()
+    """Return the name of a cube file: atlases, dim, and the space if it is not sRGB."""
+    from uplift.colorimetry.camera import CAMERA
+
+    space = options["space"]
+    if space not in ("sRGB", CAMERA):
+        from uplift.colorimetry.spaces import look_up_space
+
+        space = str(look_up_space(space).name)
+    space = re.sub("[ /]", "-", space).lower()
     stem = "+".join(Path(atlas).stem for atlas in atlases) or space
     suffix = f"-{space}" if atlases and space != "srgb" else ""
     return f"{stem}-{options['dim']}{suffix}{'-scene' if images else ''}.uplift"
 
 
-def _space_name(name: str) -> str:
-    """Return the name of a space by one of its names."""
-    from uplift.colorimetry.camera import CAMERA
+def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
+    """Print nodes, entries, accuracy, size and time on one line."""
+    from uplift.lattice import Status
 
-    if name in ("sRGB", CAMERA):
-        return name
-    from uplift.colorimetry.spaces import look_up_space
-
-    return str(look_up_space(name).name)
+    data, counts = cube.data, cube.data.points.counts()
+    size, unfitted, unrealisable = data.lattice.size, counts["unfitted"], counts["unrealisable"]
+    nodes = f"{size} nodes"
+    if data.complete_cells is not None:
+        count = int(data.points.present.sum())
+        nodes = f"{count} of {size} nodes ({count / size:.1%})"
+    accuracy = f"{unfitted} EXCEED the threshold {data.threshold:g}" if unfitted else f"all within {data.threshold:g}"
+    if unrealisable:
+        accuracy += f" except {unrealisable} unrealisable ones, stored with less chroma"
+    worst = data.points.distance[data.points.status != Status.UNREALISABLE].max(initial=0)
+    measured, looks = data.atlas.measured_count, data.atlas.looks
+    entries = f"{measured} atlas entries, " if data.provenance["atlases"] else ""
+    entries += f"{looks} look{'s' * (looks != 1)}, " if looks else ""
+    say(
+        f"{path}: {nodes}, {entries}{accuracy} (worst {worst:.1e}), "
+        f"{counts['improved']} improved, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
+    )

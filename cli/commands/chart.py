@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from ..inputs import DEFAULT_ATLASES, read_atlases
+from ..options import NUMBER, Whole, atlas_option, force_option
 from ..output.console import make_table, say, show
 from ..output.progress import progress_bar
-from ..params.atlases import DEFAULT_ATLASES, read_atlases
-from ..params.number_types import NUMBER, Whole
-from ..params.options import atlas_option, force_option
 from ..startup import enable_jit_cache, use_one_blas_thread
 
 if TYPE_CHECKING:
@@ -35,7 +34,7 @@ FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
 @click.option(
     "--colours",
     metavar="N",
-    type=Whole(high=1_000_000),
+    type=Whole(max=1_000_000),
     default=2000,
     show_default=True,
     help="Number of random colours for the round trip.",
@@ -53,7 +52,7 @@ FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
     is_flag=True,
     help="With --recommend: ΔE00 of the atlas entries instead of unseen materials.",
 )
-@force_option()
+@force_option
 def command(
     output: str,
     patterns: tuple[str, ...],

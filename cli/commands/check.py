@@ -11,10 +11,10 @@ import click
 
 from uplift.common.errors import UpliftError
 
+from ..completion import complete_cube
+from ..options import atlas_folders_option, format_option, quiet_option, verbose_option
 from ..output.console import make_table, print_json, say, show
-from ..output.diagnostics import UsageFailure, error_object
-from ..params.completion import complete_cube
-from ..params.options import atlas_folders_option, format_option, quiet_option, verbose_option
+from ..output.diagnostics import CommandFailure, error_object
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 @click.command("check")
 @click.argument("files", nargs=-1, required=True, shell_complete=complete_cube)
-@atlas_folders_option()
+@atlas_folders_option
 @click.option("--update", is_flag=True, help="Replace the cubes that differ by the rebuilt ones.")
 @format_option("table", "json")
-@quiet_option()
-@verbose_option()
+@quiet_option
+@verbose_option
 def command(
     files: tuple[str, ...], folders: tuple[str, ...], update: bool, style: str, quiet: bool, verbose: bool
 ) -> None:
@@ -65,7 +65,7 @@ def command(
     failed = [result for result in results if not result.passed and result not in replaced]
     for result in failed:
         if result.error and style != "json":
-            UsageFailure(result.error).show()
+            CommandFailure(result.error).show()
     for result in replaced:
         result.replace()
     if failed:
@@ -128,10 +128,10 @@ def _object(result: _Result) -> dict[str, object]:
 def _table(results: Sequence[_Result]) -> None:
     from uplift.report.regression import LIMITS
 
-    headings = {"rgb": "RGB", "spectra_max": "spectra max", "spectra_rms": "rms"}
-    measures = (headings.get(name, name.replace("delta_e_", "ΔE00 ")) for name in LIMITS)
+    headings = {"rgb": "RGB", "spectra_max": "spectra", "spectra_rms": "rms"}
+    measures = (headings.get(name, name.replace("delta_e_", "ΔE ")) for name in LIMITS)
     table = make_table()
-    table.add_column("cube", overflow="fold")
+    table.add_column("cube", no_wrap=True)
     for measure in measures:
         table.add_column(measure, justify="right", no_wrap=True)
     table.add_column("nodes", no_wrap=True)

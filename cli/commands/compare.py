@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.console import print_csv_text, print_json, say
+from ..inputs import DEFAULT_ATLASES, read_atlases
+from ..options import NUMBER, atlas_option, force_option, format_option, light_option, output_folder_option
+from ..output.console import make_table, print_csv_text, print_json, say, show
 from ..output.progress import progress_bar
-from ..params.atlases import DEFAULT_ATLASES, read_atlases
-from ..params.number_types import NUMBER
-from ..params.options import atlas_option, force_option, format_option, light_option, output_folder_option
 from ..startup import use_one_blas_thread
 
 if TYPE_CHECKING:
-    from uplift.lab.comparison.compare import Comparison, Scene
+    from uplift.lab.comparison.compare import Comparison, Scene, Statistics
     from uplift.lab.comparison.filters import TunedFilter
 
 FILES = ("compare.csv", "compare-boxes.png", "compare-cost.png", "compare.html")
@@ -28,7 +27,6 @@ FILTERS = "compare-filters.csv"
 @light_option("Illuminant", "A, B, C, and FL2, FL7, FL11")
 @click.option(
     "--tolerance",
-    "target",
     metavar="ΔE00",
     type=NUMBER,
     help="Print the cheapest representation with 97.5 % of errors below this value.",
@@ -39,13 +37,13 @@ FILTERS = "compare-filters.csv"
     help="Also search the best low-pass filters for point sampling, which takes minutes.",
 )
 @click.option("--quick", is_flag=True, help="At most forty surfaces, few repeats and a coarse search: seconds.")
-@output_folder_option()
+@output_folder_option
 @format_option("table", "json", "csv")
-@force_option()
+@force_option
 def command(
     files: tuple[str, ...],
     lights: tuple[str, ...],
-    target: float | None,
+    tolerance: float | None,
     filters: bool,
     quick: bool,
     output: str | None,
@@ -73,30 +71,21 @@ def command(
       uplift compare --filters --output filters --force
     """
     use_one_blas_thread()
-    if target is not None:
+    from uplift.common.files import check_folder
+
+    if tolerance is not None:
         from uplift.lab.comparison.compare import check_target
 
-        check_target(target)
-    folder = _folder(output, files, filters=filters, force=force)
+        check_target(tolerance)
+    names = (*FILES, FILTERS) if filters else FILES
+    folder = None if output is None else check_folder(output, names, inputs=files, force=force)
     comparison, tuned = _measure(files, lights, filters=filters, quick=quick)
     if folder is not None:
         _write(comparison, tuned, folder, force=force)
-    if target is not None:
-        from ..output.compare_tables import print_advice
-
-        print_advice(comparison, target)
-        return
-    PRINTERS[style](comparison, tuned)
-
-
-def _folder(output: str | None, inputs: tuple[str, ...], *, filters: bool, force: bool) -> Path | None:
-    """Create the output folder and check its files before the work. Raises `OutputError`."""
-    from uplift.common.files import check_folder
-
-    if output is None:
-        return None
-    names = (*FILES, FILTERS) if filters else FILES
-    return check_folder(output, names, inputs=inputs, force=force)
+    if tolerance is not None:
+        _print_advice(comparison, tolerance)
+    else:
+        PRINTERS[style](comparison, tuned)
 
 
 def _measure(
@@ -138,12 +127,50 @@ def _write(comparison: Comparison, tuned: tuple[TunedFilter, ...], folder: Path,
     say(f"{folder}: {', '.join((*FILES, FILTERS) if tuned else FILES)}", err=True)
 
 
-def _print_table(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
-    from ..output.compare_tables import print_comparison, print_filters
+def _print_advice(comparison: Comparison, tolerance: float) -> None:
+    """Print the cheapest sufficient representation for each set of lights."""
+    from uplift.lab.comparison.compare import cheapest, most_accurate
+    from uplift.viz.format import format_error, format_time
 
-    print_comparison(comparison)
+    for name, title in comparison.sets.items():
+        row = cheapest(comparison, name, tolerance)
+        if row is None:
+            best = most_accurate(comparison, name)
+            text = f"none; the most accurate, {best.name}, has {format_error(best.statistics.q97_5)}"
+        else:
+            text = (
+                f"{row.name} ({row.family}): 97.5 % below {format_error(row.statistics.q97_5)}, "
+                f"{row.floats:.4g} floats per surface, {row.light_floats:.4g} per light, "
+                f"{format_time(row.ns.median)} per product"
+            )
+        say(f"{title}: {text}")
+
+
+def _print_table(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
+    """Print a ranked table for each set of lights, and the best filter of each kind."""
+    from uplift.lab.comparison.compare import HEADINGS
+    from uplift.viz.format import format_time
+
+    tables = []
+    for name, title in comparison.sets.items():
+        numbers = ("mean", "median", "97.5 %", "floats", "of a light", "product")
+        table = make_table(("representation",), numbers, title=f"ΔE00 under {title}")
+        for row in comparison.of(name):
+            errors = (row.statistics.mean, row.statistics.median, row.statistics.q97_5)
+            cost = (f"{row.floats:.1f}", f"{row.light_floats:.1f}", format_time(row.ns.median))
+            table.add_row(row.name, *(f"{error:.3f}" for error in errors), *cost)
+        tables.append(table)
     if tuned:
-        print_filters(tuned)
+        title = "point sampling after the best low-pass filter of each kind"
+        table = make_table(("lights", "samples", "filter", "parameters"), HEADINGS, title=title)
+        for one in sorted(tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)):
+            table.add_row(one.lights, str(one.count), one.kind, one.parameters, *_cells(one.statistics))
+        tables.append(table)
+    show(*tables)
+
+
+def _cells(statistics: Statistics) -> list[str]:
+    return [f"{value:.3f}" for value in statistics]
 
 
 def _records(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> dict[str, Any]:

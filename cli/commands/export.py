@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..completion import complete_cube
+from ..options import Whole, fill_option, force_option
 from ..output.console import say
 from ..output.progress import spinner
-from ..params.completion import complete_cube
-from ..params.number_types import Whole
-from ..params.options import fill_option, force_option
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -49,8 +48,8 @@ SUFFIXES = {"coeff": ".coeff", **PROGRAMS, "npz": ".npz", "csv": ".csv", "html":
     type=click.Choice(("header", "file")),
     help="Where the table of a program is. [default: header for c, else file]",
 )
-@fill_option()
-@force_option()
+@fill_option
+@force_option
 def command(
     cube: str,
     out: str | None,

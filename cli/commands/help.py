@@ -99,7 +99,7 @@ def _print_observers() -> None:
 
 
 def _print_atlases() -> None:
-    from ..output.shipped_listing import print_shipped
+    from .atlas import print_shipped
 
     print_shipped("table")
 

@@ -7,9 +7,9 @@ from typing import Any
 import click
 import numpy as np
 
+from ..completion import complete_cube
+from ..options import format_option
 from ..output.console import make_table, print_json, say, show
-from ..params.completion import complete_cube
-from ..params.options import format_option
 
 
 @click.command("info")

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..output.console import csv_writer, emit, print_json, say, terminal_json
-from ..output.query_output import format_rgb, print_columns, print_fields, sparkline
-from ..params.completion import complete_lights, complete_space
-from ..params.options import (
+from ..colours import ColourReader, find_point
+from ..completion import complete_lights, complete_space
+from ..inputs import find_input_space, parse_wavelengths
+from ..options import (
     atlas_option,
     encoded_option,
     encoding_option,
@@ -22,15 +22,13 @@ from ..params.options import (
     format_option,
     input_option,
     input_space_option,
+    plot_option,
     quiet_option,
     wavelengths_option,
     xyz_options,
 )
-from ..params.plots import plot_option
-from ..params.query_colours import find_point, read_colours
-from ..params.spaces import resolve_space
-from ..params.wavelengths import parse_wavelengths
-from ..startup import hide_drawing_notes
+from ..output.answers import format_rgb, print_columns, print_fields, sparkline
+from ..output.console import csv_writer, emit, print_json, print_json_stream, say
 from .info import print_facts
 from .query import ColourCommand
 from .texture import as_tuple, convert, image_options
@@ -83,8 +81,8 @@ def command() -> None:
     shell_complete=complete_space,
 )
 @click.option("--observer", help="Standard observer. [default: CIE 1931 2 Degree Standard Observer]")
-@force_option()
-@quiet_option()
+@force_option
+@quiet_option
 def build(
     files: tuple[str, ...], output: str | None, space: str, observer: str | None, force: bool, quiet: bool
 ) -> None:
@@ -117,9 +115,9 @@ def build(
 @command.command("info")
 @table_argument
 @format_option("table", "json")
-@plot_option("--plot", "plot_path", "Plot colours, expected errors and lamps over u′v′")
+@plot_option("Plot colours, expected errors and lamps over u′v′")
 @click.option("--html", metavar="FILE", help="Page with the plots, answers to random lights, and all lamps.")
-@force_option()
+@force_option
 def info(table_path: str, style: str, plot_path: str | None, html: str | None, force: bool) -> None:
     """Show the contents of an emission table, in words, as a picture or as a page.
 
@@ -157,7 +155,7 @@ def info(table_path: str, style: str, plot_path: str | None, html: str | None, f
     type=click.Choice(("header", "file")),
     help="Where the numbers of the program are. [default: header for .h, else file]",
 )
-@force_option()
+@force_option
 def export(table_path: str, output: str, form: str | None, force: bool) -> None:
     """Write an emission table as a program that looks up colours, in C or GLSL.
 
@@ -185,9 +183,9 @@ def export(table_path: str, output: str, form: str | None, force: bool) -> None:
 
 
 @command.command("texture")
-@image_options()
+@image_options
 @table_option
-@wavelengths_option()
+@wavelengths_option
 @click.option("--depth", type=click.Choice(("float", "half")), help="32 or 16 bits per channel. [default: float]")
 @encoding_option()
 @input_space_option("the images")
@@ -226,10 +224,10 @@ def texture(
 @command.command("query", cls=ColourCommand)
 @click.argument("colour", nargs=-1)
 @table_option
-@input_option()
+@input_option
 @xyz_options("Colour by XYZ, where white of the table's space has Y = 1.")
-@encoded_option()
-@wavelengths_option()
+@encoded_option
+@wavelengths_option
 @input_space_option("the colours", default="that of the table")
 @click.option(
     "--out-of-gamut",
@@ -240,8 +238,8 @@ def texture(
     help="Treatment of colours that no light has: raise an error, or take the nearest one towards white.",
 )
 @format_option("table", "json", "csv")
-@plot_option("--plot", "plot_path", "Plot the spectra")
-@force_option()
+@plot_option("Plot the spectra")
+@force_option
 def query(
     colour: tuple[str, ...],
     table_path: str | None,
@@ -274,21 +272,20 @@ def query(
     from uplift.lights.lookup import load_emission
 
     check_outputs((plot_path,), inputs=(table_path, input_path), force=force)
-    space = resolve_space(input_space)
+    space = find_input_space(input_space)
     point, single = find_point(colour, input_path, xyz, xy, luminance)
     table = load_emission(table_path)
     blocks: Iterable[Array]
     if point is not None:
         blocks = [np.array([point])]
     else:
-        words = read_colours(colour, input_path, sensor(table.space), encoded=encoded, bounded=False, space=space)
-        blocks = map(table.xyz, words)
+        reader = ColourReader(sensor(table.space), encoded=encoded, space=space)
+        blocks = map(table.xyz, reader.read(colour, input_path))
     at = parse_wavelengths(wavelengths)
     results = _answers(table, blocks, table.wavelengths if at is None else at, outside)
     if plot_path is not None:
         from uplift.viz.plots import plot_lights
 
-        hide_drawing_notes()
         found = list(results)
         plot_lights([(each.rgb, each.wavelengths, each.power) for each in found], table, plot_path, force=force)
         results = iter(found)
@@ -338,10 +335,8 @@ def _answers(table: EmissionTable, blocks: Iterable[Array], at: Array, outside: 
 def _print_json(results: Iterator[LightAnswer], *, single: bool) -> None:
     if single:
         print_json(next(results).to_json(), indent=None)
-        return
-    for number, result in enumerate(results):
-        emit(("[\n" if number == 0 else ",\n") + terminal_json(result.to_json()), nl=False)
-    emit("\n]")
+    else:
+        print_json_stream(result.to_json() for result in results)
 
 
 def _print_csv(results: Iterable[LightAnswer]) -> None:
@@ -361,7 +356,7 @@ def _print_details(table: EmissionTable, result: LightAnswer) -> None:
         "spectrum": f"{_shape(result)}  {at[0]:g}–{at[-1]:g} nm",
         "peak": f"{result.power.max():.5g} at {at[result.power.argmax()]:g} nm",
     }
-    print_fields(fields, {})
+    print_fields(fields)
     emit("")
     print_columns(at, result.power)
 

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from ..options import force_option, format_option
 from ..output.console import json_text, make_table, paragraph, print_json, say, show
 from ..output.progress import stage_spinner
-from ..params.options import force_option, format_option
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     help="Plan to write, with an HTML page of the same name. [default: SCENE.plan.json in the current folder]",
 )
 @format_option("table", "json")
-@force_option()
+@force_option
 def command(scene: str, output: str | None, style: str, force: bool) -> None:
     """Choose the smallest cube, texture format and wavelengths that keep a scene's colours within a tolerance.
 
@@ -78,7 +78,7 @@ def _print_summary(plan: Plan, lines: list[str]) -> None:
     table = make_table()
     table.add_column("smallest sufficient")
     table.add_column("")
-    table.add_column("cumulative ΔE00", justify="right", no_wrap=True)
+    table.add_column("cumulative ΔE00", justify="right")
     table.add_column("cost")
     table.add_column("options")
     for row in summary_rows(plan):

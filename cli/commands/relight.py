@@ -10,10 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.console import make_table, print_json, say, show
-from ..output.progress import spinner
-from ..params.image_paths import expand_patterns
-from ..params.options import (
+from ..inputs import expand_patterns, find_input_space
+from ..options import (
     atlas_option,
     encoding_option,
     force_option,
@@ -22,7 +20,8 @@ from ..params.options import (
     light_option,
     out_of_gamut_option,
 )
-from ..params.spaces import resolve_space
+from ..output.console import make_table, print_json, say, show
+from ..output.progress import spinner
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -55,7 +54,7 @@ MAX_SIDE = 960
     help="File to write: a picture if it ends in .png, .svg or .pdf, a page if it ends in .html.",
 )
 @format_option("table", "json")
-@force_option()
+@force_option
 def command(
     images: tuple[str, ...],
     lights: tuple[str, ...],
@@ -97,7 +96,7 @@ def command(
         files = files or (SAMPLE_ATLAS,)
     with spinner("computing spectra"):
         cubes = _cubes(cube_path, files)
-        space = resolve_space(input_space)
+        space = find_input_space(input_space)
         read = partial(_relight, cubes=cubes, encoding=encoding, method=method, space=space)
         relit = [read(path, lights=lights or RELIGHT_LIGHTS) for path in paths]
         write(relit, output, force=force)

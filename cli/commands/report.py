@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..output.console import emit, json_text, say
-from ..params.completion import complete_cube
-from ..params.number_types import Whole
-from ..params.options import (
+from ..completion import complete_cube
+from ..options import (
+    Whole,
     atlas_folders_option,
     atlas_option,
     force_option,
     format_option,
     light_option,
 )
+from ..output.console import emit, json_text, say
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 @click.command("report")
 @click.argument("cube_path", metavar="CUBE", shell_complete=complete_cube)
 @atlas_option("Measured spectra that replace the atlases of the cube")
-@atlas_folders_option()
+@atlas_folders_option
 @light_option("Illuminant to evaluate", "D65 A FL2 FL7 FL11 LED-B3")
 @click.option(
     "-o",
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     show_default=True,
     help="Number of entries with plotted spectra, largest errors first.",
 )
-@force_option()
+@force_option
 def command(
     cube_path: str,
     files: tuple[str, ...],

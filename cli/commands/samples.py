@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import click
 
+from ..options import force_option
 from ..output.console import say
-from ..params.options import force_option
 
 
 @click.command("samples")
 @click.argument("folder", metavar="[FOLDER]", default=".", type=click.Path())
-@force_option()
+@force_option
 def command(folder: str, force: bool) -> None:
     """Copy the files of the examples into FOLDER, by default the current one: images, scenes, palettes, measurements.
 

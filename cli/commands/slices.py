@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import click
 
+from ..completion import complete_cube
+from ..options import force_option
 from ..output.console import say
-from ..params.completion import complete_cube
-from ..params.options import force_option
 
 
 @click.command("slices")
 @click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
 @click.option("-o", "--output", "out", metavar="FILE", type=click.Path(), help="Slices to write, as .exr.")
 @click.option("--plot", "sheet", metavar="FILE", type=click.Path(), help="Contact sheet to write, as .exr or .png.")
-@force_option()
+@force_option
 def command(cube: str, out: str | None, sheet: str | None, force: bool) -> None:
     """Write the blue slices of a cube as images.
 

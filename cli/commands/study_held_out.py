@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..inputs import DEFAULT_ATLASES, read_atlases
+from ..options import Whole, atlas_option, coefficients_option, format_option
 from ..output.console import make_table, print_csv, print_json, say, show
 from ..output.progress import progress_bar
-from ..params.atlases import DEFAULT_ATLASES, read_atlases
-from ..params.number_types import Whole
-from ..params.options import atlas_option, coefficients_option, format_option
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -24,7 +23,7 @@ Results = dict[str, "tuple[HoldoutSplit, ...]"]
 @atlas_option("Atlas", DEFAULT_ATLASES)
 @click.option("--splits", type=Whole(1, 1000), default=3, show_default=True, help="Number of splits of each atlas.")
 @click.option("--dim", type=Whole(), default=32, show_default=True, help="Lattice nodes along each axis.")
-@coefficients_option()
+@coefficients_option
 @format_option("table", "json", "csv")
 def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, style: str) -> None:
     """Build cubes from half of an atlas, query the colours of the other half, and compare with the measurements.

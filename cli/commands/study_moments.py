@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 
 import click
 
+from ..inputs import DEFAULT_ATLASES, read_atlases
+from ..options import Whole, atlas_option, force_option, format_option, output_folder_option
 from ..output.console import make_table, print_csv_text, print_json, say, show
 from ..output.progress import progress_bar
-from ..params.atlases import DEFAULT_ATLASES, read_atlases
-from ..params.number_types import Whole
-from ..params.options import atlas_option, force_option, format_option, output_folder_option
 
 if TYPE_CHECKING:
     from uplift.lab.study.moments import MomentsStudy
@@ -30,9 +29,9 @@ FILES = ("moments.csv", "moments.png", "moments-patches.png", "moments-worst.png
     show_default=True,
     help="Largest number of moments, up to 32.",
 )
-@output_folder_option()
+@output_folder_option
 @format_option("table", "json", "csv")
-@force_option()
+@force_option
 def moments(files: tuple[str, ...], max_moments: int, output: str | None, style: str, force: bool) -> None:
     """Reconstruct measured spectra from their moments and compare them with the measurements.
 

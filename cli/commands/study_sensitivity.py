@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..options import Whole, atlas_folders_option, force_option, format_option, output_folder_option
 from ..output.console import json_text, make_table, print_json, say, show
 from ..output.progress import progress_bar
-from ..params.number_types import Whole
-from ..params.options import atlas_folders_option, force_option, format_option, output_folder_option
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -26,7 +25,7 @@ RESULTS, STEEPNESS, LOCALITY = FILES = (
 
 @click.command("sensitivity")
 @click.argument("cube", metavar="[CUBE]", required=False)
-@atlas_folders_option()
+@atlas_folders_option
 @click.option(
     "--entries",
     type=Whole(0),
@@ -34,9 +33,9 @@ RESULTS, STEEPNESS, LOCALITY = FILES = (
     show_default=True,
     help="Number of atlas entries to change, one at a time.",
 )
-@output_folder_option()
+@output_folder_option
 @format_option("table", "json")
-@force_option()
+@force_option
 def sensitivity(
     cube: str | None, folders: tuple[str, ...], entries: int, output: str | None, style: str, force: bool
 ) -> None:
@@ -92,10 +91,10 @@ def _print_json(result: Sensitivity) -> None:
 def _print_table(result: Sensitivity) -> None:
     from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 
-    record, delta_e = result.record(), f"ΔE00 {NARROW_BAND_LIGHT}"
+    record, delta_e = result.record(), f"ΔE {NARROW_BAND_LIGHT}"
     _table(
         ("mode", "step"),
-        ("rms", "max", "max of a wavelength", delta_e, "max", "ΔE00 build", "max"),
+        ("rms", "max", "largest", delta_e, "max", "ΔE build", "max"),
         [tuple(move.values()) for move in record["moves"]],
     )
     steep = record["lipschitz"]
@@ -113,7 +112,7 @@ def _print_table(result: Sensitivity) -> None:
     if record["changes"]:
         _table(
             ("change",),
-            ("changed share", "RGB radius", "ΔE*ab radius", delta_e, "max", "rms", "max"),
+            ("changed", "RGB radius", "ab radius", delta_e, "max", "rms", "max"),
             [tuple(change.values()) for change in record["changes"]],
         )
 

@@ -11,11 +11,10 @@ import click
 
 from uplift.common.text import format_value, parse_float, parse_whole
 
+from ..inputs import read_atlases
+from ..options import Whole, atlas_option, force_option, format_option, output_folder_option
 from ..output.console import json_text, make_table, print_csv_text, print_json, say, show
 from ..output.progress import progress_bar
-from ..params.atlases import read_atlases
-from ..params.number_types import Whole
-from ..params.options import atlas_option, force_option, format_option, output_folder_option
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -59,9 +58,9 @@ def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None
     metavar="N,…",
     help="Lattices for the solver of scipy.",
 )
-@output_folder_option()
+@output_folder_option
 @format_option("table", "json", "csv")
-@force_option()
+@force_option
 def stability(quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool, **options: Any) -> None:
     """Build cubes over dims, coefficients, models, spaces, thresholds and atlases, and count unfitted nodes.
 

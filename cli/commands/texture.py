@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 import contextlib
+import glob
 import os
+import re
 import time
 import warnings
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from uplift.common.errors import OptionError, OutputError
 from uplift.common.progress import Progress
 
-from ..output.console import say
-from ..output.diagnostics import UsageFailure
-from ..output.progress import progress_bar
-from ..params.completion import complete_cube
-from ..params.image_paths import texture_paths
-from ..params.number_types import Whole
-from ..params.options import (
-    Decorator,
+from ..completion import complete_cube
+from ..inputs import UDIM, expand_patterns, parse_wavelengths
+from ..options import (
+    Whole,
     encoding_option,
     fill_option,
     force_option,
@@ -31,7 +31,9 @@ from ..params.options import (
     stacked,
     wavelengths_option,
 )
-from ..params.wavelengths import parse_wavelengths
+from ..output.console import say
+from ..output.diagnostics import CommandFailure
+from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -39,7 +41,7 @@ if TYPE_CHECKING:
     from uplift.io.texture import Conversion, Failure, Job, PixelEncoding, TextureSettings
 
 
-def image_options() -> Decorator:
+def image_options(function: Callable[..., Any]) -> Callable[..., Any]:
     """Images, their target, and how they are converted; for `convert`."""
     return stacked(
         click.argument("sources", metavar="IN...", nargs=-1, required=True),
@@ -57,13 +59,13 @@ def image_options() -> Decorator:
             help="Dask cluster that converts the images; requires spectral-uplift[cluster].",
         ),
         click.option("--resume", is_flag=True, help="Skip images whose textures are complete and newer."),
-        force_option(),
-        quiet_option(),
-    )
+        force_option,
+        quiet_option,
+    )(function)
 
 
 @click.command("texture")
-@image_options()
+@image_options
 @click.option(
     "--cube",
     "cube_paths",
@@ -85,7 +87,7 @@ def image_options() -> Decorator:
     show_default=True,
     help="Contents of a pixel.",
 )
-@wavelengths_option()
+@wavelengths_option
 @click.option(
     "--depth",
     type=click.Choice(("half", "float")),
@@ -94,7 +96,7 @@ def image_options() -> Decorator:
 @encoding_option()
 @input_space_option("the images")
 @out_of_gamut_option("clip")
-@fill_option()
+@fill_option
 def command(
     cube_paths: tuple[str, ...],
     mask: str | None,
@@ -168,7 +170,7 @@ def convert(
     enable_jit_cache()
     from uplift.io import texture
 
-    pairs = texture_paths(sources, target)
+    pairs = _texture_paths(sources, target)
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
     settings = replace(settings, threads=max(cores // count, 1))
@@ -189,23 +191,57 @@ def convert(
         _print_summary(target, converted, len(jobs) - len(pending), time.perf_counter() - begin)
     failures = [one for one in results if isinstance(one, texture.Failure)]
     for failure in failures[1:]:
-        UsageFailure(failure.error).show()
+        CommandFailure(failure.error).show()
     if failures:
         raise failures[0].error
 
 
+def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path]]:
+    """Return pairs of an image and its texture. Several images, and patterns, go into the folder ``target``.
+
+    The folder is created. Raises `TextureError` for a pattern that matches no file, `OutputError` for a folder that
+    cannot be created.
+    """
+    images = expand_patterns(sources)
+    if UDIM in target:
+        return _tiles(sources, images, target)
+    folder = Path(target)
+    is_single = len(sources) == 1 and images == [sources[0]]
+    if is_single and not folder.is_dir() and not target.endswith(os.sep):
+        if folder.suffix.lower() != ".exr":
+            hint = "give a file name ending in .exr, or a folder"
+            raise OutputError("textures are OpenEXR files", path=target, hint=hint)
+        return [(Path(images[0]), folder)]
+    try:
+        if folder.suffix.lower() == ".exr" and not folder.is_dir():
+            raise NotADirectoryError
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        problem = f"is not a folder, but there are {len(images)} images"
+        raise OutputError(problem, path=target, hint="give a folder for the textures") from error
+    return [(Path(path), folder / f"{Path(path).stem}.exr") for path in images]
+
+
+def _tiles(sources: Sequence[str], images: list[str], target: str) -> list[tuple[Path, Path]]:
+    """Return pairs of the tiles of one UDIM pattern and their textures, whose names have the same numbers."""
+    is_plain = len(sources) == 1 and not glob.has_magic(sources[0])
+    if not is_plain or sources[0].count(UDIM) != 1 or target.count(UDIM) != 1:
+        hint = f"write for example 'wood.{UDIM}.exr' -o 'uplifted.{UDIM}.exr'"
+        raise OutputError(f"{UDIM} in the output needs one input with {UDIM}", path=target, hint=hint)
+    before, _, after = (re.escape(part) for part in sources[0].partition(UDIM))
+    numbers = (re.fullmatch(f"{before}(\\d{{4}}){after}", image) for image in images)
+    pairs = zip(images, numbers, strict=True)
+    return [(Path(image), Path(target.replace(UDIM, match[1]))) for image, match in pairs if match]
+
+
 def _pixel_encoding(kind: str, wavelengths: Array | None) -> PixelEncoding:
-    from uplift.common.errors import OptionError
     from uplift.io import texture
 
     if kind == texture.Spectrum.name:
         return texture.Spectrum(as_tuple(wavelengths))
     if wavelengths is not None:
-        raise OptionError(
-            f"{kind} have no wavelengths",
-            code="wavelengths-not-applicable",
-            hint="leave out --wavelengths, or use --representation spectrum",
-        )
+        hint = "leave out --wavelengths, or use --representation spectrum"
+        raise OptionError(f"{kind} have no wavelengths", hint=hint)
     return texture.PIXEL_ENCODINGS[kind]()
 
 

@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..inputs import DEFAULT_ATLASES, parse_wavelengths, read_atlases
+from ..options import (
+    NUMBER,
+    Whole,
+    atlas_option,
+    force_option,
+    format_option,
+    light_option,
+    plot_option,
+    sensor_options,
+)
+from ..output.console import make_table, print_csv, print_json, show
 from ..output.progress import spinner
-from ..output.wavelengths_output import PRINTERS, Result
-from ..params.atlases import DEFAULT_ATLASES, read_atlases
-from ..params.number_types import NUMBER, Whole
-from ..params.options import atlas_option, force_option, format_option, light_option, sensor_options
-from ..params.plots import plot_option
-from ..params.wavelengths import parse_wavelengths
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
+    from uplift.colorimetry.sensor import Sensor
+    from uplift.scene.wavelengths import Choice, ColourErrors
 
 
 @click.command("wavelengths")
 @click.option("--count", metavar="N", type=Whole(), help="Number of wavelengths, 1 to 40.")
 @click.option(
     "--tolerance",
-    "target",
     metavar="ΔE00",
     type=NUMBER,
     help="Choose the fewest wavelengths with an error below this ΔE00.",
@@ -60,11 +69,11 @@ if TYPE_CHECKING:
 @light_option("Illuminant of the scene", "D65")
 @sensor_options
 @format_option("table", "json", "csv")
-@plot_option("--plot", "plot_path", "Plot lights, wavelengths and weights")
-@force_option()
+@plot_option("Plot lights, wavelengths and weights")
+@force_option
 def command(
     count: int | None,
-    target: float | None,
+    tolerance: float | None,
     given: str | None,
     measure: str | None,
     method: str | None,
@@ -94,9 +103,9 @@ def command(
       uplift wavelengths --count 4 --method meyer --light C --atlas macbeth
       uplift wavelengths --orders 3 2 1 --light C --atlas macbeth
     """
-    if sum(option is not None for option in (count, target, given, orders)) != 1:
+    if sum(option is not None for option in (count, tolerance, given, orders)) != 1:
         raise click.UsageError("Give one of --count, --tolerance, --wavelengths and --orders.")
-    if (measure is not None and target is None) or (method is not None and count is None and target is None):
+    if (measure is not None and tolerance is None) or (method is not None and count is None and tolerance is None):
         raise click.UsageError("--measure requires --tolerance, --method requires --count or --tolerance.")
     if channels is not None and orders is None:
         raise click.UsageError("--channels requires --orders.")
@@ -117,7 +126,7 @@ def command(
             choice = wavelengths.choose_orders(setting, orders, channels or "opponent")
         elif fixed is None:
             choice = wavelengths.choose(
-                setting, count=count, target=target, measure=measure or "max", method=method or "optimised"
+                setting, count=count, target=tolerance, measure=measure or "max", method=method or "optimised"
             )
         else:
             choice = wavelengths.fit_weights(setting, fixed)
@@ -126,3 +135,88 @@ def command(
 
         plot_choice(setting, choice, plot_path, force=force)
     PRINTERS[style](Result(choice, camera, atlas.names))
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """Chosen wavelengths, the RGB space of the output, and the names of the materials."""
+
+    choice: Choice
+    sensor: Sensor
+    materials: tuple[str, ...]
+
+    def errors(self) -> Iterator[tuple[str, ColourErrors]]:
+        """Yield errors by light, and for several lights also over all of them."""
+        lights = self.choice.sampling.lights
+        for row, light in enumerate(lights):
+            yield light, self.choice.errors.under(row)
+        if len(lights) > 1:
+            yield "all lights", self.choice.errors
+
+    def worst(self, errors: ColourErrors) -> str:
+        """Return the material with the largest error."""
+        return self.materials[int(errors.delta_e.max(axis=0).argmax())]
+
+
+def _print_json(result: Result) -> None:
+    sampling, sensor = result.choice.sampling, result.sensor
+    fields = {
+        "method": result.choice.method,
+        "count": len(sampling),
+        "materials": len(result.materials),
+        "observer": sensor.observer,
+        "space": sensor.space,
+        "illuminant": sensor.illuminant,
+        "wavelengths": sampling.wavelengths.tolist(),
+        "to_xyz": sampling.to_xyz.tolist(),
+        "to_rgb": sampling.to_rgb(sensor).tolist(),
+        "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
+        "errors": {name: _statistics(result, errors) for name, errors in result.errors()},
+    }
+    print_json(fields)
+
+
+def _statistics(result: Result, errors: ColourErrors) -> dict[str, Any]:
+    return {"mean": errors.mean, "p95": errors.p95, "max": errors.max, "worst": result.worst(errors)}
+
+
+def _print_csv(result: Result) -> None:
+    lights = result.choice.sampling.lights
+    header = ["wavelength", *"XYZ", *"rgb", *(f"power {light}" for light in lights)]
+    print_csv(header, _rows(result))
+
+
+def _rows(result: Result) -> Iterator[list[float]]:
+    """Yield wavelength, weights to XYZ, weights to RGB and powers, per wavelength."""
+    sampling = result.choice.sampling
+    parts = (
+        sampling.wavelengths[:, None],
+        sampling.to_xyz,
+        sampling.to_rgb(result.sensor),
+        sampling.powers.T,
+    )
+    for row in zip(*(part.tolist() for part in parts), strict=True):
+        yield [number for numbers in row for number in numbers]
+
+
+def _print_table(result: Result) -> None:
+    sampling = result.choice.sampling
+    weights = make_table((), ("nm", *"XYZRGB"), title=f"{len(sampling)} wavelengths, {result.choice.method}: weights")
+    powers = make_table((), ("nm", *sampling.lights), title="power of the lights")
+    for nm, *others in _rows(result):
+        cells = [f"{other:.4f}" for other in others]
+        weights.add_row(f"{nm:.1f}", *cells[:6])
+        powers.add_row(f"{nm:.1f}", *cells[6:])
+    errors_table = make_table(("light",), ("mean", "95 %", "max"), title=f"ΔE00 of {len(result.materials)} materials")
+    errors_table.add_column("worst material")
+    for name, errors in result.errors():
+        numbers = (errors.mean, errors.p95, errors.max)
+        errors_table.add_row(name, *(f"{number:.3f}" for number in numbers), result.worst(errors))
+    show(weights, powers, errors_table)
+
+
+PRINTERS: dict[str, Callable[[Result], None]] = {
+    "table": _print_table,
+    "json": _print_json,
+    "csv": _print_csv,
+}

@@ -7,7 +7,10 @@ that is safe already; `print_json` and `print_csv` print data.
 from __future__ import annotations
 
 import json
+import os
+import shutil
 import sys
+import textwrap
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +24,6 @@ if TYPE_CHECKING:
     from uplift.common.csv import CsvWriter
 
     from .tables import SafeTable
-
 
 MIN_WIDTH = 40
 """Characters of a line, even where a window has fewer."""
@@ -37,23 +39,42 @@ def emit(text: str, *, err: bool = False, nl: bool = True) -> None:
     click.echo(text, sys.stderr if err else sys.stdout, nl=nl)
 
 
-def print_json(values: Any, indent: int | None = 2) -> None:
-    """Print standard JSON."""
-    emit(terminal_json(values, indent))
+def flush_stdout() -> None:
+    """Write what standard output still holds, and drop it if that fails: the interpreter would try again at its end."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise
+
+
+def paragraph(text: str) -> None:
+    """Print prose with control characters escaped, wrapped to the window."""
+    emit(textwrap.fill(printable(text), columns(), break_long_words=False, break_on_hyphens=False))
+
+
+def json_text(values: Any, indent: int | None = 2) -> str:
+    """Return standard JSON. Raises ValueError for NaN and infinity, which it cannot represent."""
+    return json_escapes(json.dumps(values, indent=indent, ensure_ascii=False, allow_nan=False))
 
 
 def terminal_json(values: Any, indent: int | None = None) -> str:
     """Return standard JSON, in the characters that standard output has."""
     text = json_text(values, indent)
-    return text if _is_unicode(sys.stdout) else json.dumps(json.loads(text), indent=indent)
+    is_unicode = (sys.stdout.encoding or "utf-8").lower().startswith("utf")
+    return text if is_unicode else json.dumps(json.loads(text), indent=indent)
 
 
-def print_csv(header: Sequence[object], rows: Iterable[Sequence[object]]) -> None:
-    """Print a table as CSV."""
-    writer = csv_writer()
-    writer.write(header)
-    for row in rows:
-        writer.write(row)
+def print_json(values: Any, indent: int | None = 2) -> None:
+    """Print standard JSON."""
+    emit(terminal_json(values, indent))
+
+
+def print_json_stream(objects: Iterable[Any]) -> None:
+    """Print a JSON array, each object before the next one is computed."""
+    for number, values in enumerate(objects):
+        emit(("[\n" if number == 0 else ",\n") + terminal_json(values), nl=False)
+    emit("\n]")
 
 
 def csv_writer() -> CsvWriter:
@@ -61,6 +82,13 @@ def csv_writer() -> CsvWriter:
     from uplift.common.csv import CsvWriter
 
     return CsvWriter(_Lines())
+
+
+def print_csv(header: Sequence[object], rows: Iterable[Sequence[object]]) -> None:
+    """Print a table as CSV."""
+    writer = csv_writer()
+    for row in (header, *rows):
+        writer.write(row)
 
 
 def print_csv_text(text: str) -> None:
@@ -76,40 +104,21 @@ class _Lines:
         return len(text)
 
 
+def columns() -> int:
+    """Return the characters of a line of the window, COLUMNS or 80."""
+    return max(shutil.get_terminal_size().columns, MIN_WIDTH)
+
+
 def console() -> Console:
-    """Return a rich console on standard output, as wide as the window, COLUMNS or 80 characters."""
+    """Return a rich console on standard output."""
     from rich.console import Console
 
-    console = Console(file=sys.stdout, highlight=False, markup=False, emoji=False)
-    if console.width < MIN_WIDTH:
-        console.width = MIN_WIDTH
-    return console
-
-
-def columns() -> int:
-    """Return the characters of a line of the window."""
-    return console().width
+    return Console(file=sys.stdout, width=columns(), highlight=False, markup=False, emoji=False)
 
 
 def has_colours() -> bool:
     """Return whether standard output shows colours."""
     return console().color_system is not None
-
-
-def show(*tables: SafeTable) -> None:
-    """Print tables, folded where the window is too narrow."""
-    out = console()
-    for number, table in enumerate(tables):
-        if number:
-            out.print()
-        out.print(table.fitted(out.width))
-
-
-def paragraph(text: str) -> None:
-    """Print prose with control characters escaped, wrapped to the window."""
-    import textwrap
-
-    emit(textwrap.fill(printable(text), columns(), break_long_words=False, break_on_hyphens=False))
 
 
 def make_table(texts: Iterable[str] = (), numbers: Iterable[str] = (), **options: Any) -> SafeTable:
@@ -126,10 +135,11 @@ def make_table(texts: Iterable[str] = (), numbers: Iterable[str] = (), **options
     return table
 
 
-def json_text(values: Any, indent: int | None = 2) -> str:
-    """Return standard JSON. Raises ValueError for NaN and infinity, which it cannot represent."""
-    return json_escapes(json.dumps(values, indent=indent, ensure_ascii=False, allow_nan=False))
-
-
-def _is_unicode(stream: Any) -> bool:
-    return (getattr(stream, "encoding", None) or "utf-8").lower().startswith("utf")
+def show(*tables: SafeTable) -> None:
+    """Print tables. Texts are wrapped to the window; rows whose names and numbers do not fit are longer than a line."""
+    out = console()
+    for number, table in enumerate(tables):
+        if number:
+            out.print()
+        out.width = max(columns(), table.narrowest())
+        out.print(table)

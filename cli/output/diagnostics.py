@@ -1,4 +1,4 @@
-"""Errors and warnings on standard error: one line each."""
+"""Errors and warnings on standard error: one line each, or JSON."""
 
 from __future__ import annotations
 
@@ -9,34 +9,31 @@ from typing import Any
 
 import click
 
-from uplift.common.errors import UpliftError, UpliftWarning
+from uplift.common.errors import OutputError, UpliftError, UpliftWarning
 from uplift.common.text import printable
 
 from .console import emit, json_text
-from .hints import describe, hint_for
+from .hints import hint_for
 
-INTERNAL_ERROR = 70
-"""Exit code of an error of uplift itself, EX_SOFTWARE of sysexits.h."""
+BAD_INPUT, INTERNAL_ERROR = 2, 70
+"""Exit codes; 70 is EX_SOFTWARE of sysexits.h."""
+EXIT_CODES = {"internal-error": INTERNAL_ERROR, "interrupted": 128 + signal.SIGINT}
+"""Exit codes by code of the error."""
 MAX_DETAIL = 200
 """Characters of the message of an internal error."""
 
 
-class UsageFailure(click.ClickException):
-    """Bad input: one line on standard error and exit code 2.
+class CommandFailure(click.ClickException):
+    """An exception that ended a command, as one line on standard error and an exit code; JSON if ``as_json``."""
 
-    Parameters
-    ----------
-    error : UpliftError
-        The error to report.
-    as_json : bool
-        Report it as JSON, for commands that run with ``--format json``.
-    """
+    def __init__(self, cause: BaseException, *, as_json: bool = False) -> None:
+        self.error, self.as_json = _as_uplift_error(cause), as_json
+        super().__init__(self.error.describe(hint_for(self.error)))
 
-    exit_code = 2
-
-    def __init__(self, error: UpliftError, *, as_json: bool = False) -> None:
-        super().__init__(describe(error))
-        self.error, self.as_json = error, as_json
+    @property
+    def exit_code(self) -> int:  # type: ignore[override]
+        """2 for bad input, 70 for an internal error, 130 after Ctrl-C."""
+        return EXIT_CODES.get(self.error.code, BAD_INPUT)
 
     def show(self, file: Any = None) -> None:
         """Print the error to standard error."""
@@ -46,45 +43,36 @@ class UsageFailure(click.ClickException):
             _print_error(self.message)
 
 
-class InternalFailure(UsageFailure):
-    """An exception that uplift does not expect: one line on standard error and exit code 70."""
+def _as_uplift_error(cause: BaseException) -> UpliftError:
+    """Return the error of the library for any exception."""
+    if isinstance(cause, UpliftError):
+        return cause
+    if isinstance(cause, KeyboardInterrupt):
+        hint = "; ".join(getattr(cause, "__notes__", ())) or "unfinished files are removed"
+        return UpliftError("interrupted", code="interrupted", hint=hint)
+    if isinstance(cause, MemoryError) or "RESOURCE_EXHAUSTED" in str(cause):  # of JAX
+        return UpliftError("not enough memory", code="out-of-memory", hint="use a smaller input, or more memory")
+    if isinstance(cause, OSError):
+        path = cause.filename if isinstance(cause.filename, str) else None
+        problem = cause.strerror or str(cause)
+        hint = "check the path, its permissions and the free space"
+        return OutputError(problem if path else f"output cannot be written: {problem}", path=path, hint=hint)
+    return _internal_error(cause)
 
-    exit_code = INTERNAL_ERROR
 
-    def __init__(self, error: Exception, *, as_json: bool = False) -> None:
-        import traceback  # slow to import, and rarely needed
+def _internal_error(cause: BaseException) -> UpliftError:
+    import traceback  # slow to import, and rarely needed
 
-        place = traceback.extract_tb(error.__traceback__)[-1:]
-        where = "".join(f" in {Path(frame.filename).name}:{frame.lineno}" for frame in place)
-        detail = " ".join(str(error).split())[:MAX_DETAIL]
-        problem = f"internal error, please report it: {type(error).__name__}{where}" + (f": {detail}" if detail else "")
-        report = UpliftError(problem, code="internal-error", hint="'uplift --traceback COMMAND …' shows more")
-        super().__init__(report, as_json=as_json)
+    place = traceback.extract_tb(cause.__traceback__)[-1:]
+    where = "".join(f" in {Path(frame.filename).name}:{frame.lineno}" for frame in place)
+    detail = " ".join(str(cause).split())[:MAX_DETAIL]
+    problem = f"internal error, please report it: {type(cause).__name__}{where}" + (f": {detail}" if detail else "")
+    return UpliftError(problem, code="internal-error", hint="'uplift --traceback COMMAND …' shows more")
 
 
-class InterruptFailure(UsageFailure):
-    """A command that a signal ended: one line on standard error, with the notes of the exception.
-
-    Parameters
-    ----------
-    interrupt : BaseException
-        The exception that ended the command.
-    number : int
-        The signal.
-    as_json : bool
-        Report it as JSON.
-    """
-
-    def __init__(self, interrupt: BaseException, number: int, *, as_json: bool = False) -> None:
-        hint = "; ".join(getattr(interrupt, "__notes__", ())) or "unfinished files are removed"
-        problem = f"ended by {signal.Signals(number).name}"
-        super().__init__(UpliftError(problem, code="interrupted", hint=hint), as_json=as_json)
-        self.number = number
-
-    @property
-    def exit_code(self) -> int:  # type: ignore[override]
-        """128 and the number of the signal, as shells report it."""
-        return 128 + self.number
+def error_object(error: UpliftError) -> dict[str, Any]:
+    """Return an error as plain values for JSON, with the hint of the command line."""
+    return error.to_json() | {"hint": hint_for(error)}
 
 
 def show_usage_error(error: click.ClickException) -> None:
@@ -94,15 +82,11 @@ def show_usage_error(error: click.ClickException) -> None:
     _print_error(printable(message) + (f" See '{context.command_path} --help'." if context else ""))
 
 
-def error_object(error: UpliftError) -> dict[str, Any]:
-    """Return an error as plain values for JSON, with the hint of the command line."""
-    return error.to_json() | {"hint": hint_for(error)}
-
-
 def show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
     """Print warnings of the library on one line each, and no others; replaces `warnings.showwarning`."""
     if isinstance(message, UpliftWarning):
-        _print(f"{click.style('warning:', fg='yellow', bold=True)} {describe(message)}")
+        text = message.describe(hint_for(message))
+        _print(f"{click.style('warning:', fg='yellow', bold=True)} {text}")
 
 
 def _print_error(text: str) -> None:

@@ -32,10 +32,8 @@ HINTS = {
     "invalid-codes": "leave out --encoded for linear floats",
     "invalid-primaries": "give --input-space as x,y of red, green, blue and white, or the name of an RGB space",
     "invalid-thickness": "use --thickness 0 or more",
-    "invalid-range": "write START:END in nm, such as 360:830",
     "range-not-in-steps": "use --step 1, or another range",
     "unsupported-step": "use --step 5",
-    "invalid-wavelengths": "write START:END:STEP or a list in nm, such as 380:780:5",
     "lattice-mismatch": "build the cube again, or replace it with --update",
     "library-not-used": "use --prior learnt with --model moments and 4 to 17 coefficients, or leave out --library",
     "limit-not-positive": "give --time-ns and --tolerance above 0",
@@ -69,8 +67,3 @@ HINTS = {
 def hint_for(diagnostic: Diagnostic) -> str:
     """Return the hint of the command line for an error or warning, or else the library's own."""
     return HINTS.get(diagnostic.code, diagnostic.hint)
-
-
-def describe(diagnostic: Diagnostic) -> str:
-    """Return one line: location, problem and hint."""
-    return diagnostic.describe(hint_for(diagnostic))

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 
-from ..signals import check
 from .console import say
 
 STAGES = {"images": "reading images", "fit": "fitting", "store": "storing"}
@@ -24,25 +23,14 @@ INTERVAL = 10.0
 def build_progress(*, quiet: bool, verbose: bool) -> Iterator[ProgressCallback]:
     """Yield a callback for `uplift.build`: all lines if ``verbose``, none if ``quiet``, otherwise bar or lines."""
     if verbose:
-        yield _checked(_print_line)
+        yield _print_line
     elif quiet:
-        yield _checked(ignore_progress)
+        yield ignore_progress
     elif not _is_animated():
-        yield _checked(_Lines())
+        yield _Lines()
     else:
         with _build_bar() as progress:
-            yield _checked(progress)
-    check()
-
-
-def _checked(callback: ProgressCallback) -> ProgressCallback:
-    """Raise `KeyboardInterrupt` at the next event if a signal has arrived; see `uplift_cli.signals`."""
-
-    def progress(event: Progress) -> None:
-        check()
-        callback(event)
-
-    return progress
+            yield progress
 
 
 @contextlib.contextmanager
@@ -62,7 +50,7 @@ def spinner(text: str) -> Iterator[None]:
 def progress_bar(title: str, *, quiet: bool = False) -> Iterator[ProgressCallback]:
     """Yield a callback that moves a bar titled ``title``; silent if ``quiet``."""
     if quiet or not _is_animated():
-        yield _checked(ignore_progress if quiet else _Lines(title))
+        yield ignore_progress if quiet else _Lines(title)
         return
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
@@ -71,19 +59,19 @@ def progress_bar(title: str, *, quiet: bool = False) -> Iterator[ProgressCallbac
     columns = (TextColumn(title), BarColumn(bar_width=None), MofNCompleteColumn())
     with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(title, total=None)
-        yield _checked(lambda event: bar.update(task, completed=event.done, total=event.total))
+        yield lambda event: bar.update(task, completed=event.done, total=event.total)
 
 
 @contextlib.contextmanager
 def stage_spinner() -> Iterator[ProgressCallback]:
     """Yield a callback that shows the current stage with a spinner."""
     if not _is_animated():
-        yield _checked(_Lines())
+        yield _Lines()
         return
     from rich.console import Console
 
     with Console(stderr=True).status("…") as status:
-        yield _checked(lambda event: status.update(f"{event.stage} ({event.done + 1} of {event.total}) …"))
+        yield lambda event: status.update(f"{event.stage} ({event.done + 1} of {event.total}) …")
 
 
 def _is_animated() -> bool:

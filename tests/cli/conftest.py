@@ -11,7 +11,7 @@ import uplift_cli.main
 from click.testing import CliRunner, Result
 from uplift_cli.main import main
 from uplift_cli.output import progress
-from uplift_cli.output.diagnostics import UsageFailure
+from uplift_cli.output.diagnostics import CommandFailure
 
 from uplift.common.errors import UpliftError
 
@@ -37,7 +37,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def shown(monkeypatch: pytest.MonkeyPatch) -> list[click.ClickException]:
     """Errors that were printed, in order."""
     errors: list[click.ClickException] = []
-    for owner, name in ((UsageFailure, "show"), (uplift_cli.main, "show_usage_error")):
+    for owner, name in ((CommandFailure, "show"), (uplift_cli.main, "show_usage_error")):
         monkeypatch.setattr(owner, name, _recorded(getattr(owner, name), errors))
     return errors
 
@@ -70,7 +70,7 @@ def refuse(run: Run, shown: list[click.ClickException]) -> Callable[..., UpliftE
         result = run(*args, code=2, **options)
         assert result.stdout == ""
         failure = shown.pop()
-        assert isinstance(failure, UsageFailure), result.stderr
+        assert isinstance(failure, CommandFailure), result.stderr
         (line,) = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
         assert line == f"error: {failure.message}"
         assert "; " in line or " must " in line

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import pytest
-from rich.cells import cell_len
 from uplift_cli.commands.help import TOPICS
 
 from uplift.atlas import shipped_atlases
 from uplift.lookup import MODES
 
 
-def test_topics_are_listed_and_fit(run, monkeypatch):
-    monkeypatch.setenv("COLUMNS", "60")
+def test_topics_are_listed(run):
     listed = run("help").stdout
     for name in TOPICS:
         assert f"{name} " in listed
-        text = run("help", name).stdout
-        assert len(text) > 60
-        assert max(map(cell_len, text.splitlines())) <= 60
+        assert len(run("help", name).stdout) > 60
 
 
 def test_topics_have_what_the_code_has(run):

@@ -5,9 +5,9 @@ from __future__ import annotations
 import click
 import pytest
 from click.testing import CliRunner
+from uplift_cli.commands.build import LatticeDim
 from uplift_cli.main import COMMANDS, main
-from uplift_cli.params.number_types import Number
-from uplift_cli.params.options import LatticeDim
+from uplift_cli.options import Number
 
 NUMBERS = ("nan", "inf", "-inf", "1e999", "1_0", "٣", "１", "9" * 5000, "", "0x10")
 

@@ -40,14 +40,9 @@ def test_picture_from_an_image_of_labels(run, spec, home):
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
-        (("--image", "labels.png"), "image-without-page"),
-        (("--html", "a.html", "--label", "leaf=#ff0000"), "label-without-image"),
-        (("--html", "a.html", "--image", "labels.png", "--label", "leaf"), "invalid-label"),
+        (("--html", "a.html", "--image", "labels.png", "--label", "leaf"), "option"),
         (("--html", "a.html", "--image", "labels.png"), "texture"),
-        (
-            ("--html", "a.html", "--image", "labels.png", "--label", "leaf=#1", "--label", "leaf=#2"),
-            "repeated-label",
-        ),
+        (("--html", "a.html", "--image", "labels.png", "--label", "leaf=#1", "--label", "leaf=#2"), "option"),
         (("--html", "two.toml"), "output-is-input"),
     ],
 )
@@ -55,3 +50,8 @@ def test_invalid_input_is_reported_before_any_work(refuse, spec, home, monkeypat
     monkeypatch.setattr("uplift.design.palette.design", lambda *_: pytest.fail("designed"))
     assert refuse("palette", spec, *arguments).code == code
     assert not (home / "a.html").exists()
+
+
+@pytest.mark.parametrize("arguments", [("--image", "labels.png"), ("--html", "a.html", "--label", "leaf=#ff0000")])
+def test_options_that_need_others(misuse, spec, arguments):
+    misuse("palette", spec, *arguments)

@@ -89,7 +89,7 @@ def test_plot(choose, home):
         (["--tolerance", "0.001", "--method", "uniform"], "option"),
         (["--count", "3", "--method", "meyer"], "undefined-rule"),
         (["--wavelengths", "300:700:50"], "invalid-wavelengths"),
-        (["--wavelengths", "some"], "invalid-wavelengths"),
+        (["--wavelengths", "some"], "option"),
         (["--count", "4", "--observer", "me"], "unknown-observer"),
     ],
 )

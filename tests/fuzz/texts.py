@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from uplift_cli.params.colours import from_table
+from uplift_cli.colours import ColourReader
 
 from tests.atlas.vendor_files import VENDORS, Files, sample
 from tests.fuzz.mutate import NUMBERS, Random, choose, mutate
@@ -178,7 +178,7 @@ def _cube() -> Cube:
 def use_colours(path: Path) -> None:
     cube = _cube()
     with path.open("rb") as file:
-        for rgb in from_table(file, path.name, cube.data.sensor, encoded=False, bounded=False):
+        for rgb in ColourReader(cube.data.sensor).parse_table(file, path.name):
             for method in METHODS[1:]:
                 mapped = map_to_gamut(rgb, cube.data.sensor, method).rgb
                 if not ((mapped >= 0) & (mapped <= 1)).all():

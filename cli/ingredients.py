@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from uplift.common.errors import ColourError, OptionError
 from uplift.common.text import format_value, parse_float
 
-from .colours import from_arguments
+from .colours import ColourReader
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
@@ -46,18 +47,14 @@ class SpectrumResolver:
     space: ImageSpace | None = None
 
     def ingredients(self, words: Sequence[str]) -> list[Ingredient]:
-        """Parse ingredients.
-
-        Raises `ColourError` for an unknown name, `OptionError` for parts that are not a positive number.
-        """
+        """Parse ingredients. Raises `ColourError` for unknown names, `OptionError` for parts that are not positive."""
         return [self._ingredient(word.strip()) for word in words]
 
     def spectrum(self, text: str) -> Array:
         """Return the spectrum (N,) of a colour, 'white', 'black' or an entry. Raises `ColourError`."""
         import numpy as np
 
-        from uplift.atlas import Atlas as Atlas
-        from uplift.atlas import on_grid
+        from uplift.atlas import Atlas, on_grid
 
         entries = self.cube.data.atlas
         if text in entries.names:
@@ -67,7 +64,13 @@ class SpectrumResolver:
             return on_grid(Atlas((entry,)), self.wavelengths)[0]
         if text in CONSTANT_SPECTRA:
             return np.full(len(self.wavelengths), CONSTANT_SPECTRA[text])
-        return self._uplift(self._linear_rgb(text))
+        reader = ColourReader(self.cube.data.sensor, space=self.space)
+        try:
+            rgb = reader.parse([text])[0]
+        except ColourError as error:
+            hint = "write '#rrggbb', 'r,g,b' in linear RGB, or an entry of the cube's atlas or of --atlas"
+            raise ColourError(f"{error.problem} and not an atlas entry", hint=hint) from error
+        return self._uplift(rgb)
 
     def _is_entry(self, text: str) -> bool:
         return text in self.cube.data.atlas.names or text in self.atlas.names
@@ -81,19 +84,6 @@ class SpectrumResolver:
             return Ingredient(name, parts, self.spectrum(name), None)
         on_white, on_black = (half.strip() for half in name.split("/", 1))
         return Ingredient(name, parts, self.spectrum(on_white), self.spectrum(on_black))
-
-    def _linear_rgb(self, text: str) -> Array:
-        """Parse a colour into linear RGB (3,)."""
-        from uplift.common.errors import ColourError
-
-        try:
-            return from_arguments([text], self.cube.data.sensor, encoded=False, space=self.space)[0]
-        except ColourError as error:
-            raise ColourError(
-                f"{error.problem} and not an atlas entry",
-                code=error.code,
-                hint="write '#rrggbb', 'r,g,b' in linear RGB, or an entry of the cube's atlas or of --atlas",
-            ) from error
 
     def _uplift(self, rgb: Array) -> Array:
         return self.cube.reflectance(rgb, self.wavelengths)
@@ -124,16 +114,11 @@ def library_ingredients(ingredients: list[Ingredient], count: int | None = None)
 
 
 def _positive(text: str, word: str) -> float:
-    from uplift.common.errors import OptionError
-
     try:
         parts = parse_float(text)
     except ValueError:
         parts = 0.0
     if not 0 < parts < float("inf"):
-        raise OptionError(
-            f"parts must be a number above 0, got {format_value(word)}",
-            code="invalid-parts",
-            hint="write for example '2:#1f3a93'",
-        )
+        problem = f"parts must be a number above 0, got {format_value(word)}"
+        raise OptionError(problem, hint="write for example '2:#1f3a93'")
     return parts

@@ -1,0 +1,216 @@
+"""Colours from arguments, files and standard input as linear RGB. All functions raise `ColourError`."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import io
+import math
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import IO, TYPE_CHECKING
+
+import click
+
+from uplift.common.errors import ColourError
+from uplift.common.text import format_value, parse_float
+
+if TYPE_CHECKING:
+    from uplift.colorimetry.sensor import Sensor
+    from uplift.colorimetry.spaces import ImageSpace
+    from uplift.common.arrays import Array
+
+HEX = re.compile(r"#?([0-9a-fA-F]{6})")
+SHORT_HEX = re.compile(r"#([0-9a-fA-F]{3})")
+SYNTAX = "write three numbers (R G B) or a hex colour such as '#cc3319'"
+TABLE = "give a CSV file of colours"
+CHUNK = 1 << 16
+"""Bytes read at once. A pipe gives those that have arrived."""
+MAX_LINE = 1 << 16
+"""Characters of a line."""
+
+
+@dataclass(frozen=True)
+class Colour:
+    """Three numbers, and whether they are encoded 8-bit codes."""
+
+    numbers: tuple[float, ...]
+    encoded: bool
+
+
+@dataclass(frozen=True)
+class ColourReader:
+    """Converts colours to linear RGB of a sensor.
+
+    Numbers are codes from 0 to 255 if ``encoded``, else linear RGB, which must lie in [0, 1] if ``bounded``. Colours
+    are in ``space``, or in that of the sensor.
+    """
+
+    sensor: Sensor
+    encoded: bool = False
+    bounded: bool = False
+    space: ImageSpace | None = None
+
+    def read(self, words: Sequence[str], path: str | None) -> Iterable[Array]:
+        """Return blocks of linear RGB (n, 3) from arguments, a file, or standard input ('-')."""
+        if tuple(words) == ("-",):
+            words, path = (), path or "-"
+        if bool(words) == (path is not None):
+            raise click.UsageError("Give one colour, or --input FILE, or '-'. See 'uplift query --help'.")
+        return [self.parse(words)] if path is None else self._read_file(path)
+
+    def parse(self, words: Sequence[str]) -> Array:
+        """Parse one colour, 'R G B', 'R,G,B' or '#rrggbb', into linear RGB (1, 3)."""
+        parts = [part for word in words for part in re.split(r"[,\s]+", word) if part]
+        colour = _parse(parts)
+        if colour is None or len(parts) > 3:
+            raise _not_a_colour(parts)
+        return self._linear([colour])
+
+    def _read_file(self, path: str) -> Iterator[Array]:
+        name = "standard input" if path == "-" else path
+        try:
+            with click.open_file(path, "rb") as file:
+                yield from self.parse_table(file, name)
+        except OSError as error:
+            raise ColourError(f"cannot be read: {error.strerror}", path=path, hint=TABLE) from error
+
+    def parse_table(self, file: IO[bytes], name: str) -> Iterator[Array]:
+        """Parse lines of 'r,g,b' or hex colours into blocks of linear RGB (n, 3), as the lines come.
+
+        A first line without numbers is a header. Further columns are ignored.
+        """
+        empty = True
+        for lines in _line_blocks(file, name):
+            colours = []
+            for line, row in _rows(lines, name):
+                colour = _parse(row[:1] if row[0].startswith("#") else row)
+                if colour is None:
+                    raise _not_a_colour(row, name, line)
+                self._check_range(colour, name, line)
+                colours.append(colour)
+            if colours:
+                empty = False
+                yield self._linear(colours)
+        if empty:
+            raise ColourError("has no colours", path=name, hint="give lines of r,g,b or of hex colours")
+
+    def _check_range(self, colour: Colour, name: str, line: int) -> None:
+        """Check the range as the cube does, but report the line."""
+        from uplift.colorimetry.sensor import SLACK
+
+        numbers = colour.numbers
+        values = "(" + ", ".join(f"{number:g}" for number in numbers) + ")"
+        if self.encoded or colour.encoded:
+            if not all(0 <= number <= 255 for number in numbers):
+                problem = f"8-bit codes must be in [0, 255], got {values}"
+                raise ColourError(problem, code="invalid-codes", path=name, line=line)
+        elif self.bounded:
+            if not all(-SLACK <= number <= 1 + SLACK for number in numbers):
+                problem = f"linear RGB must be in [0, 1], got {values}"
+                raise ColourError(problem, code="rgb-out-of-gamut", path=name, line=line)
+        elif not all(map(math.isfinite, numbers)):
+            raise ColourError(f"{values} is not finite", path=name, line=line, hint=SYNTAX)
+
+    def _linear(self, colours: list[Colour]) -> Array:
+        """Decode codes, and convert colours of another space to the sensor's."""
+        import numpy as np
+
+        from uplift.lookup.validation import decode_codes
+
+        space = self.space
+        values = np.array([colour.numbers for colour in colours], dtype=float)
+        mask = np.array([self.encoded or colour.encoded for colour in colours])
+        if space is None or space.decode is None:
+            values[mask] = decode_codes(self.sensor, values[mask])
+        else:
+            values[mask] = space.decode(values[mask] / 255)
+            if space.floats_are_codes:
+                values[~mask] = space.decode(values[~mask])
+        matrix = None if space is None else space.matrix_to(self.sensor)
+        return values if matrix is None else np.asarray(values @ matrix.T)
+
+
+def find_point(
+    colour: tuple[str, ...],
+    input_path: str | None,
+    xyz: tuple[float, float, float] | None,
+    xy: tuple[float, float] | None,
+    luminance: float | None,
+) -> tuple[tuple[float, float, float] | None, bool]:
+    """Return XYZ of --xyz, or of --xy and --luminance, None without them; and whether there is a single colour.
+
+    Raises click's error if there is not exactly one source of colours.
+    """
+    if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
+        raise click.UsageError("--xy X Y and --luminance Y require each other, and --xyz is an alternative.")
+    if xy is not None and luminance is not None:
+        x, y = xy
+        if not y > 0:
+            raise ColourError(f"y of a chromaticity must be positive, got {y:g}", hint="give CIE x and y")
+        xyz = x * luminance / y, luminance, (1 - x - y) * luminance / y
+    if xyz is not None and (colour or input_path is not None):
+        raise click.UsageError("Give one colour, --input FILE, '-', --xyz or --xy. See 'uplift query --help'.")
+    return xyz, xyz is not None or (bool(colour) and colour != ("-",))
+
+
+def _line_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, str]]]:
+    """Yield blocks of lines with their numbers, each as soon as it can be read: a stream may never end."""
+    decoder = io.IncrementalNewlineDecoder(codecs.getincrementaldecoder("utf-8-sig")(), translate=True)
+    read = getattr(file, "read1", file.read)
+    first, rest = 1, ""
+    try:
+        while chunk := read(CHUNK):
+            *lines, rest = (rest + decoder.decode(chunk)).split("\n")
+            for line, text in enumerate([*lines, rest], first):
+                if len(text) > MAX_LINE:
+                    problem = f"lines must not exceed {MAX_LINE:,} characters"
+                    raise ColourError(problem, path=name, line=line, hint=TABLE)
+            if lines:
+                yield list(enumerate(lines, first))
+                first += len(lines)
+        if rest := rest + decoder.decode(b"", final=True):
+            yield list(enumerate(rest.split("\n"), first))
+    except UnicodeDecodeError as error:
+        raise ColourError("is not a text file", path=name, hint=TABLE) from error
+
+
+def _rows(lines: Iterable[tuple[int, str]], name: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the line number and the cells that are not empty, of all rows but the header."""
+    for line, text in lines:
+        try:
+            cells = re.split(r"[;\t ]+", text.strip()) if "," not in text else next(csv.reader([text]))
+        except csv.Error as error:
+            raise ColourError(str(error), path=name, line=line, hint=TABLE) from error
+        row = [cell.strip() for cell in cells if cell.strip()]
+        is_header = line == 1 and row and _hex(row[0]) is None and all(_number(cell) is None for cell in row)
+        if row and not is_header:
+            yield line, row
+
+
+def _parse(parts: Sequence[str]) -> Colour | None:
+    """Parse one hex colour, or the first three of several numbers."""
+    digits = _hex(parts[0]) if len(parts) == 1 else None
+    if digits is not None:
+        return Colour(tuple(int(digits[i : i + 2], 16) for i in (0, 2, 4)), encoded=True)
+    numbers = [number for part in parts[:3] if (number := _number(part)) is not None]
+    return Colour(tuple(numbers), encoded=False) if len(numbers) == 3 else None
+
+
+def _hex(word: str) -> str | None:
+    if short := SHORT_HEX.fullmatch(word):
+        return "".join(2 * digit for digit in short[1])
+    match = HEX.fullmatch(word)
+    return match[1] if match else None
+
+
+def _number(word: str) -> float | None:
+    try:
+        return parse_float(word)
+    except ValueError:
+        return None
+
+
+def _not_a_colour(parts: Sequence[str], path: str | None = None, line: int | None = None) -> ColourError:
+    return ColourError(f"{format_value(' '.join(parts[:4]))} is not a colour", path=path, line=line, hint=SYNTAX)

@@ -1,0 +1,99 @@
+"""Inputs that several commands name alike: atlases, images, wavelengths and RGB spaces. All raise `UpliftError`."""
+
+from __future__ import annotations
+
+import glob
+import math
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from uplift.common.text import format_value, parse_float
+
+if TYPE_CHECKING:
+    from uplift.atlas import Atlas
+    from uplift.colorimetry.spaces import ImageSpace
+    from uplift.common.arrays import Array
+
+LOCAL = "atlases/*.txt"
+DEFAULT_ATLASES = f"{LOCAL} if there are any, or else the shipped atlases"
+"""Default of ``--atlas``, as the help states it."""
+UDIM = "<UDIM>"
+"""Placeholder for the number of a tile, 1001 to 9999."""
+UDIM_DIGITS = "[1-9][0-9][0-9][0-9]"
+MAX_WAVELENGTHS = 100_000
+
+
+def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
+    """Return atlases by the stems of their file names; without files, the default ones."""
+    from uplift.atlas import read_atlas, shipped_atlases
+    from uplift.common.errors import AtlasError
+
+    atlases: dict[str, Atlas] = {}
+    for file in files or sorted(Path().glob(LOCAL)) or [shipped.path for shipped in shipped_atlases()]:
+        name = Path(file).stem
+        if name in atlases:
+            raise AtlasError(f"another atlas has the name '{name}' too", path=file, hint="rename one of the files")
+        atlases[name] = read_atlas(file)
+    return atlases
+
+
+def expand_patterns(sources: Sequence[str]) -> list[str]:
+    """Return the paths of images and patterns, in order. A pattern may hold the number of a UDIM tile."""
+    return [path for source in sources for path in _expand(source)]
+
+
+def _expand(source: str) -> list[str]:
+    from uplift.common.errors import TextureError
+
+    if os.path.exists(source) or not (glob.has_magic(source) or UDIM in source):
+        return [source]
+    paths = sorted(glob.glob(source.replace(UDIM, UDIM_DIGITS)))
+    if not paths:
+        raise TextureError(f"no file matches the pattern '{source}'", hint="check the pattern")
+    return paths
+
+
+def parse_wavelengths(text: str | None) -> Array | None:
+    """Parse '380:780:5' (end included) or '450,550,650' into nm, shape (N,)."""
+    import numpy as np
+
+    from uplift.common.errors import OptionError
+
+    if text is None:
+        return None
+    try:
+        if ":" not in text:
+            return np.array([parse_float(part) for part in text.split(",")])
+        start, end, step = (parse_float(part) for part in text.split(":"))
+        count = int((end - start) / step + 1e-9) + 1
+        if 0 < step < math.inf and end >= start and count <= MAX_WAVELENGTHS:
+            return start + step * np.arange(count, dtype=float)
+    except (ValueError, ZeroDivisionError, OverflowError):
+        pass
+    raise OptionError(
+        f"wavelengths must be START:END:STEP or a list, got {format_value(text)}",
+        hint="write for example 380:780:5 or 450,550,650, in nm",
+    )
+
+
+def parse_range(text: str) -> tuple[float, float]:
+    """Parse '360:830', a first and a last wavelength in nm."""
+    from uplift.common.errors import OptionError
+
+    try:
+        start, end = (parse_float(part) for part in text.split(":"))
+    except ValueError as error:
+        problem = f"a range must be START:END in nm, got {format_value(text)}"
+        raise OptionError(problem, hint="write for example 360:830") from error
+    return start, end
+
+
+def find_input_space(name: str | None) -> ImageSpace | None:
+    """Return the space of a name or of chromaticities, None for None. The tables take a second to load."""
+    if name is None:
+        return None
+    from uplift.colorimetry.spaces import find_space
+
+    return find_space(name)

@@ -1,0 +1,109 @@
+"""Colours and spectra as text: fields, patches, sparklines, columns, and classical coordinates."""
+
+from __future__ import annotations
+
+import colorsys
+import sys
+import textwrap
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from uplift.common.text import printable
+
+from .console import columns, emit, say
+
+if TYPE_CHECKING:
+    from uplift.common.arrays import Array
+    from uplift.lookup import Cube
+
+BLOCKS = "▁▂▃▄▅▆▇█"
+NAME_WIDTH = 12
+"""Characters of the names of fields."""
+CELL_WIDTH = 20
+"""Characters of a wavelength and its reflectance, with the space between columns."""
+
+
+def print_fields(fields: Mapping[str, str], patches: Mapping[str, str] | None = None) -> None:
+    """Print names and values in two columns, and on a terminal the patches of colour that belong to a value."""
+    patches = patches if patches and sys.stdout.isatty() else {}
+    for name, text in fields.items():
+        patch = f"  {patches[name]}" if patches.get(name) else ""
+        lines = textwrap.wrap(printable(text), columns() - NAME_WIDTH, break_on_hyphens=False)
+        indent = "\n" + " " * NAME_WIDTH
+        emit(f"{name:<{NAME_WIDTH}}{indent.join(lines)}{patch}")
+
+
+def print_columns(wavelengths: Array, values: Array) -> None:
+    """Print wavelengths and values in columns, ordered downwards."""
+    cells = [f"{wavelength:>6g} nm {value:8.5f}" for wavelength, value in zip(wavelengths, values, strict=True)]
+    height = -(-len(cells) // max(1, (columns() + 2) // CELL_WIDTH))
+    for line in range(height):
+        say("  ".join(cells[line::height]))
+
+
+def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
+    """Return a patch of colour for a terminal, ``width`` characters wide."""
+    return click.style(" " * width, bg=display_codes(cube, rgb))
+
+
+def display_codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:
+    """Return 8-bit sRGB codes for a terminal."""
+    from uplift.colorimetry.srgb import to_display_codes
+
+    red, green, blue = (int(code) for code in to_display_codes(rgb, cube.data.sensor))
+    return red, green, blue
+
+
+def hex_code(cube: Cube, rgb: Array) -> str:
+    """Return '#rrggbb' of linear RGB (3,), encoded by the transfer function of the cube's space."""
+    return "#" + "".join(f"{round(float(code)):02x}" for code in cube.encode(rgb))
+
+
+def format_rgb(rgb: Iterable[float]) -> str:
+    """Return numbers with six decimals, separated by spaces."""
+    return " ".join(f"{value:.6f}" for value in rgb)
+
+
+def sparkline(values: Array, width: int = 40) -> str:
+    """Return a spectrum as block characters, from 0 to 1 in eighths."""
+    count = len(values)
+    picks = [round(i * (count - 1) / max(min(width, count) - 1, 1)) for i in range(min(width, count))]
+    return "".join(BLOCKS[round(float(values[pick]) * (len(BLOCKS) - 1))] for pick in picks)
+
+
+def coordinates(cube: Cube, rgb: Array) -> dict[str, Any]:
+    """Return HSV, HSL, YIQ, dominant wavelength and purity of linear RGB (3,) for JSON (Fishkin 1983, 3.11–3.13).
+
+    HSV, HSL and YIQ are those of the encoded components, as displays and broadcasts use them, clipped to [0, 1]. Empty
+    for a camera, whose values no display shows.
+    """
+    from uplift.colorimetry.dominant import dominant_wavelength
+
+    sensor = cube.data.sensor
+    if sensor.sensitivities is not None:
+        return {}
+    encoded = (cube.encode(rgb) / 255).tolist()
+    hue, lightness, saturation = colorsys.rgb_to_hls(*encoded)
+    dominant = dominant_wavelength(sensor.xyz(rgb), sensor)
+    return {
+        "hsv": list(colorsys.rgb_to_hsv(*encoded)),
+        "hsl": [hue, saturation, lightness],
+        "yiq": list(colorsys.rgb_to_yiq(*encoded)),
+        "dominant_wavelength": dominant.wavelength,
+        "complementary": dominant.complementary,
+        "purity": dominant.purity,
+    }
+
+
+def describe_coordinates(cube: Cube, rgb: Array) -> dict[str, str]:
+    """Return the coordinates of linear RGB (3,) for a table, by the name of the row; empty for a camera."""
+    values = coordinates(cube, rgb)
+    if not values:
+        return {}
+    kind = "complement of " if values["complementary"] else ""
+    wavelength = values["dominant_wavelength"]
+    hue = "grey" if wavelength is None else f"{kind}{wavelength:.0f} nm, purity {values['purity']:.2f}"
+    codes = (f"{name.upper()} {' '.join(f'{x:.2f}' for x in values[name])}" for name in ("hsv", "hsl", "yiq"))
+    return {"hue": hue, "encoded": ", ".join(codes)}
