@@ -27,6 +27,7 @@ def prepare_process() -> None:
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # not under nohup
             signal.signal(number, _end)
     os.environ["MPLBACKEND"] = "agg"  # which needs no display
+    sys.warnoptions.append("ignore:resource_tracker:UserWarning")  # of multiprocessing, about a process that was ended
 
 
 def _open_closed_streams() -> None:

@@ -209,7 +209,7 @@ def test_files_that_cannot_be_read_are_errors(refuse, home):
         assert (type(error), error.where) == (ColourError, path)
     for path in ("none.uplift", "x" * 300):
         error = refuse("query", "--cube", path, "#fff")
-        assert (error.code, error.where) == ("cube-not-found", path)
+        assert (type(error), error.where) == (uplift.CubeFileError, path)
 
 
 @pytest.mark.parametrize("chunk", [1, 2, 3, 5, 1000])
