@@ -12,7 +12,7 @@ INTERRUPTED = 130
 
 
 def run() -> None:
-    """Run the command line in a process of its own."""
+    """Run the command line as a process."""
     gc.set_threshold(COLLECT_AFTER)
     try:
         from .main import main

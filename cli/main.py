@@ -83,7 +83,7 @@ class LazyGroup(click.Group):
         return code
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command; raise `CommandFailure` for whatever goes wrong in it."""
+        """Run the command; raise `CommandFailure` for any error in it."""
         with warnings.catch_warnings():
             warnings.simplefilter("always", UpliftWarning)
             warnings.showwarning = show_warning
