@@ -9,21 +9,30 @@ import signal
 import traceback
 import warnings
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 
 import numpy as np
 
-from tests.fuzz.target import Target
 from uplift.common.errors import UpliftError, UpliftWarning
 from uplift.common.text import printable
 
+ROOT = Path(__file__).parents[2]
 SECONDS = 5.0
 """Limit of processor time per input. Valid inputs take milliseconds."""
 MEGABYTES = 1024
 """Limit of address space in addition to that of the process at the start."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """A reader under test: ``generate`` writes an input, ``use`` reads it and may raise `UpliftError` alone."""
+
+    name: str
+    generate: Callable[[np.random.Generator, Path], None]
+    use: Callable[[Path], object]
 
 
 class HangError(BaseException):

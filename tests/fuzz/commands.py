@@ -20,9 +20,10 @@ from click.testing import CliRunner, Result
 from uplift_cli.main import main
 
 from tests.cube.cube_files import forge
+from tests.fuzz.campaign import ROOT, Target
 from tests.fuzz.cubes import SEEDS
 from tests.fuzz.mutate import Random, choose
-from tests.fuzz.target import ROOT, Target
+from tests.fuzz.texts import ART_ENTRY, REGULAR, SAMPLES
 from uplift.common.errors import UpliftError
 from uplift.common.text import printable
 
@@ -45,26 +46,20 @@ name = {name}
 rgb = [0.2, 0.3, 0.4]
 """
 COMMANDS = (
-    ("info", CUBE), ("info", CUBE, "--format", "json"), ("query", "--cube", CUBE, "0.2", "0.3", "0.4"),
-    ("query", "--cube", CUBE, "--input", COLOURS), ("query", "--cube", CUBE, "--input", COLOURS, "--format", "json"),
-    ("query", "--cube", CUBE, "--input", COLOURS, "--format", "csv"),
-    ("query", "--cube", CUBE, "--input", COLOURS, "--plot", "x.png"), ("query", "{}"),
-    ("query", "--cube", "{}", "0", "0", "0"), ("query", "--input", "{}"), ("{}",), ("--{}",), ("query", "--{}"),
-    ("query", "0", "0", "0", "--wavelengths", "{}"), ("query", "0", "0", "0", "--input-space", "{}"),
-    ("query", "0", "0", "0", "--format", "{}"), ("query", "0", "0", "0", "--plot", "{}/x.png"), ("atlas", ATLAS),
-    ("atlas", ATLAS, "--format", "json"), ("atlas", ATLAS, "--format", "csv"), ("atlas", TABLE),
-    ("atlas", TABLE, "--format", "csv"), ("atlas", TABLE, "-o", "b.csv"), ("atlas", TABLE, ATLAS),
-    ("atlas", "{}"), ("atlas", ATLAS, "--space", "{}"), ("atlas", ATLAS, "--observer", "{}"),
-    ("mix", "1:{}", "--cube", CUBE), ("mix", "1:{}", "1:#ff0000", "--atlas", TABLE),
-    ("mix", "{}:#ff0000", "--ground", "{}"), ("wavelengths", "--count", "3", "--atlas", TABLE),
-    ("wavelengths", "--count", "3", "--light", "{}"), ("palette", SPEC), ("palette", SPEC, "--format", "json"),
-    ("palette", SPEC, "--plot", "m.png", "--plot-spectra", "s.png"), ("palette", SPEC, "--html", "p.html"),
-    ("palette", SPEC, "--html", "p.html", "--label", "{}"),
-    ("chart", "--recommend", "--tolerance", "1", "--from", CHART), ("chart", "--recommend", "--light", "{}"),
-    ("export", CUBE, "-o", "x.csv"), ("export", CUBE, "-o", "x.h"), ("export", CUBE, "-o", "x.npz"),
-    ("report", CUBE, "--format", "json"), ("check", CUBE + "{}"), ("plan", "{}"), ("plan", SPEC),
-    ("build", "--plan", SPEC), ("build", "--model", "{}", "--dim", "4"), ("build", "--space", "{}", "--dim", "4"),
-    ("build", "--atlas", "{}", "--dim", "4"), ("texture", "{}", "-o", "x.exr"),
+    "info c.uplift", "info c.uplift --format json", "query --cube c.uplift 0.2 0.3 0.4",
+    "query --cube c.uplift --input colours.csv", "query --cube c.uplift --input colours.csv --format json",
+    "query --cube c.uplift --input colours.csv --format csv", "query --cube c.uplift --input colours.csv --plot x.png",
+    "query {}", "query --cube {} 0 0 0", "query --input {}", "{}", "--{}", "query --{}", "query 0 0 0 --wavelengths {}",
+    "query 0 0 0 --input-space {}", "query 0 0 0 --format {}", "query 0 0 0 --plot {}/x.png", "atlas a.txt",
+    "atlas a.txt --format json", "atlas a.txt --format csv", "atlas a.csv", "atlas a.csv --format csv",
+    "atlas a.csv -o b.csv", "atlas a.csv a.txt", "atlas {}", "atlas a.txt --space {}", "atlas a.txt --observer {}",
+    "mix 1:{} --cube c.uplift", "mix 1:{} 1:#ff0000 --atlas a.csv", "mix {}:#ff0000 --ground {}",
+    "wavelengths --count 3 --atlas a.csv", "wavelengths --count 3 --light {}", "palette p.toml",
+    "palette p.toml --format json", "palette p.toml --plot m.png --plot-spectra s.png", "palette p.toml --html p.html",
+    "palette p.toml --html p.html --label {}", "chart --recommend --tolerance 1 --from chart.csv",
+    "chart --recommend --light {}", "export c.uplift -o x.csv", "export c.uplift -o x.h", "export c.uplift -o x.npz",
+    "report c.uplift --format json", "check c.uplift{}", "plan {}", "plan p.toml", "build --plan p.toml",
+    "build --model {} --dim 4", "build --space {} --dim 4", "build --atlas {} --dim 4", "texture {} -o x.exr",
 )  # fmt: skip
 """Commands, in which ``{}`` is a hostile text."""
 
@@ -110,23 +105,15 @@ def _generate_names(random: Random, path: Path) -> None:
     argument = name.replace("\0", "").replace("\ud800", "\udcff")  # as the system passes arguments
     files = {
         CUBE: json.dumps([name, other, int(random.integers(4))]),
-        ATLAS: _art(name) + _art(other),
+        ATLAS: "".join(ART_ENTRY % (each, *REGULAR) for each in (name, other)),
         TABLE: f"name,400,500,600,700\n{_cell(name)},0.1,0.2,0.3,0.4\n{_cell(other)},0.2,0.3,0.4,0.5\n",
         CHART: CHART_TEXT.replace("Mallett", name).replace("uplift", other),
         SPEC: PALETTE.format(name=json.dumps(name)),
         COLOURS: choose(random, ("0.2,0.3,0.4\n0.1,0.1,0.1\n", f"{name}\n", f"0.1,0.2,0.3,{name}\n#ffffff {other}\n")),
     }
-    args = [word.replace("{}", argument) for word in command]
+    args = [word.replace("{}", argument) for word in command.split()]
     case = {"args": args, "files": {file: text for file, text in files.items() if file in args}}
     path.write_text(json.dumps(case), encoding="ascii")
-
-
-def _art(name: str) -> str:
-    return (
-        f"Entry ID: {name}\nType : reflectance spectrum\nFluorescence data : no\nSampling information\n"
-        "Type : regular\nStart : 400 nm\nIncrement : 100 nm\nMaximum sample value : 1.0\n"
-        "ASCII sample data\n{0.5, 0.25, 0.125, 0.0625}\n"
-    )
 
 
 def _cell(text: str) -> str:
@@ -134,28 +121,23 @@ def _cell(text: str) -> str:
 
 
 def _make_file(text: str, path: Path) -> None:
-    """Write a file of a case: a cube from its names, any other one as it is."""
-    if path.name == CUBE:
-        name, other, place = json.loads(text.replace("\\ud800", "?").replace("\\udcff", "?"))
-
-        def change(tensors: dict[str, Any], metadata: dict[str, Any]) -> None:
-            _rename(metadata, name, other, place)
-
-        forge(SEEDS[0], path, change)
-    else:
+    """Write a file of a case: a cube whose metadata has its names in some places, any other one as it is."""
+    if path.name != CUBE:
         path.write_bytes(text.encode("utf-8", "surrogatepass" if "\ud800" in text else "surrogateescape"))
+        return
+    name, other, place = json.loads(text.replace("\\ud800", "?").replace("\\udcff", "?"))
 
+    def change(tensors: dict[str, Any], metadata: dict[str, Any]) -> None:
+        metadata["entries"][:2] = [name, other]
+        if place == 1:
+            for atlas in metadata["provenance"]["atlases"]:
+                atlas["name"] = name
+        elif place == 2:
+            metadata["provenance"]["left_out"] = [name, other]
+        elif place == 3:
+            metadata["illuminant"] = name
 
-def _rename(metadata: dict[str, Any], name: str, other: str, place: int) -> None:
-    """Put names in place of those of entries, of the recorded atlases, and of some other facts."""
-    metadata["entries"] = [name, other, *metadata["entries"][2:]]
-    if place == 1:
-        for atlas in metadata["provenance"]["atlases"]:
-            atlas["name"] = name
-    elif place == 2:
-        metadata["provenance"]["left_out"] = [name, other]
-    elif place == 3:
-        metadata["illuminant"] = name
+    forge(SEEDS[0], path, change)
 
 
 def _use_names(path: Path) -> None:
@@ -175,42 +157,34 @@ INPUTS = {
     "c.uplift": ROOT / "cubes" / "moments-8.uplift",
     "a.txt": ROOT / "atlases" / "macbeth.txt",
     "b.txt": ROOT / "atlases" / "rawtoaces.txt",
-    "p.toml": ROOT / "uplift" / "samples" / "files" / "metamers.toml",
+    "p.toml": SAMPLES / "metamers.toml",
     "chart.csv": ROOT / "uplift" / "lab" / "chart" / "measured.csv",
 }
 IMAGE, SCENE = "i.png", "s.toml"
 WRITERS = (
-    ("query", "--cube", "c.uplift", "0", "0", "0", "--plot", "{}"), ("query", "--input", COLOURS, "--plot", "{}"),
-    ("export", "c.uplift", "-o", "{}", "--format", "csv"), ("export", "c.uplift", "-o", "{}", "--format", "npz"),
-    ("export", "c.uplift", "-o", "{}", "--format", "c"), ("atlas", "a.txt", "b.txt", "-o", "{}"),
-    ("palette", "p.toml", "-o", "{}"), ("palette", "p.toml", "--plot", "{}"),
-    ("palette", "p.toml", "--html", "{}"), ("palette", "p.toml", "--plot", "x.png", "--plot-spectra", "{}"),
-    ("report", "c.uplift", "--atlas", "a.txt", "-o", "{}"), ("report", "c.uplift", "--format", "json", "-o", "{}"),
-    ("slices", "c.uplift", "-o", "{}"), ("slices", "c.uplift", "--plot", "{}"),
-    ("wavelengths", "--count", "3", "--atlas", "a.txt", "--atlas", "b.txt", "--plot", "{}"),
-    ("mix", "1:#ff0000", "--cube", "c.uplift", "--atlas", "a.txt", "--plot", "{}"),
-    ("mix", "1:#ff0000", "--over", IMAGE, "-o", "{}"), ("texture", IMAGE, "-o", "{}"), ("plan", SCENE, "-o", "{}"),
-    ("build", "--atlas", "a.txt", "--dim", "4", "-o", "{}"), ("build", "--scene", IMAGE, "--dim", "4", "-o", "{}"),
-    ("chart", "--from", "chart.csv", "-o", "{}"),
+    "query --cube c.uplift 0 0 0 --plot {}", "query --input colours.csv --plot {}",
+    "export c.uplift -o {} --format csv", "export c.uplift -o {} --format npz", "export c.uplift -o {} --format c",
+    "atlas a.txt b.txt -o {}", "palette p.toml -o {}", "palette p.toml --plot {}", "palette p.toml --html {}",
+    "palette p.toml --plot x.png --plot-spectra {}", "report c.uplift --atlas a.txt -o {}",
+    "report c.uplift --format json -o {}", "slices c.uplift -o {}", "slices c.uplift --plot {}",
+    "wavelengths --count 3 --atlas a.txt --atlas b.txt --plot {}",
+    "mix 1:#ff0000 --cube c.uplift --atlas a.txt --plot {}", "mix 1:#ff0000 --over i.png -o {}", "texture i.png -o {}",
+    "plan s.toml -o {}", "build --atlas a.txt --dim 4 -o {}", "build --scene i.png --dim 4 -o {}",
+    "chart --from chart.csv -o {}",
 )  # fmt: skip
 QUICK = WRITERS[:6]
 """Commands that may also have an output of another name."""
 
 
-def _copy(source: str, name: str) -> None:
-    shutil.copy(source, name)
-
-
-WAYS: dict[str, Callable[[str, str], None]] = {"link": os.symlink, "hard link": os.link, "copy": _copy}
+WAYS: dict[str, Callable[[str, str], object]] = {"link": os.symlink, "hard link": os.link, "copy": shutil.copy}
 """How another name comes to an input; a copy is another file, which may be replaced."""
 
 
 def _generate_outputs(random: Random, path: Path) -> None:
     command = choose(random, WRITERS)
-    inputs = [word for word in command if word in (*INPUTS, COLOURS, IMAGE, SCENE)]
-    target = choose(random, inputs)
+    target = choose(random, [word for word in command.split() if word in (*INPUTS, COLOURS, IMAGE, SCENE)])
     way = choose(random, ("name", "path", "folder", "link", "hard link", *(["copy"] if command in QUICK else [])))
-    args = [word.replace("{}", _spelling(random, target, way)) for word in command]
+    args = command.replace("{}", _spelling(random, target, way)).split()
     force = ["--force"] if random.random() < 0.8 else []
     path.write_text(json.dumps({"args": args + force, "target": target, "way": way}), encoding="ascii")
 

@@ -13,18 +13,13 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageCms
 
-from tests.fuzz.mutate import NUMBERS, Random, mutate
-from tests.fuzz.target import Target
+from tests.fuzz.campaign import Target
+from tests.fuzz.mutate import Random, choose, mutate
 from tests.io.texture.exr_bytes import attribute, exr_bytes
 from uplift.colorimetry.observer import sensor
 from uplift.io.texture import Converter, Counts, convert
 
 SIZE = (6, 7)
-TOKENS = (
-    b"IHDR", b"IDAT", b"IEND", b"PLTE", b"tRNS", b"iCCP", b"tEXt", b"ABCD", b"chlist", b"channels", b"box2i", b"string",
-    b"compression", b"chromaticities", b"tiles", b"tiledesc", b"\0", b"\xff", b"\xff\xfe", b"\0" * 999, b"R\0", b"Y\0",
-    b"\xff" * 4, b"\xff\xff\xff\x7f", b"\1\0\0\0", b"\x1b]52;c;\7", *NUMBERS,
-)  # fmt: skip
 MANY = (10, 1000, 1025, 9000, 100_000)
 """Numbers of channels and attributes."""
 
@@ -62,7 +57,7 @@ def _seeds() -> tuple[bytes, ...]:
 
 def _many(random: Random) -> bytes:
     """An EXR file of many channels or attributes."""
-    count = MANY[random.integers(len(MANY))]
+    count = choose(random, MANY)
     names = [b"c%06d" % number for number in range(count)]
     if random.random() < 0.5:
         return exr_bytes([b"R", b"G", b"B", *names])
@@ -78,7 +73,7 @@ def _valid_chunks(content: bytes, random: Random) -> bytes:
         position += 12 + size
     place = int(random.integers(len(chunks)))
     name, data = chunks[place]
-    chunks[place] = name, mutate(data, random, TOKENS)
+    chunks[place] = name, mutate(data, random, _seeds())
     parts = [
         struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data)) for name, data in chunks
     ]
@@ -87,23 +82,20 @@ def _valid_chunks(content: bytes, random: Random) -> bytes:
 
 def _generate(random: Random, path: Path) -> None:
     seeds = _seeds()
-    content = seeds[random.integers(len(seeds))]
+    content = choose(random, seeds)
     draw = random.random()
     if draw < 0.01:
         content = _many(random)
     elif draw < 0.3:
         content = _valid_chunks(seeds[random.integers(2)], random)
     elif draw < 0.9:
-        content = mutate(content, random, TOKENS)
+        content = mutate(content, random, seeds)
     path.write_bytes(content)
 
 
 def _use(path: Path) -> None:
     """Convert to a texture. Raises RuntimeError for anything on standard error."""
-    with (
-        tempfile.TemporaryFile(dir=path.parent) as printed,
-        tempfile.TemporaryDirectory(dir=path.parent) as out,
-    ):
+    with tempfile.TemporaryFile(dir=path.parent) as printed, tempfile.TemporaryDirectory(dir=path.parent) as out:
         saved = os.dup(2)
         os.dup2(printed.fileno(), 2)
         try:

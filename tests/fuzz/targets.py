@@ -7,8 +7,7 @@ import tempfile
 from pathlib import Path
 
 from tests.fuzz import commands, cubes, images, texts
-from tests.fuzz.campaign import Tally, fuzz
-from tests.fuzz.target import ROOT
+from tests.fuzz.campaign import ROOT, Tally, fuzz
 
 READERS = {target.name: target for module in (texts, cubes, images) for target in module.TARGETS}
 COMMANDS = {target.name: target for target in commands.TARGETS}

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from tests.fuzz import campaign, commands
-from tests.fuzz.campaign import fuzz
-from tests.fuzz.target import Target
+from tests.fuzz.campaign import Target, fuzz
 from tests.fuzz.targets import COMMANDS, READERS
 from uplift.common.errors import UpliftError
 

@@ -17,7 +17,7 @@ from PIL import Image
 from threadpoolctl import threadpool_info
 
 import uplift
-from tests.fuzz.target import ROOT
+from tests.fuzz.campaign import ROOT
 from uplift.cube import digest
 from uplift.io.texture import exr_file
 
