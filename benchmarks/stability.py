@@ -16,7 +16,6 @@ from benchmarks import CUBES, DATA, DOCS, MACBETH, record
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.progress import Progress
 from uplift.lab.study import sensitivity
-from uplift.lab.study.pointwise import EVALUATIONS
 from uplift.lab.study.sensitivity import MOVED_DELTA_E, NOISE
 from uplift.lab.study.sensitivity_plots import plot_locality, plot_steepness
 from uplift.lab.study.stability import NO_ATLAS, SYNTHETIC_ATLASES, DesignSpace, design, grids, study_stability
@@ -56,7 +55,6 @@ def main(keep_map: bool) -> None:
         light=NARROW_BAND_LIGHT,
         noise=NOISE,
         moved_delta_e=MOVED_DELTA_E,
-        evaluations=EVALUATIONS,
         queries=QUERIES,
         plain=PLAIN,
         constrained=CONSTRAINED,

@@ -51,13 +51,6 @@ def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None
 @atlas_option("Atlas in addition to the synthetic ones", MACBETH)
 @click.option("--atlases", callback=_list_of(str), metavar="NAME,…", help="Atlases to use by name, or 'none'.")
 @click.option("--samples", type=Whole(0, 100_000), help="Number of random settings in addition to the grids.")
-@click.option(
-    "--peer-dims",
-    "solver_dims",
-    callback=_list_of(parse_whole),
-    metavar="N,…",
-    help="Lattices for the solver of scipy.",
-)
 @output_folder_option
 @format_option("table", "json", "csv")
 @force_option
@@ -66,8 +59,7 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
 
     Reports for each build the realisable and the unfitted nodes, rounds, improvement attempts, the largest residual and
     the time. The builds are a grid of each setting against models and coefficients, and a random sample of other
-    combinations. For comparison, small lattices are solved by the method of the thesis: least squares with numeric
-    derivatives, grown from the centre, in moments (c) and in multipliers (p).
+    combinations.
 
     Atlases are none, the ColorChecker, and three difficult synthetic ones: crowded, spiky and noisy. --output writes
     stability.csv, stability.json and the heat map stability.png.
@@ -130,12 +122,12 @@ def _print_csv(runs: Sequence[RunResult]) -> None:
 
 def _print_table(runs: Sequence[RunResult]) -> None:
     table = make_table(
-        ("solver", "model", "dim", "space", "threshold", "atlas"),
+        ("model", "dim", "space", "threshold", "atlas"),
         ("realisable", "unfitted", "rounds", "calls", "worst", "at", "s"),
     )
     for run in runs:
         setting = run.config
-        names = (setting.solver, setting.model_label, str(setting.dim), setting.space)
+        names = (setting.model_label, str(setting.dim), setting.space)
         facts = (f"{run.realisable}", f"{run.unfitted}", f"{run.rounds}", f"{run.calls}", f"{run.worst:.1e}")
         where = f"{run.r:.3f} {run.g:.3f} {run.b:.3f}"
         table.add_row(

@@ -18,11 +18,10 @@ from uplift.atlas import Atlas, Entry
 from uplift.atlas.atlas import LOWEST
 from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid
-from uplift.common.arrays import Array, Mask, Values
+from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftWarning, unknown_name
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.study.pointwise import IN_MOMENTS, IN_MULTIPLIERS, PointwiseProblem, fit_pointwise
-from uplift.lattice import Lattice, Status
+from uplift.lattice import Status
 from uplift.models import Moments, Sigmoid
 from uplift.pipeline.build import build
 from uplift.pipeline.options import MODELS, ModelName
@@ -84,8 +83,6 @@ def _atlas(name: str, spectra: list[Array]) -> Atlas:
     return Atlas(tuple(entries))
 
 
-UPLIFT = "uplift"
-"""Solver of this package; the others are the unknowns of a `PointwiseProblem`."""
 NO_ATLAS = "none"
 
 
@@ -99,7 +96,6 @@ class RunConfig:
     ``space``: RGB space.
     ``threshold``: largest distance of a fitted point.
     ``atlas``: name of an atlas, or `NO_ATLAS`.
-    ``solver``: `UPLIFT`, `IN_MOMENTS` or `IN_MULTIPLIERS`.
     """
 
     model: ModelName = "moments"
@@ -108,7 +104,6 @@ class RunConfig:
     space: str = "sRGB"
     threshold: float = 1e-4
     atlas: str = NO_ATLAS
-    solver: str = UPLIFT
 
     @property
     def model_label(self) -> str:
@@ -125,8 +120,7 @@ class RunResult:
     ``unfitted``: realisable points farther from their colour than the threshold.
     ``stand_ins``: unrealisable points farther from their nearest realisable colour than the threshold.
     ``rounds``: rounds of growth after the first.
-    ``calls``: points that improvement was tried on, summed over its steps. For scipy, solves beyond the first of each
-        point.
+    ``calls``: points that improvement was tried on, summed over its steps.
     ``worst``: largest distance of a realisable point, max |linear RGB|.
     ``r``, ``g``, ``b``: colour of that point.
     ``seconds``: wall time, including compilation.
@@ -177,11 +171,7 @@ def study_stability(
 
 
 def run(config: RunConfig, atlases: Mapping[str, Atlas]) -> RunResult:
-    """Build one configuration and evaluate the stored points. Raises `UpliftError`."""
-    return _run_uplift(config, atlases) if config.solver == UPLIFT else _run_pointwise(config)
-
-
-def _run_uplift(config: RunConfig, atlases: Mapping[str, Atlas]) -> RunResult:
+    """Build one configuration, count the realisable points that failed, and find the worst. Raises `UpliftError`."""
     rounds = 0
 
     def count_rounds(progress: Progress) -> None:
@@ -202,60 +192,17 @@ def _run_uplift(config: RunConfig, atlases: Mapping[str, Atlas]) -> RunResult:
         ).data
     seconds = time.perf_counter() - start
     realisable = solid(data.sensor.matrix).contains(data.lattice.points)
-    return _evaluate(
+    of_realisable = np.where(realisable, data.points.distance, -1)
+    worst = int(of_realisable.argmax())
+    r, g, b = data.lattice.points[worst].tolist()
+    return RunResult(
         config,
-        data.lattice.points,
-        realisable,
-        data.points.distance,
+        points=len(data.lattice.points),
+        realisable=int(realisable.sum()),
+        unfitted=int((of_realisable > config.threshold).sum()),
         stand_ins=int((~realisable & (data.points.status == Status.UNFITTED)).sum()),
         rounds=rounds,
         calls=sum(step["tried"] for step in data.provenance["improvements"]),
-        seconds=seconds,
-    )
-
-
-def _run_pointwise(config: RunConfig) -> RunResult:
-    sensor = observer.sensor(config.space)
-    lattice = Lattice(observer.axis_nodes("srgb", config.dim))
-    start = time.perf_counter()
-    problem = PointwiseProblem(Moments(config.coefficients), sensor, config.solver)
-    fit = fit_pointwise(problem, lattice, config.threshold)
-    seconds = time.perf_counter() - start
-    return _evaluate(
-        config,
-        lattice.points,
-        solid(sensor.matrix).contains(lattice.points),
-        fit.distance,
-        stand_ins=0,
-        rounds=fit.rounds,
-        calls=fit.starts - lattice.size,
-        seconds=seconds,
-    )
-
-
-def _evaluate(
-    config: RunConfig,
-    points: Array,
-    realisable: Mask,
-    distance: Values,
-    *,
-    stand_ins: int,
-    rounds: int,
-    calls: int,
-    seconds: float,
-) -> RunResult:
-    """Count the realisable points that failed, and find the worst."""
-    of_realisable = np.where(realisable, distance, -1)
-    worst = int(of_realisable.argmax())
-    r, g, b = (float(value) for value in points[worst])
-    return RunResult(
-        config,
-        points=len(points),
-        realisable=int(realisable.sum()),
-        unfitted=int((of_realisable > config.threshold).sum()),
-        stand_ins=stand_ins,
-        rounds=rounds,
-        calls=calls,
         worst=float(of_realisable[worst]),
         r=r,
         g=g,
@@ -268,8 +215,6 @@ SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 DEFAULT_DIM, DEFAULT_THRESHOLD = 17, 1e-4
 SMALL_DIM = 9
 """Size of slow builds: thresholds near the rounding of stored numbers, in wide-gamut spaces."""
-COMPARED_COEFFICIENTS = (3, 5, 9)
-"""Coefficients of the runs of scipy's solver, which takes too long with more."""
 MAX_SAMPLED_DIM = 17
 """Largest size in the sample."""
 SEED = 4
@@ -282,7 +227,6 @@ class DesignSpace:
     ``dims``, ``coefficients``, ``spaces``, ``models``, ``thresholds``, ``atlases``: values of the fields of
         `RunConfig`, not empty.
     ``samples``: size of the Latin hypercube sample.
-    ``solver_dims``: sizes of the lattices on which solvers are compared.
     """
 
     dims: tuple[int, ...] = (4, 8, 17, 32, 64)
@@ -292,7 +236,6 @@ class DesignSpace:
     thresholds: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
     atlases: tuple[str, ...] = (NO_ATLAS, *SYNTHETIC_ATLASES)
     samples: int = 12
-    solver_dims: tuple[int, ...] = (4,)
 
     def __post_init__(self) -> None:
         for name in ("dims", "coefficients", "spaces", "models", "thresholds", "atlases"):
@@ -325,7 +268,6 @@ QUICK_DESIGN = DesignSpace(
     spaces=(SPACES[0], SPACES[-1]),
     thresholds=(1e-3, 1e-4, 1e-5),
     samples=4,
-    solver_dims=(4,),
 )
 
 
@@ -372,19 +314,6 @@ def grids(space: DesignSpace) -> tuple[Grid, ...]:
     return tuple(by_title.values())
 
 
-def solver_runs(space: DesignSpace) -> tuple[RunConfig, ...]:
-    """Configurations that compare the solver of the thesis, in both unknowns, with that of this package."""
-    if Moments.name not in space.models or SPACES[0] not in space.spaces:
-        return ()
-    return tuple(
-        RunConfig("moments", count, dim, solver=solver)
-        for dim in space.solver_dims
-        for count in COMPARED_COEFFICIENTS
-        if count in space.coefficients
-        for solver in (IN_MOMENTS, IN_MULTIPLIERS, UPLIFT)
-    )
-
-
 def draw_sample(space: DesignSpace) -> tuple[RunConfig, ...]:
     """Draw distinct configurations up to `MAX_SAMPLED_DIM` from Latin hypercubes with a fixed seed."""
     from scipy.stats import qmc
@@ -403,9 +332,9 @@ def draw_sample(space: DesignSpace) -> tuple[RunConfig, ...]:
 
 
 def design(space: DesignSpace) -> tuple[RunConfig, ...]:
-    """List every configuration of the grids, the sample and the solver comparison once."""
+    """List every configuration of the grids and of the sample once."""
     in_grids = [config for grid in grids(space) for _, row in grid.rows() for config in row]
-    return tuple(dict.fromkeys([*in_grids, *draw_sample(space), *solver_runs(space)]))
+    return tuple(dict.fromkeys([*in_grids, *draw_sample(space)]))
 
 
 def _preferred(values: tuple[Any, ...], preferred: Any) -> Any:
