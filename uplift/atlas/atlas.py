@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from typing import overload
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from uplift.atlas.document import SourceLocation
 from uplift.common.arrays import Array
-from uplift.common.errors import AtlasError, UpliftWarning, unknown_name
+from uplift.common.errors import UpliftWarning, unknown_name
 
 VISIBLE = (400.0, 700.0)
 """Range in nm that every entry must cover. Wavelengths outside have little effect on colour."""
@@ -213,10 +212,13 @@ class Atlas:
     sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
-        first: dict[str, Entry] = {}
+        named: dict[str, Entry] = {}
         for entry in self.entries:
-            if first.setdefault(entry.name, entry) is not entry:
-                raise _duplicate_error(first[entry.name], entry)
+            first = named.setdefault(entry.name, entry)
+            if first is not entry:
+                where = "" if first.path is None else f": first used at {first.path}:{first.line}"
+                location = SourceLocation(entry.path, entry.line, entry.name)
+                raise location.error(f"the name is taken{where}", "rename or remove one of the two")
 
     def __len__(self) -> int:
         return len(self.entries)
@@ -286,11 +288,10 @@ def merge(parts: Iterable[Atlas]) -> Atlas:
         Two entries share a name.
     """
     parts = tuple(parts)
-    chain = itertools.chain.from_iterable
     return Atlas(
-        tuple(chain(part.entries for part in parts)),
-        tuple(chain(part.skipped for part in parts)),
-        tuple(chain(part.sources for part in parts)),
+        tuple(entry for part in parts for entry in part.entries),
+        tuple(entry for part in parts for entry in part.skipped),
+        tuple(source for part in parts for source in part.sources),
     )
 
 
@@ -309,56 +310,37 @@ def _check_name(name: str, location: SourceLocation) -> None:
 
 def _check_spectrum(wavelengths: Array, values: Array, location: SourceLocation) -> None:
     """Check wavelengths (N,) in nm and values (N,) in units of 1. Raise `AtlasError`."""
-    _check_shapes(wavelengths, values, location)
-    _check_finite(wavelengths, values, location)
-    _check_ascending(wavelengths, location)
-    _check_coverage(wavelengths, location)
-    _check_scale(wavelengths, values, location)
-
-
-def _check_shapes(wavelengths: Array, values: Array, location: SourceLocation) -> None:
     if wavelengths.ndim != 1 or wavelengths.shape != values.shape:
         problem = f"wavelengths and values must have the same shape (N,), got {wavelengths.shape} and {values.shape}"
         raise location.error(problem, "give one wavelength for every value")
     if len(wavelengths) < 2:
         problem = f"an entry needs at least 2 samples, got {len(wavelengths)}"
         raise location.error(problem, "add the missing samples")
-
-
-def _check_finite(wavelengths: Array, values: Array, location: SourceLocation) -> None:
-    bad = np.flatnonzero(~(np.isfinite(wavelengths) & np.isfinite(values)))
-    if len(bad):
-        i = bad[0]
+    i = _first(~(np.isfinite(wavelengths) & np.isfinite(values)))
+    if i is not None:
         problem = f"sample {i + 1} is not finite: {values[i]:g} at {wavelengths[i]:g} nm"
         raise location.error(problem, "replace it by the measured value or remove the entry")
-
-
-def _check_ascending(wavelengths: Array, location: SourceLocation) -> None:
-    if wavelengths[0] <= 0 or wavelengths[-1] > LONGEST:
-        outside = wavelengths[0] if wavelengths[0] <= 0 else wavelengths[-1]
-        problem = f"wavelengths must be in (0, {LONGEST:g}] nm, got {outside:g}"
+    first, last = wavelengths[0], wavelengths[-1]
+    if first <= 0 or last > LONGEST:
+        problem = f"wavelengths must be in (0, {LONGEST:g}] nm, got {first if first <= 0 else last:g}"
         raise location.error(problem, "give wavelengths in nm")
-    bad = np.flatnonzero(np.diff(wavelengths) < SLACK)
-    if len(bad):
-        i = bad[0]
+    i = _first(np.diff(wavelengths) < SLACK)
+    if i is not None:
         problem = f"wavelengths must ascend, got {wavelengths[i]:g} nm, then {wavelengths[i + 1]:g} nm"
         raise location.error(problem, "sort the samples by wavelength, each wavelength once")
-
-
-def _check_coverage(wavelengths: Array, location: SourceLocation) -> None:
-    first, last = wavelengths[0], wavelengths[-1]
     if first > VISIBLE[0] + SLACK or last < VISIBLE[1] - SLACK:
         problem = f"an entry must cover {VISIBLE[0]:g}–{VISIBLE[1]:g} nm, got {first:g}–{last:g} nm"
         raise location.error(problem, "add the missing samples and give wavelengths in nm")
-
-
-def _check_scale(wavelengths: Array, values: Array, location: SourceLocation) -> None:
-    bad = np.flatnonzero((values > HIGHEST) | (values < LOWEST))
-    if len(bad):
-        i = bad[0]
+    i = _first((values > HIGHEST) | (values < LOWEST))
+    if i is not None:
         problem = f"reflectance must be in [{LOWEST:g}, {HIGHEST:g}], got {values[i]:g} at {wavelengths[i]:g} nm"
         hint = "the scale (in atlas text 'Maximum sample value') is probably missing or wrong"
         raise location.error(problem, hint)
+
+
+def _first(bad: NDArray[np.bool_]) -> int | None:
+    """Return the index of the first true element, None if there is none."""
+    return int(bad.argmax()) if bad.any() else None
 
 
 def _read_only(samples: ArrayLike, key: str, location: SourceLocation) -> Array:
@@ -369,9 +351,3 @@ def _read_only(samples: ArrayLike, key: str, location: SourceLocation) -> Array:
         raise location.error(f"the {key} are not all numbers", "give an array of numbers") from None
     array.setflags(write=False)
     return array
-
-
-def _duplicate_error(first: Entry, second: Entry) -> AtlasError:
-    where = "" if first.path is None else f": first used at {first.path}:{first.line}"
-    location = SourceLocation(second.path, second.line, second.name)
-    return location.error(f"the name is taken{where}", "rename or remove one of the two")

@@ -123,9 +123,12 @@ def parse_number(token: str, location: SourceLocation, label: str) -> float:
         raise location.error(problem, "write a plain number such as 0.125") from None
 
 
-def parse_nanometres(token: str, location: SourceLocation, label: str) -> float:
-    """Parse a number with an optional unit ``nm``. Raise `AtlasError`."""
-    return parse_number(without_unit(token), location, label)
+def check_scale(scale: float, label: str, location: SourceLocation) -> float:
+    """Return the divisor of the values that a file states. Raise `AtlasError` unless it is positive and finite."""
+    if not 0 < scale < float("inf"):
+        problem = f"{label} must be positive and finite, got {scale:g}"
+        raise location.error(problem, "write 100 for percent, 1 for values in [0, 1]")
+    return scale
 
 
 def truncate(text: str) -> str:

@@ -82,11 +82,17 @@ def to_atlas(document: Document, measurements: Measurements, format_name: str, m
     """Validate the spectra of a file: turn descending ones round, and scale all of them by one number."""
     spectra = measurements.spectra
     scale, scale_note = _scale(document.path, spectra, measurements.scale, measured)
-    entries = [_entry(document.path, spectrum, scale) for spectrum in spectra]
-    descending = sum(_descends(spectrum) for spectrum in spectra)
-    order = (f"{descending} of {len(spectra)} spectra descended in wavelength and were reversed",)
-    notes = (*measurements.notes, *order[: bool(descending)], scale_note)
-    safe = tuple(map(printable, notes))
+    entries, notes, descending = list[Entry](), list(measurements.notes), 0
+    for spectrum in spectra:
+        wavelengths, values = (np.asarray(each, dtype=float) for each in (spectrum.wavelengths, spectrum.values))
+        if len(wavelengths) > 1 and (np.diff(wavelengths) < 0).all():
+            wavelengths, values = wavelengths[::-1], values[::-1]
+            descending += 1
+        stated = {key: getattr(spectrum, key) for key in ("description", "device", "date", "line")}
+        entries.append(Entry(spectrum.name, wavelengths, values / scale, path=document.path, **stated))
+    if descending:
+        notes.append(f"{descending} of {len(spectra)} spectra descended in wavelength and were reversed")
+    safe = tuple(map(printable, (*notes, scale_note)))
     source = Source(document.name, document.digest, measurements.header, format_name, measured, safe if spectra else ())
     return Atlas(tuple(entries), measurements.skipped, (source,))
 
@@ -110,9 +116,10 @@ def accept_power() -> Iterator[None]:
         _POWER.reset(token)
 
 
-def refuse_quantity(problem: str, hint: str, location: SourceLocation) -> None:
+def refuse_quantity(problem: str, location: SourceLocation) -> None:
     """Raise `AtlasError` (code ``not-a-reflectance``), except within `accept_power`."""
     if not _POWER.get():
+        hint = "measure the reflectance, or correct the statement if it is wrong: a cube holds reflectances"
         raise location.error(problem, hint, code="not-a-reflectance")
 
 
@@ -130,11 +137,7 @@ def check_quantity(text: str, location: SourceLocation) -> None:
     """Raise `AtlasError` (code ``not-a-reflectance``) if a text names another quantity, and not reflectance."""
     found = NOT_REFLECTANCE.search(text)
     if found and not REFLECTANCE.search(text):
-        refuse_quantity(
-            f"the file states '{found[0].lower()}', not reflectance",
-            "measure the reflectance, or remove the statement if it is wrong: a cube holds reflectances",
-            location,
-        )
+        refuse_quantity(f"the file states '{found[0].lower()}', not reflectance", location)
 
 
 @contextlib.contextmanager
@@ -151,27 +154,6 @@ def parsed_by(library: str, kind: str, path: str) -> Iterator[None]:
             raise SourceLocation(path).error(
                 f"cannot be read as {kind} by {library}: {reason}", "export the file again, or export a CSV table"
             ) from error
-
-
-def _entry(path: str, spectrum: Spectrum, scale: float) -> Entry:
-    wavelengths, values = (np.asarray(each, dtype=float) for each in (spectrum.wavelengths, spectrum.values))
-    if _descends(spectrum):
-        wavelengths, values = wavelengths[::-1], values[::-1]
-    return Entry(
-        spectrum.name,
-        wavelengths,
-        values / scale,
-        description=spectrum.description,
-        device=spectrum.device,
-        date=spectrum.date,
-        path=path,
-        line=spectrum.line,
-    )
-
-
-def _descends(spectrum: Spectrum) -> bool:
-    wavelengths = np.asarray(spectrum.wavelengths, dtype=float)
-    return bool(len(wavelengths) > 1 and (wavelengths[1:] < wavelengths[:-1]).all())
 
 
 def _scale(path: str, spectra: Sequence[Spectrum], stated: float | None, measured: str) -> tuple[float, str]:
@@ -206,11 +188,10 @@ def _check_rows(path: str, spectra: Sequence[Spectrum], values: Sequence[Array],
             raise _mixed(path, spectrum, f"{pair} at {nm}")
     dark = [index for index, top in enumerate(highest) if top <= DARKEST]
     light = [index for index, top in enumerate(highest) if top > HIGHEST]
-    odd = min((dark, light), key=len)
     if dark:
-        odd_row, usual = spectra[odd[0]], spectra[(light if odd is dark else dark)[0]]
-        problem = f"values up to {highest[odd[0]]:g}, where '{truncate(usual.name)}' has up to "
-        raise _mixed(path, odd_row, problem + f"{highest[(light if odd is dark else dark)[0]]:g}")
+        (odd, *_), (usual, *_) = sorted((dark, light), key=len)
+        problem = f"values up to {highest[odd]:g}, where '{truncate(spectra[usual].name)}' has up to {highest[usual]:g}"
+        raise _mixed(path, spectra[odd], problem)
 
 
 def _mixed(path: str, spectrum: Spectrum, problem: str) -> AtlasError:

@@ -6,15 +6,16 @@ An archive is a preamble and entries. An entry has two sections of ``key : value
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import itertools
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source
-from uplift.atlas.document import Document, SourceLocation, parse_nanometres, parse_number, truncate
+from uplift.atlas.document import Document, SourceLocation, check_scale, parse_number, truncate, without_unit
 from uplift.common.arrays import Array
-from uplift.common.errors import AtlasError
 
 MAGIC = "ART measurement archive"
 REFLECTANCE = "reflectance spectrum"
@@ -46,6 +47,8 @@ Line = tuple[int, str]
 NOT_STATED = "not stated"
 """Placeholder of a header line without a value: other readers require a value in every line."""
 
+PAIR = re.compile(r"[\s,]*\{([^{}]*)\}")
+"""A pair of samples; the comma before it is optional."""
 COMPLETE_ENTRY = "complete the entry (the file may be truncated here) or remove it"
 WRITE_VALUES = "write the samples as numbers separated by commas, in one pair of braces"
 WRITE_PAIRS = "write the samples as {{wavelength, value}, {wavelength, value}, …}"
@@ -54,18 +57,19 @@ WRITE_PAIRS = "write the samples as {{wavelength, value}, {wavelength, value}, �
 def is_art_archive(document: Document) -> bool:
     """Whether the text has the first line or an entry of this format."""
     first = next(line for line in document.lines if line.strip())
-    return fold(first).startswith(fold(MAGIC)) or any(key_of(line) == "entry id" for line in document.lines)
+    return _fold(first).startswith(_fold(MAGIC)) or any(map(_begins_entry, document.lines))
 
 
 def read(document: Document) -> Atlas:
     """Read the reflectances of an archive; entries of other types are skipped."""
-    preamble, blocks = split_entries(document)
-    header = _header(preamble, SourceLocation(document.path))
-    entries = [_entry(block) for block in blocks]
-    if not entries:
+    header = read_header(document)
+    lines = list(enumerate(document.lines, start=1))
+    starts = [index for index, (_, text) in enumerate(lines) if _begins_entry(text)]
+    if not starts:
         hint = "add entries, each beginning with a line 'Entry ID: …'"
-        location = SourceLocation(document.path, len(document.lines))
-        raise location.error("an archive needs at least one entry", hint)
+        raise SourceLocation(document.path, len(lines)).error("an archive needs at least one entry", hint)
+    ends = [*starts[1:], len(lines)]
+    entries = [_entry(lines[start:end], document.path) for start, end in zip(starts, ends, strict=True)]
     return Atlas(
         tuple(item for item in entries if isinstance(item, Entry)),
         tuple(item for item in entries if isinstance(item, SkippedEntry)),
@@ -75,100 +79,86 @@ def read(document: Document) -> Atlas:
 
 def read_header(document: Document) -> Header:
     """Read the statements of an archive about itself. Raise `AtlasError`."""
-    preamble, _ = split_entries(document)
-    return _header(preamble, SourceLocation(document.path))
-
-
-def _header(lines: list[Line], location: SourceLocation) -> Header:
-    if lines and fold(lines[0][1]).startswith(fold(MAGIC)):
-        _check_version(lines[0], location)
-        lines = lines[1:]
-    fields = parse_fields(lines, location)
-    fields.check_known(["Archive content", "Archive copyright", "Archive license"])
+    location = SourceLocation(document.path)
+    preamble = itertools.takewhile(lambda line: not _begins_entry(line[1]), enumerate(document.lines, start=1))
+    lines = _content(preamble)
+    if lines and _fold(lines[0][1]).startswith(_fold(MAGIC)):
+        number, text = lines.pop(0)
+        version = text.split()[-1]
+        if not version.startswith("1."):
+            problem = f"unknown archive version '{truncate(version)}'"
+            raise location.at(number).error(problem, "write the archive as version 1.0, 1.1 or 1.2")
+    fields = _fields(lines, location)
+    fields.check_known(("Archive content", "Archive copyright", "Archive license"))
     values = [fields.text(f"Archive {key}") for key in ("content", "copyright", "license")]
     return Header(*("" if text == NOT_STATED else text for text in values))
 
 
-def _check_version(line: Line, location: SourceLocation) -> None:
-    number, text = line
-    version = text.split()[-1]
-    if not version.startswith("1."):
-        problem = f"unknown archive version '{truncate(version)}'"
-        hint = "write the archive as version 1.0, 1.1 or 1.2"
-        raise location.at(number).error(problem, hint)
-
-
-def _entry(block: Block) -> Entry | SkippedEntry:
-    samples = extract_samples(block.samples, block.location)
-    reason = _why_skipped(block)
+def _entry(lines: list[Line], path: str) -> Entry | SkippedEntry:
+    """Parse the lines of an entry: two sections of fields, and a list of samples."""
+    number, text = lines[0]
+    name = text.partition(":")[2].strip()
+    location = SourceLocation(path, number, name or None)
+    middle = _find(lines, "Sampling information", location)
+    end = _find(lines, "ASCII sample data", location)
+    fields = _fields(lines[1:middle], location)
+    sampling = _fields(lines[middle + 1 : end], location)
+    samples, start = _samples(lines[end + 1 :], location)
+    reason = _why_skipped(fields, sampling)
     if reason:
-        return SkippedEntry(block.name, reason, block.location.path, block.location.line)
-    block.fields.check_known(FIELDS)
-    wavelengths, values = _sampled(block.sampling, samples)
+        return SkippedEntry(name, reason, path, number)
+    fields.check_known(FIELDS)
+    wavelengths, values = _sampled(sampling, samples, start)
     return Entry(
-        block.name,
+        name,
         wavelengths,
         values,
-        description=_unquote(block.fields.text("Description")),
-        additional_description=_unquote(block.fields.text("Additional description")),
-        device=block.fields.text("Measurement device"),
-        measured_by=block.fields.text("Measured by"),
-        date=block.fields.text("Measurement date"),
-        path=block.location.path,
-        line=block.location.line,
+        description=_unquote(fields.text("Description")),
+        additional_description=_unquote(fields.text("Additional description")),
+        device=fields.text("Measurement device"),
+        measured_by=fields.text("Measured by"),
+        date=fields.text("Measurement date"),
+        path=path,
+        line=number,
     )
 
 
-def _why_skipped(block: Block) -> str:
+def _why_skipped(fields: Fields, sampling: Fields) -> str:
     """Return why an entry of a known type cannot be used, empty if it can. Raise `AtlasError` for unknown types."""
-    kind, location = block.fields.required("Type")
-    if fold(kind) in OTHER_TYPES:
+    kind, location = fields.required("Type")
+    if _fold(kind) in OTHER_TYPES:
         return f"its type is '{kind}', not '{REFLECTANCE}'"
-    if fold(kind) != REFLECTANCE:
+    if _fold(kind) != REFLECTANCE:
         known = ", ".join(f"'{name}'" for name in (REFLECTANCE, *OTHER_TYPES[:4]))
         raise location.error(f"unknown type '{truncate(kind)}'", f"the types are {known}")
-    return "it is fluorescent (bispectral), not a plain reflectance" if _is_fluorescent(block) else ""
+    if "fluorescence data" in fields.values:
+        answer, location = fields.required("Fluorescence data")
+        if _fold(answer) not in ("yes", "no"):
+            problem = f"'Fluorescence data' must be 'yes' or 'no', got '{truncate(answer)}'"
+            raise location.error(problem, "write 'yes' or 'no'")
+        is_fluorescent = _fold(answer) == "yes"
+    else:  # the sampling section is then specific to the kind
+        is_fluorescent = bool(sampling.text("Reflectance start"))
+    return "it is fluorescent (bispectral), not a plain reflectance" if is_fluorescent else ""
 
 
-def _is_fluorescent(block: Block) -> bool:
-    if "fluorescence data" not in block.fields.values:  # then the sampling section is specific to the kind
-        return bool(block.sampling.text("Reflectance start"))
-    answer, location = block.fields.required("Fluorescence data")
-    if fold(answer) not in ("yes", "no"):
-        problem = f"'Fluorescence data' must be 'yes' or 'no', got '{truncate(answer)}'"
-        raise location.error(problem, "write 'yes' or 'no'")
-    return fold(answer) == "yes"
-
-
-def _sampled(sampling: Fields, samples: SampleText) -> tuple[Array, Array]:
+def _sampled(sampling: Fields, samples: str, start: SourceLocation) -> tuple[Array, Array]:
     """Return wavelengths (N,) in nm and reflectances (N,) in units of 1."""
     kind, location = sampling.required("Type")
-    if fold(kind) not in SAMPLINGS:
+    if _fold(kind) not in SAMPLINGS:
         raise location.error(f"unknown sampling type '{truncate(kind)}'", "write 'regular' or 'point sampled'")
-    sampling.check_known(SAMPLINGS[fold(kind)])
-    scale = _scale(sampling)
+    sampling.check_known(SAMPLINGS[_fold(kind)])
+    scale = check_scale(sampling.number(SCALE), f"'{SCALE}'", sampling.required(SCALE)[1])
     with np.errstate(over="ignore", invalid="ignore"):  # Entry reports values that are not finite
-        wavelengths, values = (
-            _regular(sampling, samples) if fold(kind) == "regular" else np.array(parse_pairs(samples)).T
-        )
+        if _fold(kind) == "point sampled":
+            wavelengths, values = np.array(_pairs(samples, start)).T
+        else:
+            first, increment = sampling.number("Start"), sampling.number("Increment")
+            if "{" in samples or "}" in samples:
+                raise start.error("braces within a regular sample list", WRITE_VALUES)
+            values = np.array(_numbers(samples, start))
+            wavelengths = first + increment * np.arange(len(values), dtype=np.float64)
         return wavelengths, values / scale
-
-
-def _regular(sampling: Fields, samples: SampleText) -> tuple[Array, Array]:
-    start = parse_nanometres(*sampling.required("Start"), "'Start'")
-    increment = parse_nanometres(*sampling.required("Increment"), "'Increment'")
-    values = np.array(parse_values(samples))
-    return start + increment * np.arange(len(values), dtype=np.float64), values
-
-
-def _scale(sampling: Fields) -> float:
-    text, location = sampling.required(SCALE)
-    scale = parse_number(text, location, f"'{SCALE}'")
-    if not 0 < scale < float("inf"):
-        raise location.error(
-            f"'{SCALE}' must be positive and finite, got {scale:g}", "write 100.0 for percent, 1.0 for values in [0, 1]"
-        )
-    return scale
 
 
 def _unquote(text: str) -> str:
@@ -188,164 +178,99 @@ class Fields:
 
     def text(self, key: str) -> str:
         """Return an optional value, empty if it is missing."""
-        return self.values.get(fold(key), (0, ""))[1]
+        return self.values.get(_fold(key), (0, ""))[1]
 
     def required(self, key: str) -> tuple[str, SourceLocation]:
         """Return a required value and its location. Raise `AtlasError` if it is missing."""
-        line, value = self.values.get(fold(key), (0, ""))
+        line, value = self.values.get(_fold(key), (0, ""))
         if not value:
             raise self.location.error(f"the field '{key}' is missing", f"add a line '{key} : …' to the entry")
         return value, self.location.at(line)
+
+    def number(self, key: str) -> float:
+        """Return a required number, which may have the unit ``nm``. Raise `AtlasError`."""
+        text, location = self.required(key)
+        return parse_number(without_unit(text), location, f"'{key}'")
 
     def check_known(self, known: Iterable[str]) -> None:
         """Check for unknown fields, such as misspelt ones. Raise `AtlasError`."""
         known = tuple(known)
         for key, (line, _) in self.values.items():
-            if key not in map(fold, known):
+            if key not in map(_fold, known):
                 hint = "the fields are " + ", ".join(f"'{name}'" for name in known)
                 raise self.location.at(line).error(f"unknown field '{truncate(key)}'", hint)
 
 
-@dataclass(frozen=True)
-class Block:
-    """One entry: its name, its two sections of fields, and the lines of its sample list."""
-
-    location: SourceLocation
-    name: str
-    fields: Fields
-    sampling: Fields
-    samples: list[Line]
-
-
-def split_entries(document: Document) -> tuple[list[Line], Iterator[Block]]:
-    """Return the lines before the first entry, and the entries, parsed lazily. Raise `AtlasError`."""
-    lines = list(enumerate(document.lines, start=1))
-    starts = [i for i, (_, text) in enumerate(lines) if key_of(text) == "entry id"]
-    ends = [*starts, len(lines)][1:]
-    blocks = (_block(lines[i:j], document.path) for i, j in zip(starts, ends, strict=True))
-    return content_lines(lines[: starts[0]] if starts else lines), blocks
+def _fields(lines: Iterable[Line], location: SourceLocation) -> Fields:
+    """Parse the lines of a section. Raise `AtlasError` for a line without a colon and for a repeated key."""
+    values: dict[str, Line] = {}
+    for number, text in _content(lines):
+        key, colon, value = text.partition(":")
+        if not colon:
+            raise location.at(number).error(f"unexpected text '{truncate(text)}'", "write 'key : value'")
+        if _fold(key) in values:
+            raise location.at(number).error(f"the field '{truncate(key)}' is repeated", "remove one of the two")
+        values[_fold(key)] = number, value.strip()
+    return Fields(values, location)
 
 
-def key_of(text: str) -> str:
-    """Return the folded key of a ``key : value`` line, empty for other lines."""
+def _begins_entry(text: str) -> bool:
     key, colon, _ = text.partition(":")
-    return fold(key) if colon else ""
+    return bool(colon) and _fold(key) == "entry id"
 
 
-def fold(text: str) -> str:
+def _fold(text: str) -> str:
     """Normalise case and blanks."""
     return " ".join(text.split()).casefold()
 
 
-def content_lines(lines: Iterable[Line]) -> list[Line]:
+def _content(lines: Iterable[Line]) -> list[Line]:
     """Return the lines that are neither blank nor a rule."""
-    return [(number, text.strip()) for number, text in lines if not _is_rule(text)]
-
-
-def parse_fields(lines: Iterable[Line], location: SourceLocation) -> Fields:
-    """Parse the lines of a section. Raise `AtlasError` for a line without a colon and for a repeated key."""
-    values: dict[str, Line] = {}
-    for number, text in content_lines(lines):
-        key, colon, value = text.partition(":")
-        if not colon:
-            raise location.at(number).error(f"unexpected text '{truncate(text)}'", "write 'key : value'")
-        if fold(key) in values:
-            raise location.at(number).error(f"the field '{truncate(key)}' is repeated", "remove one of the two")
-        values[fold(key)] = number, value.strip()
-    return Fields(values, location)
-
-
-def _is_rule(text: str) -> bool:
-    text = text.strip()
-    return not text.strip("-") or text.casefold().startswith("<hr")
-
-
-def _block(lines: list[Line], path: str) -> Block:
-    number, text = lines[0]
-    name = text.partition(":")[2].strip()
-    location = SourceLocation(path, number, name or None)
-    sampling = _find(lines, "Sampling information", location)
-    samples = _find(lines, "ASCII sample data", location)
-    return Block(
-        location,
-        name,
-        parse_fields(lines[1:sampling], location),
-        parse_fields(lines[sampling + 1 : samples], location),
-        lines[samples + 1 :],
-    )
+    stripped = ((number, text.strip()) for number, text in lines)
+    return [line for line in stripped if line[1].strip("-") and not line[1].casefold().startswith("<hr")]
 
 
 def _find(lines: list[Line], title: str, location: SourceLocation) -> int:
     for i, (_, text) in enumerate(lines):
-        if len(text) < 200 and fold(text) == fold(title):
+        if len(text) < 200 and _fold(text) == _fold(title):
             return i
-    last = (content_lines(lines) or lines)[-1][0]
+    last = (_content(lines) or lines)[-1][0]
     raise location.at(last).error(f"the section '{title}' is missing", COMPLETE_ENTRY)
 
 
-@dataclass(frozen=True)
-class SampleText:
-    """The text between the outer braces, and the location of its start."""
-
-    text: str
-    location: SourceLocation
-
-
-def extract_samples(lines: list[Line], location: SourceLocation) -> SampleText:
-    """Extract the text between the braces that open on the first line with content. Raise `AtlasError`."""
-    opening = content_lines(lines)[:1]
-    if not opening or not opening[0][1].startswith("{"):
+def _samples(lines: list[Line], location: SourceLocation) -> tuple[str, SourceLocation]:
+    """Return the text between the braces that open on the first line with content, and its location."""
+    content = _content(lines)
+    if not content or not content[0][1].startswith("{"):
         raise location.error("the sample list, opened by '{', is missing", COMPLETE_ENTRY)
-    start = opening[0][0]
-    first = start - lines[0][0]
-    end = _closing(lines, first, location.at(start))
-    after = content_lines(lines[end + 1 :])
-    text = "\n".join(text for _, text in lines[first : end + 1]).strip()
-    if after or not text.endswith("}"):
-        line = after[0][0] if after else lines[end][0]
-        raise location.at(line).error("unexpected text after the sample list", "end the entry with '}'")
-    return SampleText(text[1:-1], location.at(start))
-
-
-def parse_values(samples: SampleText) -> list[float]:
-    """Parse ``a, b, …``. Raise `AtlasError`."""
-    if "{" in samples.text or "}" in samples.text:
-        raise samples.location.error("braces within a regular sample list", WRITE_VALUES)
-    return _numbers(samples.text, samples.location)
-
-
-def parse_pairs(samples: SampleText) -> list[list[float]]:
-    """Parse ``{x, y}, {x, y}, …``; the commas between pairs are optional. Raise `AtlasError`."""
-    *pieces, rest = samples.text.split("}")
-    location, pairs = samples.location, []
-    for piece in pieces:
-        between, brace, inside = piece.partition("{")
-        location = location.after(between)
-        pairs.append(_pair(between + brace, inside, location))
-        location = location.after(inside)
-    if rest.strip() or not pairs:
-        raise _pairs_error(location)
-    return pairs
-
-
-def _pair(opening: str, inside: str, location: SourceLocation) -> list[float]:
-    numbers = _numbers(inside, location) if opening.strip(", \t\n") == "{" else []
-    if len(numbers) != 2:
-        raise _pairs_error(location)
-    return numbers
-
-
-def _pairs_error(location: SourceLocation) -> AtlasError:
-    return location.error("the samples are not in pairs", WRITE_PAIRS)
-
-
-def _closing(lines: list[Line], first: int, location: SourceLocation) -> int:
+    start = location.at(content[0][0])
+    text = "\n".join(text for number, text in lines if number >= content[0][0]).strip()
     depth = 0
-    for i, (_, text) in enumerate(lines[first:], start=first):
-        depth += text.count("{") - text.count("}")
-        if depth <= 0:
-            return i
-    raise location.error("the sample list is not closed by '}'", COMPLETE_ENTRY)
+    for brace in re.finditer(r"[{}]", text):
+        depth += 1 if brace[0] == "{" else -1
+        if depth == 0:
+            break
+    else:
+        raise start.error("the sample list is not closed by '}'", COMPLETE_ENTRY)
+    end = brace.end()
+    rest = text[end:].split("\n")
+    after = _content(enumerate(rest, content[0][0] + text.count("\n", 0, end)))
+    if after:
+        raise start.at(after[0][0]).error("unexpected text after the sample list", "end the entry with '}'")
+    return text[1 : end - 1], start
+
+
+def _pairs(text: str, location: SourceLocation) -> list[list[float]]:
+    """Parse ``{x, y}, {x, y}, …``. Raise `AtlasError`."""
+    pairs, end = list[list[float]](), 0
+    while match := PAIR.match(text, end):
+        pairs.append(_numbers(match[1], location.after(text[end : match.start(1)])))
+        if len(pairs[-1]) != 2:
+            break
+        location, end = location.after(match[0]), match.end()
+    if text[end:].strip() or not pairs:
+        raise location.error("the samples are not in pairs", WRITE_PAIRS)
+    return pairs
 
 
 def _numbers(text: str, location: SourceLocation) -> list[float]:

@@ -5,15 +5,14 @@ Keywords precede ``BEGIN_DATA_FORMAT``, which lists the fields of a set. ``BEGIN
 
 from __future__ import annotations
 
-import dataclasses
 import re
-from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from uplift.atlas.atlas import Header
-from uplift.atlas.document import Document, SourceLocation, parse_number
-from uplift.atlas.formats.grid import Cell, Row, find_table, read_grid, wavelength
+from uplift.atlas.document import Document, SourceLocation, check_scale, parse_number
+from uplift.atlas.formats.grid import Cell, Row, read_grid, wavelength
 from uplift.atlas.measurements import Measurements, check_quantity, refuse_quantity
 from uplift.common.text import parse_float
 
@@ -37,22 +36,17 @@ def read(document: Document) -> Measurements:
     text = "\n".join(preamble)
     check_quantity(text, location)
     if LIGHT_SOURCES.search(text):
-        refuse_quantity(
-            "the file states measurements of a display, not reflectance",
-            "measure the reflectance: a cube holds reflectances",
-            location,
-        )
+        refuse_quantity("the file states measurements of a display, not reflectance", location)
     if not any(wavelength(cell.text) is not None for cell in rows[0]):
-        raise location.at(rows[0][0].line).error(
-            "the CGATS file has no spectral fields", "export the spectra with the colours"
-        )
+        problem = "the CGATS file has no spectral fields"
+        raise location.at(rows[0][0].line).error(problem, "export the spectra with the colours")
     keywords = {match[1]: match[2] or match[3] or "" for line in preamble if (match := KEYWORD.match(line))}
-    found = read_grid(rows, document.path)
-    return dataclasses.replace(
-        _with_exact_wavelengths(found, keywords, rows, document.path),
-        scale=_stated_scale(keywords, location),
-        header=Header(content=_one_line(keywords.get("DESCRIPTOR", ""))),
-    )
+    found = _with_exact_wavelengths(read_grid(rows, document.path), keywords)
+    scale = None
+    if "SPECTRAL_NORM" in keywords:  # of ArgyllCMS: the value of a perfect reflector
+        norm = parse_number(keywords["SPECTRAL_NORM"], location, "SPECTRAL_NORM")
+        scale = check_scale(norm, "SPECTRAL_NORM", location)
+    return replace(found, scale=scale, header=Header(" ".join(keywords.get("DESCRIPTOR", "").split())))
 
 
 def _parse(document: Document) -> tuple[list[str], list[Row]]:
@@ -87,49 +81,22 @@ def _tokens(text: str, count: int | None) -> list[str]:
     while by_tabs and not by_tabs[-1]:
         by_tabs.pop()
     by_blanks = [match[1].replace('""', '"') if match[2] is None else match[2] for match in TOKEN.finditer(text)]
-    tokens = (
-        by_tabs if "\t" in text and count in (None, len(by_tabs)) and _is_single_words(by_tabs, count) else by_blanks
-    )
+    # tokens between tabs are labels of fields only if they are single words; those of a set can be any text
+    words = count == len(by_tabs) or (count is None and not any(" " in token for token in by_tabs))
+    tokens = by_tabs if "\t" in text and words else by_blanks
     return [token.replace(",", ".") if DECIMAL_COMMA.fullmatch(token) else token for token in tokens]
 
 
-def _is_single_words(tokens: Sequence[str], count: int | None) -> bool:
-    """Whether tokens between tabs can be labels of fields; those of a set can be any text."""
-    return count is not None or not any(" " in token for token in tokens)
-
-
-def _stated_scale(keywords: dict[str, str], location: SourceLocation) -> float | None:
-    """Return the value of a perfect reflector, which ArgyllCMS states."""
-    if "SPECTRAL_NORM" not in keywords:
-        return None
-    norm = parse_number(keywords["SPECTRAL_NORM"], location, "SPECTRAL_NORM")
-    if not 0 < norm < float("inf"):
-        raise location.error(
-            f"SPECTRAL_NORM must be positive and finite, got {norm:g}", "write 100 for percent, 1 for values in [0, 1]"
-        )
-    return norm
-
-
-def _with_exact_wavelengths(
-    found: Measurements, keywords: dict[str, str], rows: Sequence[Row], path: str
-) -> Measurements:
+def _with_exact_wavelengths(found: Measurements, keywords: dict[str, str]) -> Measurements:
     """Replace wavelengths that ArgyllCMS rounds in labels, such as SPEC_383, by those of the keywords."""
-    stated = [keywords.get(f"SPECTRAL_{name}", "") for name in ("START_NM", "END_NM", "BANDS")]
     try:
-        start, end, bands = map(parse_float, stated)
+        start, end, bands = (
+            parse_float(keywords.get(f"SPECTRAL_{key}", "")) for key in ("START_NM", "END_NM", "BANDS")
+        )
     except ValueError:
         return found
-    table = find_table(rows, path)
-    if table.last - table.first != bands:
+    labels = np.asarray(found.spectra[0].wavelengths)
+    exact = np.linspace(start, end, len(labels))
+    if len(labels) != bands or np.abs(exact - labels).max() > 1:
         return found
-    exact = np.linspace(start, end, int(bands))
-    labels = found.spectra[0].wavelengths
-    if np.abs(exact - np.asarray(labels)).max() > 1:
-        return found
-    return dataclasses.replace(
-        found, spectra=tuple(dataclasses.replace(each, wavelengths=exact) for each in found.spectra)
-    )
-
-
-def _one_line(text: str) -> str:
-    return " ".join(text.split())
+    return replace(found, spectra=tuple(replace(each, wavelengths=exact) for each in found.spectra))

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas.document import MAX_BYTES, Document, SourceLocation, truncate
+from uplift.atlas.document import MAX_BYTES, Document, SourceLocation, check_scale, truncate
 from uplift.atlas.measurements import Measurements, Spectrum, parsed_by
 from uplift.common.errors import AtlasError, needs_extra
 from uplift.common.files import read_bytes
@@ -80,7 +80,4 @@ def _scale(fields: dict[str, Any], location: SourceLocation) -> float | None:
     """Return the divisor that the header states."""
     if "reflectance scale factor" not in fields:
         return None
-    factor = float(fields["reflectance scale factor"])
-    if not 0 < factor < float("inf"):
-        raise location.error(f"the reflectance scale factor must be positive and finite, got {factor:g}", HINT)
-    return factor
+    return check_scale(float(fields["reflectance scale factor"]), "the reflectance scale factor", location)

@@ -6,8 +6,9 @@ a row per spectrum below, or in a column, with a column per spectrum. Other colu
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -40,6 +41,15 @@ NAME_LABELS = (
 """Labels of names, in lower case and without blanks, the preferred ones first."""
 
 
+class Run(NamedTuple):
+    """Neighbouring wavelengths in nm in cells ``first`` to ``last`` − 1, and what their labels begin with."""
+
+    first: int
+    last: int
+    prefix: str
+    nm: list[float]
+
+
 class Cell(NamedTuple):
     """Text of a cell, and its line."""
 
@@ -70,34 +80,35 @@ def read_grid(rows: Sequence[Row], path: str, comments: str = "") -> Measurement
     table = find_table(rows, path)
     header, *body = table.rows
     check_table_quantity(table, rows, path, comments)
-    location = SourceLocation(path)
-    nm = [_nanometres(cell, location) for cell in header[table.first : table.last]]
+    stated = (wavelength(cell.text) for cell in header[table.first : table.last])
+    nm = [each for each in stated if each is not None]  # all of them
     name = name_column(table)
-    spectra = [
-        Spectrum(
-            _name(row, name, number), nm, _values(row, table, name, path), None if name is None else row[name].line
-        )
-        for number, row in enumerate(body, 1)
-    ]
+    spectra = []
+    for number, row in enumerate(body, 1):
+        label = f"sample {number}" if name is None else row[name].text
+        values = [
+            parse_number(cell.text, SourceLocation(path, cell.line, label), "value")
+            for cell in row[table.first : table.last]
+        ]
+        spectra.append(Spectrum(label, nm, values, None if name is None else row[name].line))
     unused = not_used_note(header[index].text for index in table.others if index != name)
     return Measurements(tuple(spectra), notes=(table.layout, *unused))
 
 
-def _name(row: Row, column: int | None, number: int) -> str:
-    return f"sample {number}" if column is None else row[column].text
-
-
 def find_table(rows: Sequence[Row], path: str) -> Table:
     """Find the table in a grid of cells. Raise `AtlasError`."""
-    table = _in_row(rows, path) or _in_column(rows, path) or _without_cover(rows, path)
-    if table is None:
-        raise _not_a_table(rows, path)
-    header = table.rows[0]
-    is_plain = all(_is_number(cell.text) for cell in header[table.first : table.last])
-    if not table.others and is_plain:
-        raise SourceLocation(path, header[0].line).error("the header row is missing", LAYOUT)
-    if len(table.rows) < 2:
-        raise _not_a_table(rows, path)
+    table = (
+        _in_row(rows, path, _is_visible)
+        or _in_column(rows, path)
+        or _in_row(rows, path, _is_labelled)  # its entries are refused, as they do not cover the visible range
+        or _of_numbers(rows)
+    )
+    if table is not None:
+        header = table.rows[0]
+        if not table.others and all(is_number(cell.text) for cell in header):
+            raise SourceLocation(path, header[0].line).error("the header row is missing", LAYOUT)
+    if table is None or len(table.rows) < 2:
+        raise SourceLocation(path, rows[0][0].line if rows else 1).error(NO_TABLE, LAYOUT, code="not-an-atlas")
     return table
 
 
@@ -120,13 +131,9 @@ def check_table_quantity(table: Table, rows: Sequence[Row], path: str, comments:
     preamble = (cell.text for row in rows if row[0].line < first for cell in row)
     labels = (header[index].text for index in range(len(header)))
     check_quantity(" ".join((comments, *preamble, *labels)), location)
-    prefix = _prefix(header[table.first].text)
-    if prefix in TRANSMITTANCE_PREFIXES:
-        refuse_quantity(
-            f"the label '{header[table.first].text}' states transmittance, not reflectance",
-            "measure the reflectance, or rename the columns: a cube holds reflectances",
-            location,
-        )
+    label = header[table.first].text
+    if _split_label(label)[0] in TRANSMITTANCE_PREFIXES:
+        refuse_quantity(f"the label '{label}' states transmittance, not reflectance", location)
 
 
 def wavelength(text: str) -> float | None:
@@ -135,121 +142,86 @@ def wavelength(text: str) -> float | None:
     >>> [wavelength(text) for text in ("400", "nm400", "R_400", "400.5 nm", "SPECTRAL_NM400", "LAB_L", "patch 400")]
     [400.0, 400.0, 400.0, 400.5, 400.0, None, None]
     """
-    plain = without_unit(text)
-    if _is_number(plain):
-        return parse_float(plain)
+    return _split_label(text)[1]
+
+
+def _split_label(text: str) -> tuple[str, float | None]:
+    """Return what a label begins with, and its wavelength in nm; None if it states no wavelength."""
+    number = without_unit(text)
+    if is_number(number):
+        return "", parse_float(number)
     match = LABEL.fullmatch(text.strip())
-    if match is None or _letters(match[1]) not in PREFIXES | TRANSMITTANCE_PREFIXES:
-        return None
-    return float(match[2].replace(",", "."))
+    prefix = "" if match is None else re.sub(r"[^a-zλρτ%]", "", match[1].casefold())
+    if match is None or prefix not in PREFIXES | TRANSMITTANCE_PREFIXES:
+        return "", None
+    return prefix, float(match[2].replace(",", "."))
 
 
-def _in_row(rows: Sequence[Row], path: str) -> Table | None:
+def _in_row(rows: Sequence[Row], path: str, wanted: Callable[[Run], bool]) -> Table | None:
     """Find a row of wavelengths with rows of the same width below it."""
     for index, row in enumerate(rows[:MAX_PREAMBLE]):
-        run = _best_run(row)
-        if run is None:
-            continue
-        below = rows[index:]
-        for other in below:
-            _check_width(other, row, path)
-        return Table(tuple(below), *run, "layout: a row per spectrum")
+        for run in filter(wanted, _runs(row)):
+            return Table(_of_one_width(rows[index:], path), run.first, run.last, "layout: a row per spectrum")
     return None
 
 
 def _in_column(rows: Sequence[Row], path: str) -> Table | None:
     """Find a column of wavelengths in a block of rows of one width, and transpose the block."""
-    for start in range(min(len(rows), MAX_PREAMBLE)):
-        width = len(rows[start])
-        if width < 2 or (start and len(rows[start - 1]) == width):
-            continue
-        end = start + 1
-        while end < len(rows) and len(rows[end]) == width:
-            end += 1
-        for column in range(min(width, 3)):
-            run = _best_run([row[column] for row in rows[start:end]])
-            if run is None:
-                continue
-            for other in rows[end:]:
-                _check_width(other, rows[start], path)
-            block = [(row[column], *row[:column], *row[column + 1 :]) for row in rows[start:end]]
-            return Table(tuple(zip(*block, strict=True)), *run, "layout: a column per spectrum")
+    start = 0
+    for width, group in itertools.groupby(rows, key=len):
+        block = list(group)
+        for column in range(min(width, 3) if width > 1 else 0):
+            for run in filter(_is_visible, _runs([row[column] for row in block])):
+                below = _of_one_width(rows[start:], path)
+                turned = zip(*((row[column], *row[:column], *row[column + 1 :]) for row in below), strict=True)
+                return Table(tuple(turned), run.first, run.last, "layout: a column per spectrum")
+        start += len(block)
+        if start >= MAX_PREAMBLE:
+            break
     return None
 
 
-def _without_cover(rows: Sequence[Row], path: str) -> Table | None:
-    """Find wavelengths that do not cover the visible range, for the error that reports it."""
-    for index, row in enumerate(rows[:MAX_PREAMBLE]):
-        labelled = [run for run in _runs(row) if run[1] - run[0] > 2 and _prefix(row[run[0]].text)]
-        if labelled:
-            for other in rows[index:]:
-                _check_width(other, row, path)
-            return Table(tuple(rows[index:]), *labelled[0][:2], "")
-    if len(rows) < 2 or any(len(row) != len(rows[0]) for row in rows) or len(rows[0]) < 2:
+def _of_numbers(rows: Sequence[Row]) -> Table | None:
+    """Take numbers after a first cell for wavelengths; they do not cover the visible range, so entries are refused."""
+    if len(rows) < 2 or len(rows[0]) < 2 or any(len(row) != len(rows[0]) for row in rows):
         return None
     for table in (tuple(rows), tuple(zip(*rows, strict=True))):
-        if all(_is_number(without_unit(cell.text)) for cell in table[0][1:]):
+        if all(is_number(without_unit(cell.text)) for cell in table[0][1:]):
             return Table(table, 1, len(table[0]), "")
     return None
 
 
-def _best_run(cells: Sequence[Cell]) -> tuple[int, int] | None:
-    """Return the first run of wavelengths that covers the visible range."""
-    for first, last, numbers in _runs(cells):
-        covers = SHORTEST <= min(numbers) <= VISIBLE[0] + SLACK and max(numbers) >= VISIBLE[1] - SLACK
-        if last - first > 1 and covers:
-            return first, last
-    return None
+def _of_one_width(rows: Sequence[Row], path: str) -> tuple[Row, ...]:
+    """Return rows that are as wide as the first one. Raise `AtlasError` for others."""
+    for row in rows:
+        if len(row) != len(rows[0]):
+            problem = f"a row must have {len(rows[0])} cells like the header row, got {len(row)}"
+            raise SourceLocation(path, row[0].line).error(problem, "fill in the missing cells or remove the row")
+    return tuple(rows)
 
 
-def _runs(cells: Sequence[Cell]) -> Iterator[tuple[int, int, list[float]]]:
+def _is_visible(run: Run) -> bool:
+    covers = SHORTEST <= min(run.nm) <= VISIBLE[0] + SLACK and max(run.nm) >= VISIBLE[1] - SLACK
+    return covers and len(run.nm) > 1
+
+
+def _is_labelled(run: Run) -> bool:
+    return len(run.nm) > 2 and bool(run.prefix)
+
+
+def _runs(cells: Sequence[Cell]) -> Iterator[Run]:
     """Yield runs of neighbouring wavelengths whose labels begin in the same way."""
-    first, prefix, numbers = 0, "", list[float]()
-    for index, cell in enumerate((*cells, Cell("", 0))):
-        nm = wavelength(cell.text) if cell.text else None
-        if nm is None or (numbers and _prefix(cell.text) != prefix):
-            if numbers:
-                yield first, index, numbers
-            numbers = []
-        if nm is not None:
-            if not numbers:
-                first, prefix = index, _prefix(cell.text)
-            numbers.append(nm)
+    labels = [_split_label(cell.text) for cell in cells]
+    prefixes = (None if nm is None else prefix for prefix, nm in labels)
+    last = 0
+    for prefix, group in itertools.groupby(prefixes):
+        first, last = last, last + len(list(group))
+        if prefix is not None:
+            yield Run(first, last, prefix, [nm for _, nm in labels[first:last] if nm is not None])
 
 
-def _prefix(text: str) -> str:
-    match = LABEL.fullmatch(text.strip())
-    return "" if match is None or _is_number(without_unit(text)) else _letters(match[1])
-
-
-def _letters(text: str) -> str:
-    return re.sub(r"[^a-zλρτ%]", "", text.casefold())
-
-
-def _not_a_table(rows: Sequence[Row], path: str) -> Exception:
-    line = rows[0][0].line if rows else 1
-    return SourceLocation(path, line).error(NO_TABLE, LAYOUT, code="not-an-atlas")
-
-
-def _check_width(row: Row, header: Row, path: str) -> None:
-    if len(row) != len(header):
-        problem = f"a row must have {len(header)} cells like the header row, got {len(row)}"
-        hint = "fill in the missing cells or remove the row"
-        raise SourceLocation(path, row[0].line).error(problem, hint)
-
-
-def _nanometres(cell: Cell, location: SourceLocation) -> float:
-    nm = wavelength(cell.text)
-    return parse_number(cell.text, location.at(cell.line), "wavelength") if nm is None else nm
-
-
-def _values(row: Row, table: Table, name: int | None, path: str) -> list[float]:
-    entry = None if name is None else row[name].text
-    cells = row[table.first : table.last]
-    return [parse_number(cell.text, SourceLocation(path, cell.line, entry), "value") for cell in cells]
-
-
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
+    """Whether `parse_float` accepts a text."""
     try:
         parse_float(text)
     except ValueError:

@@ -77,11 +77,7 @@ def _spectrum(block: dict[str, Any], document: Document, count: int) -> tuple[Sp
     else:
         check_quantity(unit + " " + str(block.get("data type", "")), location)
     if "reflect" not in unit and unit not in ("", "%r", "r", "arbitrary units"):
-        refuse_quantity(
-            f"YUNITS must be reflectance, got '{truncate(unit)}'",
-            "measure the reflectance: a cube holds reflectances",
-            location,
-        )
+        refuse_quantity(f"YUNITS must be reflectance, got '{truncate(unit)}'", location)
     values = np.asarray(block.get("y", ()), dtype=float)
     return (
         Spectrum(name, _nanometres(block, location), values, date=str(block.get("date", ""))),

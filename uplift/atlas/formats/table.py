@@ -12,7 +12,7 @@ import numpy as np
 
 from uplift.atlas.atlas import Atlas
 from uplift.atlas.document import Document, SourceLocation
-from uplift.atlas.formats.grid import LAYOUT, NO_TABLE, Cell, Row, read_grid, trimmed, wavelength
+from uplift.atlas.formats.grid import LAYOUT, NO_TABLE, Cell, Row, is_number, read_grid, trimmed, wavelength
 from uplift.atlas.measurements import Measurements, Spectrum
 from uplift.common.csv import csv_text, plain_cell
 from uplift.common.errors import OutputError
@@ -52,7 +52,7 @@ def text(atlas: Atlas) -> str:
 
 def _is_single(rows: list[Row]) -> bool:
     """Whether all rows are a wavelength and a value."""
-    return len(rows) > 1 and all(len(row) == 2 and all(_is_number(cell.text) for cell in row) for row in rows)
+    return len(rows) > 1 and all(len(row) == 2 and all(is_number(cell.text) for cell in row) for row in rows)
 
 
 def _single(rows: list[Row], document: Document) -> Measurements:
@@ -91,7 +91,7 @@ def _split(document: Document, delimiter: str) -> Iterator[Row]:
 def _decimal_point(cell: str, delimiter: str) -> str:
     """Replace a decimal comma by a point, unless the comma is the delimiter."""
     pointed = cell.replace(",", ".")
-    return pointed if delimiter != "," and _is_number(pointed) else cell
+    return pointed if delimiter != "," and is_number(pointed) else cell
 
 
 def _delimiter(document: Document) -> str:
@@ -107,11 +107,3 @@ def _delimiter(document: Document) -> str:
         return max((sum(wavelength(cell.text) is not None for cell in row) for row in rows if len(row) > 1), default=0)
 
     return max((*DELIMITERS, BLANKS), key=numbers)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        parse_float(text)
-    except ValueError:
-        return False
-    return True

@@ -31,11 +31,7 @@ def read(document: Document) -> Measurements:
     if quantity in MATERIALS:
         refuse_as_lamp(quantity, SourceLocation(document.path))
     if quantity not in REFLECTANCES:
-        refuse_quantity(
-            f"the file states '{truncate(quantity)}', not reflectance",
-            "measure the reflectance: a cube holds reflectances",
-            SourceLocation(document.path),
-        )
+        refuse_quantity(f"the file states '{truncate(quantity)}', not reflectance", SourceLocation(document.path))
     described = " ".join((header.description or "").split())
     date = " ".join((header.report_date or "").split())
     spectrum = Spectrum(described or document.stem, nm, values, description=described, date=date)
