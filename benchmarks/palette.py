@@ -16,18 +16,10 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.design.palette import (
-    FactorModel,
-    design,
-    illuminant,
-    matrix,
-    plot_matrix,
-    plot_spectra,
-    read_palette,
-    standard_model,
-)
+from uplift.design.palette import design, illuminant, matrix, read_palette, standard_model
 from uplift.design.palette.colours import exposure, screen_matrix
-from uplift.design.palette.factor import linear_product
+from uplift.design.palette.factor import FactorModel, linear_product
+from uplift.design.palette.plots import plot_matrix, plot_spectra
 from uplift.samples import sample_path
 
 LIGHTS = ("D65", "D50", "A", "E", "FL2", "FL7", "FL11", "LED-B3", "HP1")

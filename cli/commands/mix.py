@@ -214,7 +214,7 @@ def _print_theories(cube: Cube, ingredients: list[Ingredient], method: str, styl
     import numpy as np
 
     from uplift.colorimetry.gamut import map_to_gamut
-    from uplift.design.mixing import mixers
+    from uplift.design.mixing.theories import mixers
 
     sensor = cube.data.sensor
     spectra = np.stack([one.spectrum[: len(sensor.wavelengths)] for one in ingredients])

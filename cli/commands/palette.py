@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from uplift.common.arrays import Array
-    from uplift.design.palette import Design, Matrix, Palette, UnmetGoal
-    from uplift.design.palette.palette import SpectrumSpec
+    from uplift.design.palette.design import Design, Matrix, UnmetGoal
+    from uplift.design.palette.palette import Palette, SpectrumSpec
 
 LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of the model. * designed"
 
@@ -77,16 +77,8 @@ def command(
       uplift palette vanish.toml --format json > vanish.json
     """
     from uplift.common.files import check_outputs
-    from uplift.design.palette import (
-        design,
-        matrix,
-        plot_matrix,
-        plot_spectra,
-        read_palette,
-        standard_model,
-        unmet_goals,
-        write_designed,
-    )
+    from uplift.design.palette import design, matrix, read_palette, standard_model, unmet_goals, write_designed
+    from uplift.design.palette.plots import plot_matrix, plot_spectra
 
     palette = read_palette(spec)
     check_outputs((output, plot_path, spectra_path, html), inputs=(*palette.sources, image), force=force)

@@ -11,7 +11,7 @@ import pytest
 
 import uplift
 from tests.io.texture.conftest import planes, read_channels, write_exr
-from uplift.design.mixing import mixers
+from uplift.design.mixing.theories import mixers
 
 from .conftest import warning_lines
 

@@ -23,7 +23,8 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import METHODS, map_to_gamut
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import UpliftError
-from uplift.design.palette import FactorModel, design, matrix, read_palette, standard_model
+from uplift.design.palette import design, matrix, read_palette, standard_model
+from uplift.design.palette.factor import FactorModel
 from uplift.io.scene_colours import file_digest
 from uplift.lab.chart.table import Requirement, all_panels, read_chart, recommend_cube
 from uplift.lookup import Cube, load

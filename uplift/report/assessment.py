@@ -38,10 +38,8 @@ from uplift.report.measures import (
 )
 from uplift.report.summary import summarise
 
-MIN_ERROR = 1e-9
-"""Smaller distances and ΔE00 are rounding errors and are counted in the lowest bin."""
-MIN_STEP = 1e-4
-"""Smaller rms differences of reflectance are counted in the lowest bin."""
+MIN_ERROR = 1e-9  # smaller distances and ΔE00 are rounding errors and are counted in the lowest bin
+MIN_STEP = 1e-4  # smaller rms differences of reflectance are counted in the lowest bin
 
 
 @dataclass(frozen=True, eq=False)

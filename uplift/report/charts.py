@@ -13,12 +13,11 @@ from uplift.common.arrays import Array, Indices
 from uplift.viz.figure import ACCENT, BAND, INK, STYLE, new_figure, style_axes, to_page_svg
 from uplift.viz.format import format_power_of_ten
 
-SIZE = (3.3, 1.75)
-"""Inches at 72 dpi; the page scales charts to its columns."""
+SIZE = (3.3, 1.75)  # inches at 72 dpi; the page scales charts to its columns
+# Position of the axes in a chart with and without an axis label.
 WITH_LABEL, WITHOUT_LABEL = (0.13, 0.24, 0.84, 0.72), (0.1, 0.12, 0.87, 0.84)
-"""Position of the axes in a chart with and without an axis label."""
+# Upper ends of reflectance axes: few enough to compare charts, and dark colours remain visible.
 REFLECTANCE_LIMITS = (0.1, 0.25, 0.5, 1.0)
-"""Upper ends of reflectance axes: few enough to compare charts, and dark colours remain visible."""
 
 
 def histogram_chart(values: Histogram, label: str, *, top: int | None = None, threshold: float | None = None) -> Markup:
@@ -82,8 +81,7 @@ def _new_axes(position: tuple[float, float, float, float]) -> tuple[Any, Any]:
 
 BINS_PER_DECADE = 6
 LINEAR_BINS = 24
-STEPS = (1, 2, 2.5, 5, 10)
-"""Bin widths in units of a power of ten."""
+STEPS = (1, 2, 2.5, 5, 10)  # bin widths in units of a power of ten
 
 
 @dataclass(frozen=True, eq=False)

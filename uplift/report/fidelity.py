@@ -219,8 +219,7 @@ def _sigmoid(data: CubeData, rgb: Array) -> Array:
     return np.where((distance <= data.threshold)[:, None], answer, np.nan)
 
 
-MAX_DISTANCE = 1 + 1e-9
-"""Lattice steps; two entries of one cell are never farther apart."""
+MAX_DISTANCE = 1 + 1e-9  # lattice steps; two entries of one cell are never farther apart
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,19 +20,16 @@ from uplift.viz.figure import STYLE, to_page_svg
 from uplift.viz.html import render
 from uplift.viz.scatter import new_panels
 
-MIN_DISTANCE = 1e-9
-"""Smaller distances in u′v′ are rounding errors and are counted in the lowest bin."""
-PEAKS = 40
-"""Exponent of the random powers: large ones leave few wavelengths, so that colours reach the spectral locus."""
-PANEL = (4.2, 4.05)
-"""Inches of a diagram; the page scales it to its columns."""
+MIN_DISTANCE = 1e-9  # smaller distances in u′v′ are rounding errors and are counted in the lowest bin
+PEAKS = 40  # exponent of the random powers: large ones leave few wavelengths, so that colours reach the spectral locus
+PANEL = (4.2, 4.05)  # inches of a diagram; the page scales it to its columns
 MARGINS = {"left": 0.11, "right": 0.98, "bottom": 0.11, "top": 0.98}
+# How each diagram is drawn, and what it shows, by its title.
 DIAGRAMS = {
     "Colours": (draw_colours, "Chromaticity diagram of the colours of lights, with the exact lamps"),
     "Expected error": (draw_errors, "Chromaticity diagram of the expected error of surfaces"),
     "Lamps": (draw_lamps, "Chromaticity diagram of the exact lamps and their discs"),
 }
-"""How each diagram is drawn, and what it shows, by its title."""
 
 
 @dataclass(frozen=True, eq=False)

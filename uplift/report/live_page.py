@@ -17,10 +17,8 @@ from uplift.io.export.program import cube_program
 from uplift.io.export.table import COLUMNS, make_table
 from uplift.viz.html import Markup, render, resource
 
-LIGHTS = ("D65", "A", "D50", "FL2", "FL11", "HP1", "LED-B3")
-"""Illuminants to choose from."""
-GROUP = 4
-"""Wavelengths of one call of the program."""
+LIGHTS = ("D65", "A", "D50", "FL2", "FL11", "HP1", "LED-B3")  # illuminants to choose from
+GROUP = 4  # wavelengths of one call of the program
 SPACE = "sRGB"
 
 

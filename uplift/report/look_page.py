@@ -25,12 +25,9 @@ from uplift.models.moments import MAX_COUNT
 from uplift.models.phase import Phase
 from uplift.viz.html import render, resource
 
-DIGITS = 12
-"""Digits of the numbers of the page: the RGB of its spectra is exact to far less than a code."""
-MARGIN = 1e-6
-"""Distance of the answer from 0 and 1, where the odds are 0 or infinite."""
-CODE_SLACK = 1e-6
-"""Distance in encoded codes at which a colour is written as '#rrggbb'."""
+DIGITS = 12  # digits of the numbers of the page: the RGB of its spectra is exact to far less than a code
+MARGIN = 1e-6  # distance of the answer from 0 and 1, where the odds are 0 or infinite
+CODE_SLACK = 1e-6  # distance in encoded codes at which a colour is written as '#rrggbb'
 
 
 def write_look_page(cube: Cube, found: Sequence[Bounds], path: StrPath, *, force: bool = False) -> int:

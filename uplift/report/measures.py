@@ -16,8 +16,7 @@ from uplift.lattice import Status
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
 
-MAX_LISTED = 24
-"""Points over the threshold that a report lists."""
+MAX_LISTED = 24  # points over the threshold that a report lists
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +46,7 @@ def collect_failures(data: CubeData) -> Failures:
     )
 
 
-NO_PAIR = -1.0
-"""Placeholder for a difference to an absent point."""
+NO_PAIR = -1.0  # placeholder for a difference to an absent point
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,8 +107,7 @@ def _positions(axis: int, red: int, index: tuple[np.intp, ...]) -> tuple[tuple[i
 
 
 COLOURS = 4096
-SEED = 20200617
-"""All reports use the same random colours, so that they can be compared."""
+SEED = 20200617  # all reports use the same random colours, so that they can be compared
 
 
 def round_trip_errors(cube: Cube) -> dict[str, Array]:
@@ -130,8 +127,7 @@ def _random_rgb(data: CubeData) -> Array:
     return data.lattice.nodes[low] + rgb * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])
 
 
-TOLERANCE = 1.25
-"""Largest factor, in both directions, between actual and predicted errors that counts as agreement."""
+TOLERANCE = 1.25  # largest factor, in both directions, between actual and predicted errors that counts as agreement
 
 
 @dataclass(frozen=True)

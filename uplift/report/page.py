@@ -168,8 +168,7 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-VISIBLE, LARGE = 1.0, 3.0
-"""ΔE00: the difference that is just visible side by side, and one that is obvious."""
+VISIBLE, LARGE = 1.0, 3.0  # ΔE00: the difference that is just visible side by side, and one that is obvious
 
 
 def render_report(assessment: Assessment, worst: int) -> str:

@@ -18,17 +18,17 @@ from uplift.cube import CubeData
 from uplift.lattice import Status
 from uplift.models import reflectance
 
+# Largest differences allowed between machines: at least thirty times the effect of other instruction sets
+# (docs/data/stability-determinism.json). On one machine there are none, for any number of threads.
 LIMITS = {"rgb": 1e-6, "spectra_max": 1e-5, "spectra_rms": 1e-7} | {
     f"delta_e_{name}": 1e-4 for name in REGRESSION_LIGHTS
 }
-"""Largest differences allowed between machines: at least thirty times the effect of other instruction sets
-(docs/data/stability-determinism.json). On one machine there are none, for any number of threads."""
+# Largest difference of lattice nodes. They are the same on every CPU since version 0.2. Cubes of earlier versions have
+# the powers of numpy, which instruction sets round differently.
 NODE_TOLERANCE = 1e-12
-"""Largest difference of lattice nodes. They are the same on every CPU since version 0.2. Cubes of earlier versions have
-the powers of numpy, which instruction sets round differently."""
+# Linear RGB within the object-colour solid. Points of wide gamuts nearer to its boundary have spectra close to box
+# functions, and many of these meet the colour equally well: rounding decides between them.
 BOUNDARY_MARGIN = 1e-3
-"""Linear RGB within the object-colour solid. Points of wide gamuts nearer to its boundary have spectra close to box
-functions, and many of these meet the colour equally well: rounding decides between them."""
 
 
 @dataclass(frozen=True)

@@ -25,12 +25,9 @@ from uplift.lookup import Cube, bulk
 from uplift.lookup.cube import common_sensor
 from uplift.viz.figure import GREY, INK, colour_map, figure_text, new_figure, write_figure
 
-RGB_PRODUCT = "RGB × light"
-"""Name of the method that multiplies the RGB of the image by those of the light."""
-MIN_MAP_LIMIT = 2.0
-"""Smallest ΔE00 at the dark end of a map: invisible differences stay pale."""
-ROWS = 64
-"""Rows whose spectra are in memory at once."""
+RGB_PRODUCT = "RGB × light"  # name of the method that multiplies the RGB of the image by those of the light
+MIN_MAP_LIMIT = 2.0  # smallest ΔE00 at the dark end of a map: invisible differences stay pale
+ROWS = 64  # rows whose spectra are in memory at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,11 +144,9 @@ def _by_spectra(cube: Cube, rgb: Floats, screens: Sequence[Sensor], threads: int
     return np.split(np.concatenate(rows), len(screens), axis=-1)
 
 
-PANEL = 3.4
-"""Width of a panel in inches."""
+PANEL = 3.4  # width of a panel in inches
 DPI = 140
-LABELS = 0.3
-"""Height in inches of the texts of a row."""
+LABELS = 0.3  # height in inches of the texts of a row
 
 
 def write_relit_sheet(relit: Sequence[Relit], path: StrPath, *, force: bool = False) -> None:

@@ -16,17 +16,13 @@ from uplift.lights.lookup import EmissionTable
 from uplift.viz.figure import GREY, INK, STYLE, colour_map
 from uplift.viz.scatter import LEGEND, Label, draw_labels, new_panels, style_title
 
-PANEL = (5.6, 5.4)
-"""Inches of a diagram with its margins."""
+PANEL = (5.6, 5.4)  # inches of a diagram with its margins
 MARGINS = {"left": 0.035, "right": 0.99, "bottom": 0.085, "top": 0.93, "wspace": 0.13}
-PIXELS = 320
-"""Pixels of a picture along u′."""
+PIXELS = 320  # pixels of a picture along u′
+# Wavelengths in nm that are marked on the spectral locus.
 WAVELENGTHS = (460, 480, 490, 500, 510, 520, 540, 560, 580, 600, 620, 700)
-"""Wavelengths in nm that are marked on the spectral locus."""
-FADED = 0.35
-"""Opacity of colours below names."""
-MARGIN = 0.012
-"""u′v′ between the lamps and the edge of their window."""
+FADED = 0.35  # opacity of colours below names
+MARGIN = 0.012  # u′v′ between the lamps and the edge of their window
 LAMP: dict[str, Any] = {
     "linestyle": "none",
     "marker": "o",
@@ -45,8 +41,7 @@ class Window:
     v: tuple[float, float]
 
 
-ALL = Window((-0.04, 0.64), (0.0, 0.62))
-"""All chromaticities of lights, with a margin."""
+ALL = Window((-0.04, 0.64), (0.0, 0.62))  # all chromaticities of lights, with a margin
 
 
 def light_figure(table: EmissionTable) -> Any:

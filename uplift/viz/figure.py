@@ -19,10 +19,11 @@ from uplift.common.files import atomic_write
 from uplift.common.text import printable
 
 INK, GREY, PALE, ACCENT = "#262626", "#6e6e6e", "#d6d6d6", "#20509a"
+# A broad line below others.
 BAND = "#c2c2c2"
-"""A broad line below others."""
+# A group that has no colour.
 OTHER = "#444444"
-"""A group that has no colour."""
+# For `matplotlib.rc_context`.
 STYLE: dict[str, Any] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "uplift",
@@ -38,11 +39,10 @@ STYLE: dict[str, Any] = {
     "ytick.major.width": 0.6,
     "xtick.minor.width": 0.4,
 }
-"""For `matplotlib.rc_context`."""
 
-SUFFIXES = (".png", ".svg", ".pdf")
-"""Formats of figures."""
+SUFFIXES = (".png", ".svg", ".pdf")  # formats of figures
 HAIR_SPACE = "\u200a"
+# Properties of the style sheet of pages in place of colours; it lightens all other colours in the dark scheme.
 PAGE_COLOURS = {
     INK: "var(--ink)",
     GREY: "var(--grey)",
@@ -52,11 +52,10 @@ PAGE_COLOURS = {
     "#000000": "var(--ink)",
     "#ffffff": "var(--card)",
 }
-"""Properties of the style sheet of pages in place of colours; it lightens all other colours in the dark scheme."""
 _COLOUR = re.compile(r"(?<=: )#[0-9a-f]{6}\b")
 _NO_METADATA = dict.fromkeys(("Creator", "Date", "Format", "Type"))
+# Names of groups, comments, and a style sheet that would apply to the whole page.
 _UNUSED = re.compile(r' id="[\w.]+_\d+"|<!--.*?-->|<defs>\s*<style.*?</style>\s*</defs>', re.DOTALL)
-"""Names of groups, comments, and a style sheet that would apply to the whole page."""
 _IDENTIFIER = re.compile(r'(id="|#)([mp][0-9a-f]{10})(?=["\)])')
 
 

@@ -19,8 +19,7 @@ __all__ = [
 
 TIME_UNITS = ((1e9, "s"), (1e6, "ms"), (1e3, "µs"), (1.0, "ns"))
 SIZE_UNITS = ((1e9, "GB"), (1e6, "MB"), (1e3, "kB"), (1.0, "B"))
-SMALLEST_ERROR = 1e-4
-"""Errors below this are not visible."""
+SMALLEST_ERROR = 1e-4  # errors below this are not visible
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 

@@ -22,13 +22,11 @@ if TYPE_CHECKING:
 
 MAX_SWATCHES = 64
 MAX_SPECTRA = 24
-MAX_ROWS = 100
-"""Entries of an atlas shown."""
+MAX_ROWS = 100  # entries of an atlas shown
+# Linear RGB shown for a cube without an atlas.
 PRIMARIES = np.array([[0.8, 0.1, 0.1], [0.1, 0.8, 0.1], [0.1, 0.1, 0.8], [0.8, 0.8, 0.8], [0.2, 0.2, 0.2]])
-"""Linear RGB shown for a cube without an atlas."""
 SWATCH = "display:inline-block;width:1.4em;height:1.4em;margin:1px;background:"
-SPARKLINE = (120, 24)
-"""Width and height of the plot of an entry in pixels; the height is reflectance from 0 to 1."""
+SPARKLINE = (120, 24)  # width and height of the plot of an entry in pixels; the height is reflectance from 0 to 1
 
 
 def plot_cube(cube: Cube, rgb: ArrayLike, wavelengths: ArrayLike | None = None) -> Figure:

@@ -29,8 +29,7 @@ from uplift.viz.figure import (
     write_figure,
 )
 
-MAX_LEGEND = 12
-"""Largest number of lines with a legend."""
+MAX_LEGEND = 12  # largest number of lines with a legend
 
 
 def plot_spectra(
@@ -80,8 +79,8 @@ def plot_lights(
     write_figure(figure, path, force=force)
 
 
+# Inches of a picture's width, and of the heights of a strip and its title.
 WIDTH, HEIGHT, TITLE_HEIGHT = 7.2, 0.62, 0.24
-"""Inches of a picture's width, and of the heights of a strip and its title."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,14 +102,10 @@ def plot_strips(strips: Sequence[Strip], path: str | os.PathLike[str], *, force:
     write_figure(figure, path, force=force)
 
 
-MAX_COLOURS = 24
-"""Largest number of colours in one plot."""
-PIXELS = 160
-"""Pixels of the colours in a region, along each side."""
-MARGIN = 0.06
-"""Space around a region, as a share of its size."""
-MIN_EXTENT = 5.0
-"""Smallest extent of an axis in a* or b*."""
+MAX_COLOURS = 24  # largest number of colours in one plot
+PIXELS = 160  # pixels of the colours in a region, along each side
+MARGIN = 0.06  # space around a region, as a share of its size
+MIN_EXTENT = 5.0  # smallest extent of an axis in a* or b*
 
 
 def plot_bounds(

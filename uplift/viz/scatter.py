@@ -20,6 +20,7 @@ MARKER: dict[str, Any] = {
     "markeredgecolor": "white",
 }
 FRONT_LINE: dict[str, Any] = {"linestyle": "-", "marker": "none", "color": INK, "linewidth": 1.1}
+# Arguments of a legend.
 LEGEND: dict[str, Any] = {
     "frameon": False,
     "alignment": "left",
@@ -27,21 +28,18 @@ LEGEND: dict[str, Any] = {
     "title_fontsize": 9,
     "labelspacing": 0.7,
 }
-"""Arguments of a legend."""
 
+# Number of decades below which an axis has ticks at these multiples of powers of ten.
 TICKS = (
     (0.4, (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9)),
     (1.2, (1, 1.5, 2, 3, 5, 7)),
     (3, (1, 2, 5)),
     (np.inf, (1,)),
 )
-"""Number of decades below which an axis has ticks at these multiples of powers of ten."""
 MAX_TICKS = 40
-FONT_MARGIN = 1.06
-"""Share by which the font of a reader may be wider."""
+FONT_MARGIN = 1.06  # share by which the font of a reader may be wider
 _POINTS_PER_INCH = 72
-_MAX_DISTANCE = 14
-"""Points between a marker and its label without a line that joins them."""
+_MAX_DISTANCE = 14  # points between a marker and its label without a line that joins them
 
 
 @dataclass(frozen=True)
@@ -155,10 +153,8 @@ def _join(axes: Any, end: Array, start: Array) -> None:
         axes.annotate("", end, start, arrowprops=style, zorder=1, **units)
 
 
-DISTANCES = (6.0, 9.0, 14.0, 20.0, 28.0, 38.0)
-"""Points between a marker and its label."""
-CLEARANCE = (4.5, 2.5)
-"""Points that labels keep from markers, sideways and upwards."""
+DISTANCES = (6.0, 9.0, 14.0, 20.0, 28.0, 38.0)  # points between a marker and its label
+CLEARANCE = (4.5, 2.5)  # points that labels keep from markers, sideways and upwards
 _SIDES = [(x, y) for x in (1.0, -1.0) for y in (0.0, 0.5, -0.5, 1.0, -1.0)]
 DIRECTIONS = np.array([*_SIDES, *((x, y) for y in (1.0, -1.0) for x in (0.0, 0.5, -0.5))])
 

@@ -28,10 +28,8 @@ from uplift.io.slices import blue_slices
 from uplift.viz.figure import figure_text
 from uplift.viz.format import pluralise
 
-TEXT_GREY = 0.75
-"""Linear grey of the text."""
-DPI = 64
-"""A power of two: division is exact, so the canvas of the text has the size of the sheet."""
+TEXT_GREY = 0.75  # linear grey of the text
+DPI = 64  # A power of two: division is exact, so the canvas of the text has the size of the sheet
 STYLE: dict[str, Any] = {
     "family": "DejaVu Sans",  # comes with matplotlib
     "va": "center_baseline",
@@ -103,14 +101,10 @@ def _draw_text(image: Image, labels: tuple[Label, ...]) -> Image:
     return image + cover * (np.float32(TEXT_GREY) - image)
 
 
-PANEL = 640
-"""Approximate width of a panel in pixels; sheets are 1000 to 2000 pixels wide."""
-GAP = 3
-"""Pixels between tiles."""
-PANELS_PER_ROW = {3: 3, 4: 2, 5: 3}
-"""Panels per row, by the number of panels."""
-LINES = 3
-"""Lines of the legend below every panel."""
+PANEL = 640  # approximate width of a panel in pixels; sheets are 1000 to 2000 pixels wide
+GAP = 3  # pixels between tiles
+PANELS_PER_ROW = {3: 3, 4: 2, 5: 3}  # panels per row, by the number of panels
+LINES = 3  # lines of the legend below every panel
 
 
 class Label(NamedTuple):
@@ -244,13 +238,10 @@ def _heading(data: CubeData, layout: Layout) -> Label:
     return Label(2 * layout.em, 2.75 * layout.em, "  ·  ".join(facts), 1.4 * layout.em)
 
 
-BACKGROUND = 0.03
-"""Linear grey, on which both bright colours and black are visible. Absent nodes have this colour."""
-DECADES = 3
-"""Decades of fitting distance below the threshold that the ramp spans."""
+BACKGROUND = 0.03  # Linear grey, on which both bright colours and black are visible. Absent nodes have this colour.
+DECADES = 3  # decades of fitting distance below the threshold that the ramp spans
 
-KEY_STEPS = np.linspace(0, 1, 64)
-"""Positions along a ramp in a legend."""
+KEY_STEPS = np.linspace(0, 1, 64)  # positions along a ramp in a legend
 
 
 def _linear(*codes: str) -> Array:
@@ -260,8 +251,8 @@ def _linear(*codes: str) -> Array:
 
 RAMP = _linear("0b1d51", "20509a", "3f8fc5", "8fc7e0", "e6f4f7")
 HIGHLIGHT = _linear("ff5a00")
+# Colours of every `Status` but absent, in its order. Unfitted nodes have the highlight colour.
 STATUS = _linear("f0e442", "9bd4f5", "53708a", "00a878", "ff5a00", "6a1b4d")
-"""Colours of every `Status` but absent, in its order. Unfitted nodes have the highlight colour."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ import pytest
 
 from tests.helpers import raises, warns
 from uplift.common.errors import ColourError, OptionError
-from uplift.design.mixing import Ingredients, Medium, Surface, make_coat, mix, ramp
-from uplift.design.mixing.coats import COATS, DARKEST, dye_absorption, dye_transmittance
+from uplift.design.mixing import Ingredients, Medium, Surface, make_coat, mix
+from uplift.design.mixing.coats import COATS, DARKEST, dye_absorption, dye_transmittance, ramp
 from uplift.design.mixing.layers import NO_SURFACE, Layer
 from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, Pigment, from_opaque
 

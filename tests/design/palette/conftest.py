@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.design.palette import ColourGoal, FactorModel, Palette, SpectrumSpec, illuminant, standard_model
+from uplift.design.palette import illuminant, standard_model
+from uplift.design.palette.factor import FactorModel
+from uplift.design.palette.palette import ColourGoal, Palette, SpectrumSpec
 
 
 @pytest.fixture(scope="session")

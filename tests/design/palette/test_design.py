@@ -10,9 +10,10 @@ from scipy.optimize import lsq_linear
 
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.errors import PaletteError
-from uplift.design.palette import ColourGoal, Palette, SpectrumSpec, design, illuminant, matrix
+from uplift.design.palette import design, illuminant, matrix
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.equations import equations, unknowns
+from uplift.design.palette.palette import ColourGoal, Palette, SpectrumSpec
 from uplift.fit.bounded_least_squares import BoundedProblem, solve_bounded
 
 BLACK = np.zeros(3)

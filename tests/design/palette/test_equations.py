@@ -7,9 +7,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from uplift.design.palette import SpectrumSpec
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.equations import SPACING, equations, unknowns
+from uplift.design.palette.palette import SpectrumSpec
 
 
 def guess_for(palette):

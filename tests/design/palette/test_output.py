@@ -12,7 +12,9 @@ import uplift
 from tests.helpers import raises, warns
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.errors import OutputError, PaletteError
-from uplift.design.palette import SpectrumSpec, design, matrix, plot_matrix, plot_spectra, write_designed
+from uplift.design.palette import design, matrix, write_designed
+from uplift.design.palette.palette import SpectrumSpec
+from uplift.design.palette.plots import plot_matrix, plot_spectra
 
 
 @pytest.fixture(scope="module")

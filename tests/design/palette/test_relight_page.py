@@ -17,7 +17,8 @@ from tests.browsing import check_page
 from tests.parts import CHROMIUM, need
 from uplift.colorimetry.srgb import encode
 from uplift.common.errors import OptionError
-from uplift.design.palette import Palette, SpectrumSpec, design, illuminant
+from uplift.design.palette import design, illuminant
+from uplift.design.palette.palette import Palette, SpectrumSpec
 from uplift.design.palette.picture import cutaway
 from uplift.design.palette.relight_page import MAX_MATERIALS, Relighting, page, relighting, to_half
 

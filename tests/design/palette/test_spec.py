@@ -10,8 +10,9 @@ from tests.conftest import MACBETH, ROOT
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
 from uplift.common.errors import AtlasError, CubeFileError, PaletteError, UnknownNameError
-from uplift.design.palette import MinDifference, illuminant, read_palette
+from uplift.design.palette import illuminant, read_palette
 from uplift.design.palette.colours import planck, screen_matrix
+from uplift.design.palette.palette import MinDifference
 
 COMPLETE = f"""
 smoothness = 0.002

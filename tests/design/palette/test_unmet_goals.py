@@ -7,15 +7,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from uplift.design.palette import (
-    ColourGoal,
-    MinDifference,
-    SpectrumSpec,
-    design,
-    matrix,
-    read_palette,
-    unmet_goals,
-)
+from uplift.design.palette import design, matrix, read_palette, unmet_goals
+from uplift.design.palette.palette import ColourGoal, MinDifference, SpectrumSpec
 
 
 @pytest.fixture

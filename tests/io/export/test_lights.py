@@ -13,10 +13,9 @@ from uplift.lights.discs import MIN_RADIUS
 from uplift.lights.lookup import load_emission
 
 WAVELENGTHS = [300.0, 455.0, 551.5, 790.0]
-WITHIN = 3e-4
-"""Tolerance of single precision as a share of the largest power."""
+WITHIN = 3e-4  # tolerance of single precision as a share of the largest power
+# The function that programs of cubes have.
 ALIAS = "\n#define cube_reflectances cube_power\n"
-"""The function that programs of cubes have."""
 RUN = {"c": run_program.c, "glsl": run_program.glsl}
 SUFFIX = {"c": ".h", "glsl": ".glsl"}
 

@@ -17,8 +17,7 @@ from uplift.io.export.program import identifier
 from uplift.lookup import load
 
 WAVELENGTHS = [300.0, 455.0, 551.5, 700.0]
-WITHIN = 1e-4
-"""Tolerance of reflectance in single precision: multipliers of spectra near a box reach 4e6."""
+WITHIN = 1e-4  # tolerance of reflectance in single precision: multipliers of spectra near a box reach 4e6
 RUN = {"c": run_program.c, "cuda": run_program.cuda, "glsl": run_program.glsl, "hlsl": run_program.hlsl}
 SHIPPED = ("moments-8", "sigmoid-8-macbeth")
 

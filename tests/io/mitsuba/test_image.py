@@ -18,8 +18,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:the texture calls Python:uplift.
 
 IMAGE = np.random.default_rng(8).random((3, 4, 3), dtype=np.float32)
 POSITIONS = [(0.1, 0.2), (0.83, 0.4), (0.999, 0.001), (0.5, 0.5), (1.3, -0.7), (-0.2, 1.9)]
-WITHIN = 1e-5
-"""Tolerance of linear RGB in single precision."""
+WITHIN = 1e-5  # tolerance of linear RGB in single precision
 
 
 @pytest.fixture

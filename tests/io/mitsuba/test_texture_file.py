@@ -16,8 +16,8 @@ from uplift.models import Moments
 pytestmark = pytest.mark.filterwarnings("ignore:the texture calls Python:uplift.UpliftWarning")
 
 IMAGE = np.random.default_rng(8).random((3, 4, 3), dtype=np.float32)
+# Two of them lie beyond the samples, and none halfway between samples that differ much.
 WAVELENGTHS = np.array([362.5, 402.5, 555, 650, 823])
-"""Two of them lie beyond the samples, and none halfway between samples that differ much."""
 
 
 @pytest.mark.parametrize(

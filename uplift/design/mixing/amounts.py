@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
-MAX_LENGTH = 1e9
-"""Limit of thicknesses, which are multiplied with other numbers."""
+MAX_LENGTH = 1e9  # limit of thicknesses, which are multiplied with other numbers
 
 
 def as_amounts(parts: ArrayLike) -> Array:
@@ -50,10 +49,7 @@ def weighted_sum(spectra: ArrayLike, weights: Array) -> Array:
 
 
 def add_lights(spectra: ArrayLike, strengths: ArrayLike) -> Array:
-    """Superpose lights (…, n, N) of some strengths (…, n) (eq. 8.1, 8.2).
-
-    The sum is linear, and therefore the same in spectra, XYZ and linear RGB (Grassmann's law).
-    """
+    """Superpose lights (…, n, N) of some strengths (…, n) (eq. 8.1, 8.2): linear in spectra, XYZ and linear RGB."""
     return weighted_sum(spectra, as_amounts(strengths))
 
 
@@ -63,9 +59,6 @@ def average_areas(spectra: ArrayLike, parts: ArrayLike) -> Array:
 
 
 def stack_filters(transmittance: ArrayLike, thickness: ArrayLike) -> Array:
-    """Multiply the transmittances (…, n, N) of filters, each to the power of its thickness (…, n) (eq. 9.1).
-
-    Reflections between the filters are neglected (Bouguer, Lambert, Beer).
-    """
+    """Multiply transmittances (…, n, N), each to the power of its thickness (…, n), without reflections (eq. 9.1)."""
     powers = as_amounts(thickness)[..., None]
     return np.prod(np.asarray(transmittance, dtype=float) ** powers, axis=-2)

@@ -3,16 +3,13 @@
 All reflectances include the surface. A coat of thickness 0 therefore leaves its ground unchanged. Grounds darker than
 the surface alone are treated as black beneath it.
 
-Dyes absorb and do not scatter (Fishkin 1983, eq. 9.3–9.7). Derivation of eq. 9.7: the surface reflects a fraction ρ of
-the light, and 1 − ρ enters. The light crosses the layer (T), is reflected by a ground in optical contact (R_g), and
-crosses the layer again (T). There 1 − ρ_i leaves, and ρ_i is reflected back for another pass. The i-th pass contributes
-(1 − ρ) (1 − ρ_i) (T² R_g)^i ρ_i^(i−1), so that
+Dyes absorb and do not scatter (Fishkin 1983, eq. 9.3–9.7). Of the light that enters, 1 − ρ, the i-th pass contributes
+(1 − ρ) (1 − ρ_i) (T² R_g)^i ρ_i^(i−1), so that a dye on a ground R_g in optical contact has
 
-    R = ρ + (1 − ρ) (1 − ρ_i) T² R_g Σ_{i≥0} (ρ_i T² R_g)^i = ρ + (1 − ρ) (1 − ρ_i) T² R_g / (1 − ρ_i T² R_g).
+    R = ρ + (1 − ρ) (1 − ρ_i) T² R_g / (1 − ρ_i T² R_g),
 
-The thesis, with ρ_i = ρ, prints (1 − ρ)² / (ρ (1 − ρ T² R_g)). Its sum starts at 1, but the term i = 0 was not
-subtracted, so the numerator lacks ρ T² R_g, and R exceeds 1 for every small ρ. The correct result is Saunderson's
-correction (eq. 10.10) of T² R_g, which is Kubelka and Munk's result without scattering.
+which is Saunderson's correction (eq. 10.10) of T² R_g, or Kubelka and Munk's result without scattering. The thesis
+prints, with ρ_i = ρ, (1 − ρ)² / (ρ (1 − ρ T² R_g)): its sum starts at 1, but the term i = 0 was not subtracted.
 """
 
 from __future__ import annotations
@@ -32,38 +29,18 @@ from uplift.design.mixing.pigments import Pigment, Scattering, from_black_and_wh
 
 COATS = ("pigment", "dye")
 KINDS = (*COATS, "filter", "light")
-DARKEST = 1e-6
-"""Smallest transmittance that the absorption of a dye is derived from; it diverges at 0."""
+DARKEST = 1e-6  # smallest transmittance that the absorption of a dye is derived from; it diverges at 0
 
 
 @dataclass(frozen=True, eq=False)
 class Coat:
-    """A layer beneath a surface.
-
-    Parameters
-    ----------
-    layer : Layer
-        Optical properties (..., N) of paint or dye.
-    surface : Surface
-        Surface of the vehicle.
-    """
+    """A layer of paint or dye beneath the surface of its vehicle."""
 
     layer: Layer
     surface: Surface = NO_SURFACE
 
     def over(self, ground: ArrayLike) -> Array:
-        """Return the reflectance of the coat on a ground.
-
-        Parameters
-        ----------
-        ground : array_like of shape (..., N)
-            Reflectance of the ground, surface included.
-
-        Returns
-        -------
-        ndarray of shape (..., N)
-            Reflectance, surface included.
-        """
+        """Return the reflectance (..., N) on a ground (..., N), both surface included."""
         return self.surface.apply(self.layer.over(_beneath(self.surface, ground)))
 
 
@@ -85,13 +62,7 @@ class Ingredients:
 
     @property
     def measured_on_black(self) -> list[Array]:
-        """The spectra on black that are given.
-
-        Returns
-        -------
-        list of ndarray of shape (N,)
-            Those of ``on_black`` that are not None.
-        """
+        """The spectra (N,) on black that are given."""
         return [one for one in self.on_black if one is not None]
 
 
@@ -106,7 +77,7 @@ class Medium:
     surface : Surface
         Surface of the vehicle.
     scattering : callable, optional
-        S of pigments given by one colour, which need it; see `dispersive`.
+        S of pigments that are given by one colour, which need it; see `dispersive`.
     """
 
     thickness: float | None = None
@@ -122,7 +93,7 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
     kind : {"pigment", "dye"}
         Kind of the components.
     ingredients : Ingredients
-        The n components.
+        The n components. A warning states how many are darker than the surface alone at some wavelengths.
     parts : array_like of shape (..., n)
         Amounts of the components.
     medium : Medium
@@ -131,20 +102,14 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
     Returns
     -------
     Coat
-        The coat.
+        The coat; ``coat.over(ground)`` is its reflectance on a ground.
 
     Raises
     ------
     OptionError
-        The kind is unknown, parts or thickness are invalid, a dye has a colour on black, or the scattering of a pigment
-        is missing.
+        An argument is invalid, a dye has a colour on black, or the scattering of a pigment is missing.
     ColourError
         No pigment has the given reflectances on white and on black.
-
-    Warns
-    -----
-    UpliftWarning
-        A component is darker than the surface alone at some wavelengths.
     """
     if kind not in COATS:
         raise OptionError(f"a coat cannot be of kind '{kind}'", code="unknown-coat", hint=f"use {' or '.join(COATS)}")
@@ -195,10 +160,8 @@ def mix(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, g
 
     Raises
     ------
-    OptionError
-        The kind is unknown, the parts are invalid, or the medium does not apply to the kind.
-    ColourError
-        As `make_coat`.
+    OptionError, ColourError
+        As `make_coat`, or the medium does not apply to the kind.
     """
     if kind in COATS:
         return make_coat(kind, ingredients, parts, medium).over(ground)
@@ -211,27 +174,10 @@ def mix(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, g
 
 
 def ramp(parts: ArrayLike, steps: int) -> Array:
-    """Return proportions from the first component alone, through the others, to the last alone.
+    """Return proportions (steps, n) from the first component alone, through the others, to the last alone.
 
-    Parameters
-    ----------
-    parts : array_like of shape (n,)
-        Amounts at which each component stands alone.
-    steps : int
-        Number of steps, at least 2.
+    ``parts`` (n,) are the amounts at which each component stands alone. The shape is (0, 1) for a single component.
 
-    Returns
-    -------
-    ndarray of shape (steps, n)
-        Parts of each step. The shape is (0, 1) for a single component.
-
-    Raises
-    ------
-    OptionError
-        There are fewer than two steps.
-
-    Examples
-    --------
     >>> ramp([2, 1], 3).tolist()
     [[2.0, 0.0], [1.0, 0.5], [0.0, 1.0]]
     """
@@ -245,10 +191,7 @@ def ramp(parts: ArrayLike, steps: int) -> Array:
 
 
 def dye_transmittance(absorption: ArrayLike, thickness: float) -> Array:
-    """Return the transmittance T = exp(−K X) of absorption (..., N) (Beer and Bouguer, eq. 9.5).
-
-    A concentration multiplies the thickness.
-    """
+    """Return T = exp(−K X) of absorption (..., N) (Beer, eq. 9.5). A concentration multiplies the thickness."""
     return np.exp(-as_thickness(thickness) * np.asarray(absorption, dtype=float))
 
 

@@ -16,11 +16,10 @@ from uplift.common.arrays import Array
 from uplift.design.mixing.theories import Mixer
 
 BLACK, WHITE = np.zeros(3), np.ones(3)
+# Blue and orange, red and green, yellow and purple, as saturated linear RGB.
 COMPLEMENTS = (((0, 0, 1), (1, 0.5, 0)), ((1, 0, 0), (0, 1, 0)), ((1, 1, 0), (1, 0, 1)))
-"""Blue and orange, red and green, yellow and purple, as saturated linear RGB."""
 BLUE_YELLOW = np.array([[0.0, 0, 1], [1.0, 1, 0]])
-SHARES = np.array([(0.75, 0.25), (0.5, 0.5), (0.25, 0.75)])
-"""Proportions of shades, tints and greens."""
+SHARES = np.array([(0.75, 0.25), (0.5, 0.5), (0.25, 0.75)])  # proportions of shades, tints and greens
 
 
 @dataclass(frozen=True)
@@ -32,6 +31,7 @@ class Criterion:
     limit: float
 
 
+# All criteria, in the order of `evaluate`.
 CRITERIA = (
     Criterion("mixed with itself: no change", "worst ΔE00", 0.1),
     Criterion("with black: chromaticity kept", "worst Δu'v'", 0.005),
@@ -41,7 +41,6 @@ CRITERIA = (
     Criterion("with its complement: grey", "worst C*ab", 10.0),
     Criterion("blue and yellow: green", "max(R, B) − G at best", -0.01),
 )
-"""All criteria, in the order of `evaluate`."""
 
 
 def evaluate(mixer: Mixer, sensor: Sensor, colours: Array) -> tuple[float, ...]:

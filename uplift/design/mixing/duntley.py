@@ -1,25 +1,17 @@
 """Duntley's theory with eight constants: collimated incident light and diffuse light within a layer differ.
 
-Per unit thickness, a fraction K' of the beam is absorbed, B' is scattered backward and F' forward. The constants of
-diffuse light are K, B and F. The other two constants are S' = B' + F' and S = B + F. F does not affect the result, as
-forward-scattered diffuse light stays diffuse. With μ = K' + B' + F' and γ² = K (K + 2B), the beam e^−μx feeds two
-diffuse fluxes,
+Per unit thickness, a fraction K' of the beam is absorbed, B' is scattered backward and F' forward; K, B and F are those
+of diffuse light (F has no effect), S' = B' + F' and S = B + F. With μ = K' + B' + F' and γ² = K (K + 2B), the beam
+e^−μx feeds two diffuse fluxes,
 
     t' = F' e^−μx − (K + B) t + B s,    −s' = B' e^−μx − (K + B) s + B t,    t(0) = 0,  s(X) = 0.
 
-−Q' e^−μx and −P' e^−μx are a particular solution. The rest is Kubelka and Munk's solution with S = B, for the incident
-fluxes Q' from above and P' e^−μX from below. With the reflectance r and transmittance τ of that layer,
+−Q' e^−μx and −P' e^−μx are a particular solution. The rest is Kubelka and Munk's layer (r, τ) with S = B, so that
 
     R = Q' r + P' e^−μX τ − P',    T = Q' τ + P' e^−μX r − (Q' − 1) e^−μX,
 
-which is eq. 10.8 of Fishkin 1983. The denominator of P' and Q' is μ² − γ². Both limits exist where it vanishes. There
-the mean of values on both sides is taken.
-
-Two colours cannot determine eight constants. Particles that scatter in all directions alike leave two (`isotropic`): a
-path of diffuse light is on average twice as long as the beam's, so that K' = K/2 and B' = F' = S/2 for Kubelka and
-Munk's K and S = B. An opaque layer of reflectance r in diffuse light then has R = 2r / (3 − r) in a beam.
-
-S. Q. Duntley, J. Opt. Soc. Am. 32(2), 1942.
+which is eq. 10.8 of Fishkin 1983. Where the denominator μ² − γ² of P' and Q' vanishes, the mean of both sides is taken.
+Particles that scatter in all directions alike leave two constants (`isotropic`). S. Q. Duntley, J. Opt. Soc. Am. 1942.
 """
 
 from __future__ import annotations
@@ -33,8 +25,8 @@ from uplift.common.arrays import Array
 from uplift.design.mixing.layers import Layer
 from uplift.design.mixing.pigments import Pigment
 
+# Relative difference of μ and γ below which the mean of both sides is taken; its error is the square of this.
 MIN_RELATIVE_GAP = 1e-5
-"""Relative difference of μ and γ below which the mean of both sides is taken; its error is the square of this."""
 
 
 @dataclass(frozen=True, eq=False)

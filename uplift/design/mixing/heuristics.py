@@ -3,13 +3,9 @@
 HSL: hue, saturation and lightness in [0, 1], hue 0 is red, 1/3 green, 2/3 blue (GSPC, "Status Report of the Graphics
 Standards Planning Committee", 1979; Fishkin 1983, section 5.3.5).
 
-RYB-HSL (Fishkin 1983, section 10.4): the centroid in the double cone of figure 10.3, whose radius is chroma. Lines to
-black and white therefore keep hue and saturation. Two errors in the printed hue map are corrected:
-
-- Its middle third subtracts 1/3, but only adding 1/3 continues from yellow (1/6 → 1/3).
-- Its slope of 1/2 ends at 7/12 and jumps to 2/3 at blue, so the map is not invertible. A slope of 2/3 joins both ends.
-
-Green, 1/3, maps to 4/9, so red and green are not exactly opposite.
+RYB-HSL (Fishkin 1983, section 10.4): the centroid in the double cone of figure 10.3, whose radius is chroma. Two errors
+in the printed hue map are corrected: its middle third subtracts 1/3, but only adding continues from yellow (1/6 → 1/3);
+and its slope of 1/2 jumps to 2/3 at blue, where a slope of 2/3 joins both ends. Green, 1/3, maps to 4/9.
 
 Phosphor curves (Fishkin 1983, chapter 7): the curve of a colour is the sum of the monitor's phosphor spectra that
 display it (eq. 7.1). Curves are treated as transmittances and multiplied as filters (eq. 9.1). The result is the
@@ -28,11 +24,10 @@ from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.common.arrays import Array
 from uplift.design.mixing.amounts import as_shares, stack_filters, weighted_sum
 
+# For each sixth of the hues: indices of red, green and blue among (largest, rising, smallest, falling).
 SEXTANTS = np.array([[0, 1, 2], [3, 0, 2], [2, 0, 1], [2, 3, 0], [1, 2, 0], [0, 2, 3]])
-"""For each sixth of the hues: indices of red, green and blue among (largest, rising, smallest, falling)."""
 RGB_WHEEL = (0.0, 1 / 6, 2 / 3, 1.0)
-RYB_WHEEL = (0.0, 1 / 3, 2 / 3, 1.0)
-"""Hues of red, yellow, blue and red again."""
+RYB_WHEEL = (0.0, 1 / 3, 2 / 3, 1.0)  # hues of red, yellow, blue and red again
 
 
 def hsl_to_rgb(hsl: ArrayLike) -> Array:

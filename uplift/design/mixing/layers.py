@@ -1,11 +1,8 @@
 """Optics of a layer on a ground, and of the surface between air and the vehicle of a paint.
 
-Incident light is collimated and perpendicular (Fresnel; Fishkin 1983, eq. 9.3) or diffuse (Duntley, eq. 10.9). Light
-within is diffuse. Saunderson's correction (eq. 10.10) converts between the internal reflectance, as in Kubelka and
-Munk's theory, and the measured one.
-
-S. Q. Duntley, J. Opt. Soc. Am. 32(2), 1942; J. L. Saunderson, J. Opt. Soc. Am. 32, 1942; D. B. Judd, "Fresnel
-reflection of diffusely incident light", J. Res. NBS 29, 1942; P. Kubelka, J. Opt. Soc. Am. 44, 1954, eq. 1–4.
+Incident light is a perpendicular beam (Fresnel; Fishkin 1983, eq. 9.3) or diffuse (Duntley 1942, eq. 10.9); light
+within is diffuse. Saunderson's correction (J. Opt. Soc. Am. 32, 1942, eq. 10.10) converts between the internal
+reflectance, as in Kubelka and Munk's theory, and the measured one. Also D. B. Judd, J. Res. NBS 29, 1942.
 """
 
 from __future__ import annotations
@@ -45,7 +42,7 @@ def fresnel_reflectance(index: float) -> float:
 def diffuse_reflectance(index: float) -> float:
     """Return the reflectance of diffuse light from air: Fresnel's, integrated (eq. 10.9); 0.092 for an index of 1.5.
 
-    Fishkin 1983 prints 8n + 1² for 6 (n + 1)². The tests integrate Fresnel's equations.
+    Fishkin 1983 prints 8n + 1² for 6 (n + 1)².
     """
     n = _check_index(index)
     if n == 1:
@@ -65,8 +62,8 @@ def internal_reflectance(index: float) -> float:
     return 1 - (1 - diffuse_reflectance(index)) / index**2
 
 
+# Reflectance of a surface by the kind of incident light.
 INCIDENCES = {"perpendicular": fresnel_reflectance, "diffuse": diffuse_reflectance}
-"""Reflectance of a surface by the kind of incident light."""
 
 
 @dataclass(frozen=True)
@@ -79,11 +76,6 @@ class Surface:
         Reflectance of incident light, in [0, 1).
     inside : float
         Reflectance of diffuse light from within, in [0, 1).
-
-    Raises
-    ------
-    OptionError
-        A reflectance is outside [0, 1).
     """
 
     outside: float = 0.0
@@ -110,13 +102,6 @@ class Surface:
         -------
         Surface
             The surface.
-
-        Raises
-        ------
-        OptionError
-            The index is below 1 or not finite.
-        UnknownNameError
-            The incidence is unknown.
         """
         if incidence not in INCIDENCES:
             raise unknown_name(incidence, INCIDENCES, "incidence")
@@ -127,13 +112,13 @@ class Surface:
 
         Parameters
         ----------
-        internal : array_like of shape (...)
+        internal : array_like
             Reflectance beneath the surface.
 
         Returns
         -------
-        ndarray of shape (...)
-            Measured reflectance.
+        ndarray
+            Measured reflectance, of the same shape.
         """
         internal = np.asarray(internal, dtype=float)
         transmitted = (1 - self.outside) * (1 - self.inside)
@@ -144,12 +129,12 @@ class Surface:
 
         Parameters
         ----------
-        measured : array_like of shape (...)
+        measured : array_like
             Measured reflectance.
 
         Returns
         -------
-        ndarray of shape (...)
+        ndarray
             Internal reflectance, negative where the measured one is below that of the surface alone.
         """
         rest = np.asarray(measured, dtype=float) - self.outside

@@ -74,24 +74,6 @@ def overpainter(
     -------
     Overpainter
         The converter to pass to `uplift.io.texture.convert`.
-
-    Raises
-    ------
-    OptionError
-        The encoding or the gamut mapping is unknown.
-
-    Examples
-    --------
-    ::
-
-        import numpy as np
-
-        from uplift.design.mixing import Ingredients, Medium, dispersive, make_coat, overpainter
-        from uplift.io import texture
-
-        red = Ingredients(cube.reflectance(np.array([[0.5, 0.05, 0.03]])))
-        glaze = make_coat("pigment", red, [1], Medium(0.5, scattering=dispersive(cube.data.sensor)))
-        texture.convert(overpainter(cube, glaze), "painting.exr", "painted.exr")
     """
     from uplift.lookup import bulk
 

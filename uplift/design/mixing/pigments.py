@@ -5,22 +5,14 @@ With γ = √(K (K + 2S)) a layer of thickness X has (Fishkin 1983, eq. 10.2)
     T = γ / Δ,    R = S sinh γX / Δ,    Δ = (K + S) sinh γX + γ cosh γX.
 
 Mixtures average K and S (Duncan, eq. 10.7). Reflectances on two grounds determine both. The reflectance R of opaque
-paint determines K/S only (eq. 10.6, where Fishkin 1983 prints 1 − R² for (1 − R)²), so S must be assumed:
+paint determines K/S only (eq. 10.6, where Fishkin 1983 prints 1 − R² for (1 − R)²), so S must be assumed: as R^p, where
+p = 0 is the single-constant theory, or as Y^¾ exp(h / 4), where Y is the luminance factor and h(λ) the mean of √(K/S)
+below λ less that above it, weighted by exp(−abs(λ − λ') / 40 nm). The refractive index of a pigment rises on the
+long-wave side of an absorption band (anomalous dispersion), and scattering grows with its difference from the binder's:
+yellow pigments scatter most in the green, blue ones little, and both together are green. docs/mixing.md compares them.
 
-S = R^p
-    p = 0, equal scattering, is the single-constant theory. p = ½ lets dark paints scatter less.
-S = Y^¾ exp(h / 4)
-    Y is the luminance factor of the paint. h(λ) is the mean of √(K/S) at wavelengths below λ, less the mean above it,
-    both with weights exp(−abs(λ − λ') / 40 nm). The refractive index of a pigment rises on the long-wave side of an
-    absorption band and falls on its short-wave side (anomalous dispersion), and scattering grows with the difference
-    from the index of the binder. A yellow pigment therefore scatters most in the green, where its absorption ends; a
-    blue one scatters little there. That is why both together are green.
-
-docs/mixing.md compares these rules with measured paints.
-
-P. Kubelka and F. Munk, Zeitschrift für technische Physik 12, 1931; P. Kubelka, J. Opt. Soc. Am. 38, 1948;
-D. R. Duncan, Proc. Phys. Soc. 52, 1940; C. F. Bohren & D. R. Huffman, *Absorption and Scattering of Light by Small
-Particles*, Wiley 1983, chapter 9 (anomalous dispersion).
+P. Kubelka and F. Munk 1931; P. Kubelka, J. Opt. Soc. Am. 38, 1948; D. R. Duncan, Proc. Phys. Soc. 52, 1940;
+C. F. Bohren & D. R. Huffman, *Absorption and Scattering of Light by Small Particles*, 1983, chapter 9.
 """
 
 from __future__ import annotations
@@ -37,19 +29,15 @@ from uplift.common.errors import ColourError, OptionError
 from uplift.design.mixing.amounts import as_shares, weighted_sum
 from uplift.design.mixing.layers import TINY, Layer
 
-DARKEST = 1e-4
-"""Smallest reflectance that K and S are derived from; K diverges at 0."""
-SLACK = 1e-3
-"""Contradiction between measurements on two grounds that is accepted as rounding."""
-MIN_TRANSMITTANCE = 1e-3
-"""Smallest transmittance at which K and S can be separated."""
-REACH = 40.0
-"""Distance in nm at which the weight of absorption in h falls to 1/e."""
+DARKEST = 1e-4  # smallest reflectance that K and S are derived from; K diverges at 0
+SLACK = 1e-3  # contradiction between measurements on two grounds that is accepted as rounding
+MIN_TRANSMITTANCE = 1e-3  # smallest transmittance at which K and S can be separated
+REACH = 40.0  # distance in nm at which the weight of absorption in h falls to 1/e
+# Smallest reflectance that h is computed from; √(K/S) diverges at 0, where the colour no longer determines it.
 DARKEST_DISPERSED = 0.01
-"""Smallest reflectance that h is computed from; √(K/S) diverges at 0, where the colour no longer determines it."""
 
+# From reflectances (..., N) in (0, 1] to S (..., N), greater than 0, of which white has 1.
 Scattering = Callable[[Array], Array]
-"""From reflectances (..., N) in (0, 1] to S (..., N), greater than 0, of which white has 1."""
 
 
 @dataclass(frozen=True)
@@ -87,10 +75,9 @@ def dispersive(sensor: Sensor, further: ArrayLike = ()) -> Dispersive:
     Parameters
     ----------
     sensor : Sensor
-        Y and h are sums over its wavelengths. Y is for light of equal energy, as it belongs to the paint.
+        Y, for light of equal energy, and h are sums over its wavelengths.
     further : array_like of shape (n,), optional
-        Wavelengths in nm of samples that follow those of the sensor. They enter no sum. Beyond the range of the sensor,
-        h is that of its end.
+        Wavelengths in nm of samples that follow those of the sensor and enter no sum; beyond its range h is constant.
 
     Returns
     -------
@@ -151,11 +138,7 @@ class Pigment:
         return Layer(self.scattering * sinh / delta, np.exp(-path / 2) / delta)
 
     def amy_opaque_reflectance(self) -> Array:
-        """Return the reflectance (..., N) of opaque paint in Amy's approximation (eq. 10.4), at most 1/2.
-
-        It is for strong absorption, (K + S)² ≫ S²; for white it is half of the exact one (L. Amy, Revue d'Optique
-        16(3), 1937). It serves as a comparison.
-        """
+        """Return the reflectance (..., N) of opaque paint in Amy's approximation for strong absorption (eq. 10.4)."""
         K, S = self.absorption, self.scattering
         return np.asarray(S / np.maximum(2 * (K + S), TINY))
 

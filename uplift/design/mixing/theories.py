@@ -17,43 +17,21 @@ from uplift.design.mixing.layers import Surface
 from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, Pigment, Scattering, dispersive, from_opaque
 from uplift.lookup import Cube
 
-Mix = Callable[[Array, Array], Array]
-"""From components (..., n, K) and parts (..., n) to the mixture (..., K)."""
+Mix = Callable[[Array, Array], Array]  # from components (..., n, K) and parts (..., n) to the mixture (..., K)
 OIL = Surface.of_index(1.5)
 
 
 @dataclass(frozen=True, eq=False)
 class Mixer:
-    """A mixing model.
+    """A mixing model."""
 
-    Parameters
-    ----------
-    name : str
-        Name for programs.
-    title : str
-        Name for readers.
-    mix : callable
-        From linear RGB (n, 3) and parts (..., n) to linear RGB (..., 3), which may leave the gamut.
-    """
-
-    name: str
-    title: str
-    mix: Mix
+    name: str  # for programs
+    title: str  # for readers
+    mix: Mix  # from linear RGB (n, 3) and parts (..., n) to linear RGB (..., 3), which may leave the gamut
 
 
 def mixers(cube: Cube) -> tuple[Mixer, ...]:
-    """Return all mixing models.
-
-    Parameters
-    ----------
-    cube : Cube
-        Uplifts the colours for the spectral models.
-
-    Returns
-    -------
-    tuple of Mixer
-        Spectral models and RGB heuristics.
-    """
+    """Return the spectral models, for colours uplifted by a cube, and the RGB heuristics."""
     sensor = cube.data.sensor
 
     def uplifted(mix: Mix) -> Mix:

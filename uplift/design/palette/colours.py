@@ -11,20 +11,16 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
-MID_GREY = 0.18
-"""Luminance to which single colours are exposed, so that dark colours have the weight of bright ones."""
-C2 = 1.438776877e7
-"""Second radiation constant in nm K (CODATA 2018)."""
-MIN_KELVIN, MAX_KELVIN = 500.0, 1e6
-"""Below, a black body has no visible power; above, its colour no longer changes."""
-REFERENCE_NM = 560.0
-"""Wavelength of unit power before scaling, which keeps all powers near 1."""
+MID_GREY = 0.18  # luminance to which single colours are exposed, so that dark colours have the weight of bright ones
+C2 = 1.438776877e7  # second radiation constant in nm K (CODATA 2018)
+MIN_KELVIN, MAX_KELVIN = 500.0, 1e6  # below, a black body has no visible power; above, its colour no longer changes
+REFERENCE_NM = 560.0  # wavelength of unit power before scaling, which keeps all powers near 1
 
 
 def screen_matrix(sensor: Sensor) -> Array:
     """Return the matrix Q (3, N) from power to linear RGB, without adaptation: the colour of a light remains visible.
 
-    A flat power of 1 has luminance 1. The sensor's illuminant at luminance 1 is white, (1, 1, 1).
+    A flat power of 1 has luminance 1; the sensor's illuminant at luminance 1 is white.
     """
     return sensor.xyz_to_rgb @ (sensor.cmfs / sensor.cmfs[:, 1].sum()).T
 
@@ -56,11 +52,6 @@ def illuminant(sensor: Sensor, name: str) -> Array:
     -------
     ndarray, shape (N,)
         Power under which the perfect reflector has luminance 1.
-
-    Raises
-    ------
-    UnknownNameError
-        If the illuminant is unknown.
     """
     start, end = sensor.wavelengths[[0, -1]]
     step = sensor.wavelengths[1] - start

@@ -24,37 +24,20 @@ from uplift.design.palette.factor import FactorModel
 from uplift.design.palette.palette import ColourGoal, MinDifference, Palette, SpectrumSpec
 from uplift.fit.bounded_least_squares import solve_bounded
 
-VISIBLE = 0.5
-"""ΔE00 above which a goal is missed: about half of a difference that is visible side by side."""
-MAX_REMAINING = 0.8
-"""Fraction of the ΔE00 that a useful relaxation may leave."""
-MAX_RELAXATIONS = 3
-"""Relaxations that are listed for a goal."""
+VISIBLE = 0.5  # ΔE00 above which a goal is missed: about half of a difference that is visible side by side
+MAX_REMAINING = 0.8  # fraction of the ΔE00 that a useful relaxation may leave
+MAX_RELAXATIONS = 3  # relaxations that are listed for a goal
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """A palette with all spectra.
-
-    Parameters
-    ----------
-    palette : Palette
-        The palette.
-    model : FactorModel
-        The factor model whose error the design keeps small.
-    powers : ndarray, shape (L, N)
-        Powers of the lights in the palette's order.
-    reflectances : ndarray, shape (M, N)
-        Reflectances of the materials.
-    free : mapping
-        Linear RGB (3,) of each free colour.
-    """
+    """A palette with all its spectra."""
 
     palette: Palette
-    model: FactorModel
-    powers: Array
-    reflectances: Array
-    free: Mapping[str, Array]
+    model: FactorModel  # whose error the design keeps small
+    powers: Array  # (L, N), in the order of the palette's lights
+    reflectances: Array  # (M, N)
+    free: Mapping[str, Array]  # linear RGB (3,) of each free colour
 
 
 def design(palette: Palette, model: FactorModel) -> Design:
@@ -76,11 +59,6 @@ def design(palette: Palette, model: FactorModel) -> Design:
     ------
     PaletteError
         If both light and material of a goal are open.
-
-    Warns
-    -----
-    UpliftWarning
-        If the solver stops before it converges.
     """
     for goal in palette.goals:
         if palette.material(goal.material).designed and palette.light(goal.light).designed:
@@ -99,28 +77,14 @@ def design(palette: Palette, model: FactorModel) -> Design:
 
 @dataclass(frozen=True, eq=False)
 class Matrix:
-    """Linear RGB on a display, for M materials and L lights.
+    """Linear RGB of M materials under L lights on a display."""
 
-    Parameters
-    ----------
-    target : ndarray, shape (M, L, 3)
-        Targets of the goals; NaN without a goal.
-    obtained, factor : ndarray, shape (M, L, 3)
-        Colours by full spectra, and by the factor model.
-    delta_e : ndarray, shape (M, L)
-        ΔE00 from target to the colour that the palette fits, by spectra or by the factor model; NaN without a goal.
-    model_error : ndarray, shape (M, L)
-        ΔE00 from full spectra to the factor model.
-    whites : ndarray, shape (L, 3)
-        The perfect reflector under each light.
-    """
-
-    target: Array
-    obtained: Array
-    factor: Array
-    delta_e: Array
-    model_error: Array
-    whites: Array
+    target: Array  # (M, L, 3) of the goals; NaN without a goal
+    obtained: Array  # (M, L, 3) by full spectra
+    factor: Array  # (M, L, 3) by the factor model
+    delta_e: Array  # (M, L) ΔE00 from target to the colour that the palette fits; NaN without a goal
+    model_error: Array  # (M, L) ΔE00 from full spectra to the factor model
+    whites: Array  # (L, 3) of the perfect reflector under each light
 
 
 def matrix(design: Design) -> Matrix:
@@ -134,7 +98,7 @@ def matrix(design: Design) -> Matrix:
     Returns
     -------
     Matrix
-        Colours and their ΔE00 against the white of the display.
+        Targets and colours (M, L, 3) of M materials under L lights, and their ΔE00 against the white of the display.
     """
     palette, model = design.palette, design.model
     screen = screen_matrix(palette.sensor)
@@ -157,20 +121,11 @@ def matrix(design: Design) -> Matrix:
 
 @dataclass(frozen=True, eq=False)
 class UnmetGoal:
-    """A goal that a design misses.
-
-    Parameters
-    ----------
-    goal : ColourGoal or MinDifference
-        The goal.
-    delta_e : float
-        ΔE00 from the target, or between the materials.
-    relaxations : tuple of (str, float)
-        Names of the criteria to relax, the most effective first, and the ΔE00 of the goal without them.
-    """
+    """A goal that a design misses."""
 
     goal: ColourGoal | MinDifference
-    delta_e: float
+    delta_e: float  # ΔE00 from the target, or between the materials
+    # Names of the criteria to relax, the most effective first, and the ΔE00 of the goal without them.
     relaxations: tuple[tuple[str, float], ...] = ()
 
     def __str__(self) -> str:
@@ -249,7 +204,7 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
     Parameters
     ----------
     design : Design
-        The design.
+        The design. A warning names each material outside the range of reflectances of an atlas, which is left out.
     path : path-like
         The file, in the format of `uplift.write_atlas`.
     force : bool
@@ -264,13 +219,6 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
     ------
     PaletteError
         If no material can be written.
-    OutputError
-        If the file exists or cannot be written.
-
-    Warns
-    -----
-    UpliftWarning
-        For each material outside the range of reflectances of an atlas, which is left out.
     """
     entries = []
     for material, values in zip(design.palette.materials, design.reflectances, strict=True):

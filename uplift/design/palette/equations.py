@@ -1,8 +1,7 @@
 """Stacked equations of a palette, M x ≈ y, where x holds free colours and spectra.
 
 Colours are weighted by 1/√3 and smoothness by 1/(√rows ‖(−1, 2, −1)‖), so that weights of 1 are comparable.
-Differences are scaled as for samples 10 nm apart. None extends beyond the ends, where the matrix of the paper has a
-zero: flat spectra have no smoothness error here.
+Differences are scaled as for samples 10 nm apart, and none extends beyond the ends, unlike in the paper.
 
 S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, sections 3.2–3.3, eq. 18–24.
 """
@@ -20,11 +19,9 @@ from uplift.design.palette.factor import FactorModel
 from uplift.design.palette.palette import Palette
 from uplift.fit.bounded_least_squares import BoundedProblem
 
-SPACING = 10.0
-"""Sample distance in nm that the weights of the paper refer to."""
+SPACING = 10.0  # sample distance in nm that the weights of the paper refer to
 
-Unknowns = dict[tuple[str, str], slice]
-"""Positions in x by kind ("free", "light" or "material") and name."""
+Unknowns = dict[tuple[str, str], slice]  # positions in x by kind ("free", "light" or "material") and name
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,12 +20,10 @@ from uplift.common.errors import OptionError
 from uplift.design.palette.colours import illuminant, lab_per_rgb, screen_matrix
 from uplift.design.palette.sharpen import make_light_paths, sharpen
 
-COUNTS = range(3, 13)
-"""Supported numbers of coefficients; Bergner uses 5 to 7."""
-MIN_WEIGHT = 0.002
-"""Least weight of a wavelength, so that those of low sensitivity are fitted too."""
+COUNTS = range(3, 13)  # supported numbers of coefficients; Bergner uses 5 to 7
+MIN_WEIGHT = 0.002  # least weight of a wavelength, so that those of low sensitivity are fitted too
+# Linear R, G and B of the colours whose spectra stand for all materials; denser among dark colours.
 NODES = np.linspace(0.02, 0.98, 5) ** 2
-"""Linear R, G and B of the colours whose spectra stand for all materials; denser among dark colours."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,29 +33,14 @@ class FactorModel:
     Light reflected several times has the product of the `light` coefficients of the source and of the `reflectance`
     coefficients of the surfaces; `rgb` gives its colour. The light may be the last factor: it then changes at the
     cost of m products and a 3 × m matrix per pixel.
-
-    Parameters
-    ----------
-    wavelengths : ndarray, shape (N,)
-        Wavelengths in nm.
-    basis : ndarray, shape (N, m)
-        Sharpened basis.
-    transform : ndarray, shape (m, m)
-        From coefficients of the principal basis to those of the sharpened one.
-    projection : ndarray, shape (m, N)
-        From spectra to coefficients; the flat spectrum has coefficients of 1.
-    light_projection : ndarray, shape (m, N)
-        From powers to coefficients that tint reflectances as the power does, as nearly as possible.
-    matrix : ndarray, shape (3, m)
-        From coefficients to linear RGB (eq. 17).
     """
 
-    wavelengths: Array
-    basis: Array
-    transform: Array
-    projection: Array
-    light_projection: Array
-    matrix: Array
+    wavelengths: Array  # (N,) in nm
+    basis: Array  # (N, m)
+    transform: Array  # (m, m) from coefficients of the principal basis to those of the sharpened one
+    projection: Array  # (m, N) from spectra to coefficients, which are 1 for the flat spectrum
+    light_projection: Array  # (m, N) from powers to the coefficients that tint reflectances as the power does
+    matrix: Array  # (3, m) from coefficients to linear RGB (eq. 17)
 
     @property
     def count(self) -> int:
@@ -65,81 +48,26 @@ class FactorModel:
         return self.basis.shape[1]
 
     def reflectance(self, spectra: ArrayLike) -> Array:
-        """Convert reflectances to coefficients (eq. 3).
-
-        Parameters
-        ----------
-        spectra : array_like, shape (..., N)
-            Reflectances.
-
-        Returns
-        -------
-        ndarray, shape (..., m)
-            Coefficients.
-        """
+        """Convert reflectances (..., N) to coefficients (..., m) (eq. 3)."""
         return np.asarray(spectra, dtype=float) @ self.projection.T
 
     def light(self, power: ArrayLike) -> Array:
-        """Convert powers of lights to coefficients. The map is linear: lights mix as their coefficients do.
-
-        Parameters
-        ----------
-        power : array_like, shape (..., N)
-            Spectral powers.
-
-        Returns
-        -------
-        ndarray, shape (..., m)
-            Coefficients.
-        """
+        """Convert powers (..., N) to coefficients (..., m). The map is linear: lights mix as their coefficients do."""
         return np.asarray(power, dtype=float) @ self.light_projection.T
 
     def product(self, *coefficients: ArrayLike) -> Array:
-        """Multiply spectra (eq. 15).
-
-        Parameters
-        ----------
-        *coefficients : array_like, shape (..., m)
-            Coefficients of the factors.
-
-        Returns
-        -------
-        ndarray, shape (..., m)
-            Coefficients of the product.
-        """
+        """Multiply spectra by their coefficients (..., m) (eq. 15)."""
         product = np.asarray(1.0)
         for factor in coefficients:
             product = product * np.asarray(factor, dtype=float)
         return product
 
     def rgb(self, coefficients: ArrayLike) -> Array:
-        """Compute colours on a display.
-
-        Parameters
-        ----------
-        coefficients : array_like, shape (..., m)
-            Coefficients.
-
-        Returns
-        -------
-        ndarray, shape (..., 3)
-            Linear RGB, not clipped.
-        """
+        """Return the linear RGB (..., 3) of coefficients (..., m), not clipped."""
         return np.asarray(coefficients, dtype=float) @ self.matrix.T
 
     def spectra(self, coefficients: ArrayLike) -> Array:
-        """Reconstruct spectra (eq. 2).
-
-        Parameters
-        ----------
-        coefficients : array_like, shape (..., m)
-            Coefficients.
-
-        Returns
-        -------
-        ndarray, shape (..., N)
-            Spectra of the span of the basis.
-        """
+        """Reconstruct spectra (..., N) from coefficients (..., m) (eq. 2)."""
         return np.asarray(coefficients, dtype=float) @ self.basis.T
 
 
@@ -170,31 +98,10 @@ def standard_model(sensor: Sensor, count: int = 7) -> FactorModel:
 
 
 def factor_model(sensor: Sensor, reflectances: Array, lights: Array, count: int = 7) -> FactorModel:
-    """Fit a factor model to materials and lights.
+    """Fit a factor model of ``count`` coefficients to materials (E, N) and lights (L, N).
 
     Smooth lights give the better model for spiky ones too. A spike would take a basis function away from the other
     spectra, whereas `FactorModel.light` finds coefficients that tint surfaces as the spike does.
-
-    Parameters
-    ----------
-    sensor : Sensor
-        Wavelengths, observer and RGB space.
-    reflectances : ndarray, shape (E, N)
-        Materials on the wavelengths of the sensor.
-    lights : ndarray, shape (L, N)
-        Powers of the lights.
-    count : int
-        Number of coefficients, from 3 to 12.
-
-    Returns
-    -------
-    FactorModel
-        The model.
-
-    Raises
-    ------
-    OptionError
-        If ``count`` is not supported.
     """
     if count not in COUNTS:
         raise OptionError(f"count must be in [{COUNTS[0]}, {COUNTS[-1]}], got {count}")
@@ -211,7 +118,7 @@ def factor_model(sensor: Sensor, reflectances: Array, lights: Array, count: int 
 def linear_product(model: FactorModel, first: ArrayLike, *others: ArrayLike) -> Array:
     """Multiply spectra of the span of the basis, given by coefficients (..., m), without sharpening (eq. 5–7).
 
-    Every factor is an m × m matrix Λ: products are exact, projected into the span, at m³ multiplications in place of m.
+    Every factor is an m × m matrix Λ: products are exact, projected into the span.
     """
     # Products of basis functions, B⁺_i (B_j * B_k).
     basis = model.basis

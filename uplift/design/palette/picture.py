@@ -1,8 +1,7 @@
 """Pictures of materials: amounts of each in each pixel, from a file or of an opened ball.
 
-The ball has the materials as layers, above a bead of each material. The first material is a translucent skin around the
-others, so that inner layers become visible where a light turns it black. Layers of equal colour merge until a light
-separates them. No layer has an outline or a highlight, so that a light can hide it completely.
+The ball has the materials as layers, above a bead of each. The first material is a translucent skin around the others.
+Layers of equal colour merge until a light separates them: none has an outline or a highlight.
 """
 
 from __future__ import annotations
@@ -21,31 +20,21 @@ from uplift.io.texture.image import Part, Values, open_image
 
 Weights = NDArray[np.float32]
 
-MAX_PIXELS = 1 << 20
-"""Pixels that a page can light in real time."""
-MAX_LISTED = 4
-"""Unknown colours that an error lists."""
-SIZE = 512
-"""Pixels along each side."""
-SKIN = 0.93
-"""Radius of the layers below the skin, relative to the skin."""
-CORE = 1.6
-"""Thickness of the innermost layer in layers."""
-DEPTH = 0.13
-"""Optical depth of the skin at normal incidence."""
-BALL, RADIUS = (0.0, 0.2), 0.74
-"""Centre and radius of the ball in a square of ±1."""
+MAX_PIXELS = 1 << 20  # pixels that a page can light in real time
+MAX_LISTED = 4  # unknown colours that an error lists
+SIZE = 512  # pixels along each side
+SKIN = 0.93  # radius of the layers below the skin, relative to the skin
+CORE = 1.6  # thickness of the innermost layer in layers
+DEPTH = 0.13  # optical depth of the skin at normal incidence
+BALL, RADIUS = (0.0, 0.2), 0.74  # centre and radius of the ball in a square of ±1
+# Height of the row of beads, largest radius, width of the row, and largest distance between beads.
 BEADS, BEAD, SPAN, STEP = -0.79, 0.135, 1.76, 0.42
-"""Height of the row of beads, largest radius, width of the row, and largest distance between beads."""
 AMBIENT = 0.22
+# Directions of two lights (x right, y up, z to the viewer), and their strengths.
 KEY, FILL = (np.array([-0.55, 0.57, 0.61]), 0.68), (np.array([0.75, 0.05, 0.66]), 0.22)
-"""Directions of two lights (x right, y up, z to the viewer), and their strengths."""
-YAW, PITCH = np.radians([40, 27])
-"""Rotation of the removed octant x, y, z > 0 towards the viewer."""
-CORNER = 0.16
-"""Width of the darkening along inner edges of the cut, relative to the radius."""
-OFFSETS = (-0.25, 0.25)
-"""Subpixel positions, four samples per pixel."""
+YAW, PITCH = np.radians([40, 27])  # rotation of the removed octant x, y, z > 0 towards the viewer
+CORNER = 0.16  # width of the darkening along inner edges of the cut, relative to the radius
+OFFSETS = (-0.25, 0.25)  # subpixel positions, four samples per pixel
 
 
 def cutaway(count: int, size: int = SIZE) -> Weights:
@@ -107,10 +96,7 @@ class _Hits:
 
 
 def _intersect_opened(points: Array) -> tuple[NDArray[np.bool_], _Hits]:
-    """Intersect the sphere without its octant: rays that enter there reach one of three walls, or leave it.
-
-    The mask marks the rays that do not leave it.
-    """
+    """Intersect the sphere without its octant. Rays that enter there reach a wall, or leave it (mask False)."""
     axes = cut_axes()
     rotated, direction = points @ axes, axes[2]
     cut = np.asarray((rotated > 0).all(axis=1))
@@ -144,9 +130,8 @@ def _corner_darkening(hits: _Hits) -> Array:
 def read_weights(path: StrPath, names: Sequence[str], labels: Mapping[str, str] | None = None) -> Weights:
     """Read the amounts (H, W, n) of n materials in each pixel of an image.
 
-    Float channels are the weights of the materials that they are named after. In an 8-bit image each colour is the
-    label of a material, and alpha is its weight. Black that is not a label has weight 0.
-    By default the labels are the greys 1, 2, … in the order of the names.
+    Float channels are weights by name. In an 8-bit image each colour is a label of a material, by default the greys 1,
+    2, …, and alpha is its weight. Black that is not a label has weight 0.
     """
     greys = {0x10101 * (row + 1): row for row in range(min(len(names), 255))}
     codes = greys if labels is None else _parse_labels(names, labels)

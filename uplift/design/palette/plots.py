@@ -12,36 +12,15 @@ from uplift.design.palette.design import Design, Matrix
 from uplift.design.palette.palette import SpectrumSpec
 from uplift.viz.figure import BAND, GREY, INK, figure_text, new_figure, style_axes, write_figure
 
-CELL, NAMES, TOP = (1.5, 1.0), 1.35, 0.75
-"""Sizes in inches of a cell, the column of names, and the row of lights."""
-PATCH, SMALL = (0.92, 0.66), 8.0
-"""Size of a patch against that of its cell; font size of the numbers below it."""
-MIN_WIDTH = 5.2
-"""Inches that the legend takes."""
+CELL, NAMES, TOP = (1.5, 1.0), 1.35, 0.75  # sizes in inches of a cell, the column of names, and the row of lights
+PATCH, SMALL = (0.92, 0.66), 8.0  # size of a patch against that of its cell; font size of the numbers below it
+MIN_WIDTH = 5.2  # inches that the legend takes
 LEGEND = "left: target; right: obtained, above by spectra,\nbelow by factor model; ΔE00 to the target, of the model"
-MAX_NAME = 18
-"""Characters of a name that fit."""
+MAX_NAME = 18  # characters of a name that fit
 
 
 def plot_matrix(design: Design, colours: Matrix, path: StrPath, *, force: bool = False) -> None:
-    """Draw the matrix: targets on the left of each patch, obtained colours right above, modelled ones right below.
-
-    Parameters
-    ----------
-    design : Design
-        The design.
-    colours : Matrix
-        Its colours.
-    path : path-like
-        File to write, as PNG, SVG or PDF.
-    force : bool
-        Replace an existing file.
-
-    Raises
-    ------
-    OutputError
-        If the file exists or cannot be written.
-    """
+    """Draw the matrix: targets on the left of each patch, obtained colours right above, modelled ones right below."""
     rows, columns = colours.delta_e.shape
     width, height = max(NAMES + CELL[0] * columns, MIN_WIDTH), TOP + CELL[1] * rows + 0.4
     figure = new_figure(width, height, layout=None)
@@ -63,22 +42,7 @@ def plot_matrix(design: Design, colours: Matrix, path: StrPath, *, force: bool =
 
 
 def plot_spectra(design: Design, path: StrPath, *, force: bool = False) -> None:
-    """Draw powers of lights and reflectances of materials over wavelength; given spectra are dashed.
-
-    Parameters
-    ----------
-    design : Design
-        The design.
-    path : path-like
-        File to write, as PNG, SVG or PDF.
-    force : bool
-        Replace an existing file.
-
-    Raises
-    ------
-    OutputError
-        If the file exists or cannot be written.
-    """
+    """Draw powers of lights and reflectances of materials over wavelength; given spectra are dashed."""
     figure = new_figure(10.0, 3.8)
     for axes, title, label, specs, samples in zip(
         figure.subplots(1, 2),

@@ -20,12 +20,9 @@ from uplift.design.palette.design import Design, matrix
 from uplift.viz.format import pluralise
 from uplift.viz.html import render, resource
 
-MAX_MATERIALS = 255
-"""Materials that 8-bit labels distinguish, as 0 means none."""
-DISPLAY_EXPONENT = 1 / 2.2
-"""Approximate transfer function of displays."""
-MAX_STOPS = 3
-"""Range of the exposure in both directions, in powers of two."""
+MAX_MATERIALS = 255  # materials that 8-bit labels distinguish, as 0 means none
+DISPLAY_EXPONENT = 1 / 2.2  # approximate transfer function of displays
+MAX_STOPS = 3  # range of the exposure in both directions, in powers of two
 
 
 @dataclass(frozen=True, eq=False)

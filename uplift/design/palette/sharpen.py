@@ -3,8 +3,7 @@
 The papers leave the choice of the transform to an optimisation. Here it minimises the colour errors of products over
 light paths: a light and up to three reflections.
 
-S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, section 2.2. M. S. Drew, G. D.
-Finlayson, "Multispectral processing without spectra", JOSA A 20(7), 2003.
+S. Bergner, T. Möller, M. S. Drew, 2004, section 2.2; M. S. Drew, G. D. Finlayson, JOSA A 20(7), 2003.
 """
 
 from __future__ import annotations
@@ -19,16 +18,14 @@ from uplift.common.threads import single_threaded_blas
 from uplift.design.palette.colours import lab_per_rgb, screen_matrix
 
 MAX_REFLECTIONS = 3
-OUTLIER = 2.0
-"""L*a*b* error above which the loss grows linearly, so that no single light dominates."""
+OUTLIER = 2.0  # L*a*b* error above which the loss grows linearly, so that no single light dominates
 MAX_ITERATIONS = 100
 
 
 def make_light_paths(reflectances: Array, lights: Array) -> Array:
-    """Combine every light (L, N) with every reflectance (E, N), then with one and with two random others.
+    """Return the factors (MAX_REFLECTIONS + 1, n, N) of paths, from lights (L, N) and reflectances (E, N).
 
-    Returns the factors (MAX_REFLECTIONS + 1, n, N) of n paths: the light, then the reflectances, ones for paths of
-    fewer reflections. Their product is the power that reaches the eye.
+    A light comes first, then one to three reflectances, two of them random, then ones. Their product reaches the eye.
     """
     rng = np.random.default_rng(0)
     white = np.ones_like(reflectances)
@@ -46,8 +43,7 @@ def sharpen(sensor: Sensor, basis: Array, projection: Array, paths: Array) -> Ar
     """Compute the transform T (m, m) of coefficients; the sharpened basis is ``basis @ inv(T)``.
 
     T minimises the L*a*b* errors of products over ``paths`` (k, n, N) among the transforms that give the flat spectrum
-    coefficients of 1, so that white leaves colours unchanged. It is invertible and keeps the span of the basis (N, m),
-    whose coefficients ``projection`` (m, N) gives.
+    coefficients of 1. It keeps the span of the basis (N, m), whose coefficients ``projection`` (m, N) gives.
     """
     from scipy.linalg import null_space, qr
     from scipy.optimize import least_squares

@@ -26,8 +26,7 @@ from uplift.design.palette.factor import COUNTS
 from uplift.design.palette.palette import ColourGoal, Fit, MinDifference, Palette, SpectrumSpec
 
 INVALID = "invalid-value"
-NAME = re.compile(r"[^\W_][\w .+-]*(?<! )")
-"""Names appear in tables, plots and atlases."""
+NAME = re.compile(r"[^\W_][\w .+-]*(?<! )")  # names appear in tables, plots and atlases
 
 
 def read_palette(path: StrPath) -> Palette:
@@ -47,8 +46,6 @@ def read_palette(path: StrPath) -> Palette:
     ------
     PaletteError
         If the file cannot be read or a value does not fit, with the line and the key.
-    AtlasError, CubeFileError, ColourError, UnknownNameError
-        If an atlas or a cube cannot be read, or lacks an entry or a colour.
     """
     file = read_toml(path, PaletteError)
     table = file.validate(_PaletteTable)
@@ -120,10 +117,9 @@ _TrueFlag = Annotated[bool, PlainValidator(_check_true)]
 
 
 class _KnownLight(SpecModel):
-    """A light whose spectrum is known up to its scale.
+    """A light whose spectrum is known up to its scale: the luminance of white, or the norm.
 
-    ``luminance`` is that of the perfect reflector. ``norm`` is the root mean square of the power over wavelengths, 1
-    for a flat power of 1: the L2 norm of Bergner et al. 2004, section 4, for any number of samples.
+    The norm is the root mean square of the power, the L2 norm of Bergner et al. 2004, section 4, for any sampling.
     """
 
     luminance: _NonNegative | None = None
