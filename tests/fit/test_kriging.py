@@ -111,7 +111,13 @@ def test_invisible_deviations_keep_the_default():
 
 
 def test_visible_change_ranks_metameric_changes_by_delta_e(sensor):
-    """A change of the coefficients, made exact in colour by the solver, against the linear prediction."""
+    """A change of the coefficients, made exact in colour by the solver, against the linear prediction.
+
+    All coefficients change alike. If changes fell off with the order, most of what remains once the colour is exact
+    would lie in the roughest parts of the spectrum, which the prediction neglects: the correlation would be 0.6, and
+    0.6 without the weights of ΔE00. So it is 0.84 to 0.90 over samples, below 0.79 without these weights, and below
+    0.70 without the part that a smooth change of the same colour undoes.
+    """
     model = Moments(9)
     problem = Problem(sensor, model, (observer.light("A"), observer.light("FL11")))
     forward = problem.forward
@@ -120,13 +126,13 @@ def test_visible_change_ranks_metameric_changes_by_delta_e(sensor):
     coloured = partial(solve, model, forward, target=sensor.rgb(measured), tolerance=1e-9, max_passes=32)
     plain = coloured(start=smooth(model, forward)(sensor.rgb(measured))).multipliers
     moments = model.to_storage(plain)
-    change = 1e-3 * np.random.default_rng(0).normal(size=moments.shape) / (1 + np.arange(9))
+    change = 1e-3 * np.random.default_rng(0).normal(size=moments.shape)
     moved = coloured(start=model.from_storage(moments + change)).multipliers
     before, after = (model.squash(each @ forward.basis.T) for each in (plain, moved))
     linear = np.linalg.norm(np.einsum("elkc,ec->elk", visible_change(problem, before), change), axis=-1)
     actual = np.stack([delta_e_spectra(light, before, after) for light in problem.lights], axis=1)
-    assert 0.4 < np.sqrt((linear**2).mean() / (actual**2).mean()) < 1.2  # it neglects the roughest parts
-    assert np.corrcoef(linear.ravel(), actual.ravel())[0, 1] > 0.6
+    assert 0.5 < np.sqrt((linear**2).mean() / (actual**2).mean()) < 0.8  # it neglects the roughest parts
+    assert np.corrcoef(linear.ravel(), actual.ravel())[0, 1] > 0.8
 
 
 def test_the_light_of_the_build_shows_no_change(sensor):

@@ -11,7 +11,7 @@ import numpy as np
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from uplift.common.arrays import Array
-from uplift.models.arctan import arctan
+from uplift.models.arithmetic import arctan
 from uplift.models.duality import Quadrature, integrate
 
 CPU_BATCH_ROWS, ACCELERATOR_BATCH_ROWS = (2048, 64), (1 << 17, 4096)
@@ -57,26 +57,21 @@ def _distribute(arrays: Any, *axes: str) -> Any:
 
 def _integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     """Compute `uplift.models.duality.integrate`, several times faster."""
-    nodes, columns = analysis.shape
+    count, (nodes, columns) = len(synthesis), analysis.shape
     if nodes > MAX_NODES + 1:
         return integrate(multipliers, synthesis, analysis)
     moments = np.zeros((len(multipliers), columns))
     with jax.enable_x64(True):
         for first in range(0, nodes, PART_NODES):
+            # Each part is as large as the first rule, which has two sets of moments: the rest has no weight.
             part = slice(first, first + PART_NODES)
-            rule = replicate(_padded(synthesis[:, part], analysis[part]))
+            points, weights = np.zeros((count, PART_NODES)), np.zeros((PART_NODES, 2 * count))
+            points[:, : nodes - first], weights[: nodes - first, :columns] = synthesis[:, part], analysis[part]
+            rule = replicate((points, weights))
             for rows, width in batches(len(multipliers)):
                 some = moments[rows]
                 some += np.asarray(_weighted(shard(multipliers[rows], width), *rule))[: len(some), :columns]
     return moments
-
-
-def _padded(synthesis: Array, analysis: Array) -> tuple[Array, Array]:
-    """Make a rule as large as the first one, which has two sets of moments, by nodes and moments of no weight."""
-    count, (nodes, columns) = len(synthesis), analysis.shape
-    weights = np.zeros((PART_NODES, 2 * count))
-    weights[:nodes, :columns] = analysis
-    return np.pad(synthesis, ((0, 0), (0, PART_NODES - nodes))), weights
 
 
 @jax.jit

@@ -14,7 +14,7 @@ from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
 from uplift.fit.seeds import EntryBlend, InitialGuess, seed
 from uplift.lattice import Lattice, weighted_sum
-from uplift.models.matmul import matmul_rows
+from uplift.models.arithmetic import matmul_rows
 
 DIMS = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128)
 """Candidates."""

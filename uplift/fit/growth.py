@@ -21,7 +21,7 @@ from uplift.common.progress import Progress, ProgressCallback
 from uplift.fit.problem import Nodes, Problem
 from uplift.fit.solver import Solution
 from uplift.lattice import NOT_FITTED, Lattice, weighted_sum
-from uplift.models.matmul import matmul_rows
+from uplift.models.arithmetic import matmul_rows
 
 MAX_PASSES = 24
 BLOCK_POINTS = 1 << 15

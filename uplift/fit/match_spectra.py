@@ -14,8 +14,8 @@ from uplift.colorimetry.delta_e import lab, lab_jacobian
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.models import Moments
+from uplift.models.arithmetic import matmul_rows
 from uplift.models.duality import cosine_basis
-from uplift.models.matmul import matmul_rows
 
 LIGHTS_WEIGHT = 0.06
 """Weight of a unit of CIE L*a*b* under a light: twice that of atlas entries, as the spectra are uncertain."""

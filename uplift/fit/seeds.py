@@ -6,7 +6,6 @@ Tódová 2020, "Constrained spectral uplifting", section 3.1.2; docs/mathematics
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from uplift.colorimetry.delta_e import delta_e_1976, rgb_to_lab
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.fit.kriging import DEFAULT
 from uplift.fit.prior import Prior
-from uplift.lattice import CORNERS, NO_ENTRY, Lattice
+from uplift.lattice import CORNERS, Lattice
 
 NEAR, FAR = 8.0, 16.0
 """ΔE*ab up to which a corner is near its entry, and from which it is far (docs/fidelity.md)."""
@@ -130,30 +129,16 @@ class InitialGuess:
         """Multipliers (k, C) of nodes (k,), which are fitted to linear RGB (k, 3)."""
         model, seeds = self.prior.model, self.seeds
         multipliers = self.prior(rgb)
-        row = self._seed_rows(points)
-        seeded = np.flatnonzero(row != NO_ENTRY)
-        row, entry = row[seeded], seeds.entry[row[seeded]]
+        _, seeded, row = np.intersect1d(points, seeds.points, assume_unique=True, return_indices=True)
+        entry = seeds.entry[row]
         own, expected = self.entries[entry], multipliers[seeded]
 
         node_lab, entry_lab = (rgb_to_lab(self.prior.sensor, each) for each in (rgb[seeded], seeds.rgb))
         weight = np.where(seeds.primary[row], 1.0, self.blend(delta_e_1976(node_lab, entry_lab[entry])))
         full, mixed = weight == 1, (weight > 0) & (weight < 1)
         multipliers[seeded[full]] = own[full]
-        # Coefficients mix as spectra do.
+        # c = w c_entry + (1 − w) c_prior: coefficients mix as spectra do.
         part = weight[mixed, None]
         blend = part * model.to_storage(own[mixed]) + (1 - part) * model.to_storage(expected[mixed])
         multipliers[seeded[mixed]] = model.from_storage(blend)
         return multipliers
-
-    def _seed_rows(self, points: Indices) -> Indices:
-        """Row of each node (k,) among the seeds, or `NO_ENTRY`."""
-        order, numbers = self._by_number
-        position = np.searchsorted(numbers, points)
-        found = np.append(numbers, NO_ENTRY)[position] == points
-        return np.where(found, np.append(order, NO_ENTRY)[position], NO_ENTRY)
-
-    @cached_property
-    def _by_number(self) -> tuple[Indices, Indices]:
-        """Seeds in the order of their node numbers, and these numbers."""
-        order = np.argsort(self.seeds.points, kind="stable")
-        return order, self.seeds.points[order]

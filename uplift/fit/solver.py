@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from uplift.common.arrays import Array
 from uplift.fit.batch import batches, replicate, shard
 from uplift.models import Model
-from uplift.models.matmul import matmul_rows
+from uplift.models.arithmetic import matmul_rows
 from uplift.models.minimum_norm import ForwardMap, anchored_step, residual
 from uplift.models.roots import MAX_MULTIPLIER
 
@@ -69,12 +69,12 @@ def take_step(
     anchored = state.displacement * state.anchor_weight[:, None]
     change = anchored_step(model, forward, y, state.residual, state.damping, anchored)
     trial = y + matmul_rows(change, forward.root.T)
-    residual = residual_of(trial)
+    left = residual_of(trial)
     # A step is accepted where it reduces the squared residual; μ follows the success of the linearisation.
-    better = ((residual**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (abs(trial).max(axis=1) <= MAX_MULTIPLIER)
+    better = ((left**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (abs(trial).max(axis=1) <= MAX_MULTIPLIER)
     accept = (better & (state.distance > tolerance))[:, None]
     after = SolverState(
-        residual=where(accept, residual, state.residual),
+        residual=where(accept, left, state.residual),
         displacement=where(accept, state.displacement + change, state.displacement),
         damping=where(better, state.damping / 4, state.damping * 4),
         anchor_weight=where(better, state.anchor_weight, 0.0),
@@ -90,7 +90,7 @@ def solve_singly(
     damping, free = np.full(1, FIRST_DAMPING), np.zeros(1)
     for row, goal in enumerate(target):
         y = start[row : row + 1]
-        residual_of = partial(_residual, model, forward, goal)
+        residual_of = partial(residual, model, forward, target=goal)
         state = init_state(forward, residual_of, y, y, damping, free)
         for _ in range(max_steps):
             if state.distance[0] <= tolerance:
@@ -139,7 +139,12 @@ def solve(
         # One step at a time while most problems converge, then several, to pass through fewer batches.
         for number in range(max_passes if count else 0):
             steps = 1 if number < SINGLE_STEPS else MORE_STEPS
-            after = _pass(model, constants, tolerance, given, steps)
+            parts = []
+            for batch, width in batches(len(rows), MAX_SMALL_BATCHES):
+                part = _Given(*(shard(array[batch], width) for array in given))
+                arrays = _advance(model, constants, tolerance, part, steps)
+                parts.append([np.asarray(array)[: batch.stop - batch.start] for array in arrays])
+            after = _After(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
             before = solution.distance[rows]
             solution.multipliers[rows], solution.residual[rows] = after.multipliers, after.residual
             solution.distance[rows] = after.distance
@@ -176,20 +181,10 @@ class _After(NamedTuple):
     steps: Any
 
 
-def _pass(model: Model, forward: ForwardMap, tolerance: float, given: _Given, steps: int) -> _After:
-    """Take up to ``steps`` steps in every problem, batch by batch."""
-    parts = []
-    for rows, width in batches(len(given.target), MAX_SMALL_BATCHES):
-        part = _Given(*(shard(array[rows], width) for array in given))
-        after = _advance(model, forward, tolerance, part, steps)
-        parts.append([np.asarray(array)[: rows.stop - rows.start] for array in after])
-    return _After(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
-
-
 @partial(jax.jit, static_argnums=0)
 def _advance(model: Model, forward: ForwardMap, tolerance: float, given: _Given, max_steps: int) -> _After:
     """Take up to ``max_steps`` steps in a batch."""
-    residual_of = partial(_residual, model, forward, given.target)
+    residual_of = partial(residual, model, forward, target=given.target)
 
     def advance(carry: Any) -> Any:
         count, taken, y, state = carry
@@ -204,7 +199,3 @@ def _advance(model: Model, forward: ForwardMap, tolerance: float, given: _Given,
     taken = jnp.zeros(len(given.multipliers), dtype=jnp.int64)
     _, taken, y, state = jax.lax.while_loop(unfinished, advance, (jnp.asarray(0), taken, given.multipliers, state))
     return _After(y, state.residual, state.distance, state.damping, state.anchor_weight, taken)
-
-
-def _residual(model: Model, forward: ForwardMap, target: Any, multipliers: Any) -> Any:
-    return residual(model, forward, multipliers, target)

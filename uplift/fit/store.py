@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 import jax
@@ -16,13 +15,13 @@ from uplift.fit.growth import Growth, blocks
 from uplift.fit.problem import Problem
 from uplift.fit.seeds import Seeds
 from uplift.lattice import NO_ENTRY, NOT_FITTED, PointTable, Status
-from uplift.models import Model
-from uplift.models.minimum_norm import ForwardMap, forward_rgb
+from uplift.models.minimum_norm import forward_rgb
 
 SINGLE: np.dtype[Any] = np.dtype(np.float32)
 DOUBLE: np.dtype[Any] = np.dtype(np.float64)
 MAX_LOSS = 0.1
 """Part of the threshold that single precision may add to the distance of a node; docs/stability.md."""
+_forward_rgb = jax.jit(forward_rgb, static_argnums=0)
 
 
 def store(growth: Growth, seeds: Seeds, standard_error: NDArray[np.float32] | None) -> PointTable:
@@ -90,8 +89,3 @@ def rgb_of(problem: Problem, multipliers: Array) -> Array:
             part = rgb[rows]
             part[:] = np.asarray(_forward_rgb(problem.model, forward, shard(multipliers[rows], width)))[: len(part)]
     return rgb
-
-
-@partial(jax.jit, static_argnums=0)
-def _forward_rgb(model: Model, forward: ForwardMap, multipliers: jax.Array) -> jax.Array:
-    return forward_rgb(model, forward, multipliers)

@@ -6,8 +6,8 @@ import numpy as np
 
 from uplift.common.arrays import Array, Indices
 from uplift.fit.solver import solve
+from uplift.lights.exponential import Exponential
 from uplift.lights.lattice import BEND, DENOMINATOR, ChromaticityLattice, chromaticity, unit_xyz
-from uplift.models.exponential import Exponential
 from uplift.models.minimum_norm import forward_map
 
 TOLERANCE = 1e-9

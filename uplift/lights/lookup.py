@@ -19,7 +19,7 @@ from uplift.lights.lattice import BEND, DENOMINATOR, Cells
 from uplift.lights.table import EmissionData, read_emission, write_emission
 from uplift.lookup.blocks import Function, blockwise
 from uplift.lookup.validation import as_float_type, as_thread_count, as_wavelengths
-from uplift.models.matmul import matmul_rows
+from uplift.models.arithmetic import matmul_rows
 
 EMISSION = Path(__file__).with_name("emission.uplift")
 """The packaged table of linear sRGB."""

@@ -12,7 +12,7 @@ from uplift.colorimetry.solid import solid, toward_grey
 from uplift.common.arrays import Array, Indices, Values
 from uplift.cube import CubeData
 from uplift.models import Model
-from uplift.models.matmul import matmul_columns, matmul_rows
+from uplift.models.arithmetic import matmul_columns, matmul_rows
 from uplift.models.minimum_norm import ForwardMap, forward_map, minimum_norm_step
 from uplift.models.roots import MAX_MULTIPLIER
 

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from uplift.models.model import Model, evaluate, reflectance
-from uplift.models.moments import Moments
-from uplift.models.phase import Phase
+from uplift.models.moments import Moments, Phase
 from uplift.models.sigmoid import Sigmoid
 
 __all__ = ["Model", "Moments", "Phase", "Sigmoid", "evaluate", "from_description", "reflectance"]

@@ -19,7 +19,7 @@ import numpy as np
 from uplift.common.arrays import Array, Complex, Mask
 from uplift.common.errors import UpliftError
 from uplift.models import complex_moments
-from uplift.models.arctan import arctan
+from uplift.models.arithmetic import arctan
 from uplift.models.roots import moments_by_roots
 
 RealOrComplex = TypeVar("RealOrComplex", bound=Array | Complex)

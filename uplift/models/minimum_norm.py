@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
-from uplift.models.matmul import matmul_columns, matmul_rows
+from uplift.models.arithmetic import matmul_columns, matmul_rows
 from uplift.models.model import Model
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Mask
+from uplift.models.arithmetic import matmul_rows
 from uplift.models.duality import PRECISE, Quadrature
-from uplift.models.matmul import matmul_rows
 
 
 class Model(Protocol):

@@ -11,6 +11,7 @@ ACM TOG 38(4). docs/mathematics.md, 2 to 4.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import Any
@@ -22,16 +23,65 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
 from uplift.common.text import format_value
 from uplift.models import duality
-from uplift.models.arctan import arctan, arctan_difference
+from uplift.models.arithmetic import arctan, arctan_difference
 from uplift.models.duality import PRECISE, Quadrature
 from uplift.models.model import Model
-from uplift.models.phase import Phase
 
 MIN_COUNT, MAX_COUNT = 3, 17
 """Numbers of coefficients: the zeroth and 2 to 16 moments."""
 MAX_SAFE_LINEAR = 30.0
 """Bound of the linear part up to which single precision keeps colours (tests/models/test_rounding.py): reflectances
 from .01 to .99."""
+
+
+def _vision(wavelengths: Array) -> Array:
+    """Antiderivative of the density that hero-wavelength renderers sample by, 1/cosh²(0.0072 (λ − 538)).
+
+    Radziszewski, Boryczko & Alda 2009, "An improved technique for full spectral rendering".
+    """
+    return np.tanh(0.0072 * (wavelengths - 538.0))
+
+
+WARPS: dict[str, Callable[[Array], Array]] = {"none": np.asarray, "vision": _vision}
+"""Increasing functions of the wavelength; ``vision`` gives more phase to wavelengths of high luminous efficiency."""
+
+
+@dataclass(frozen=True)
+class Phase:
+    """Map from [start, end] nm to [−π, 0]; wavelengths outside take the phase of the nearer end.
+
+    Parameters
+    ----------
+    start, end : float
+        Range in nm.
+    warp : {"none", "vision"}
+        Increasing function applied to the wavelength before the linear map.
+
+    Raises
+    ------
+    OptionError
+        The warp is unknown or the range is empty.
+    """
+
+    start: float = 380.0
+    end: float = 780.0
+    warp: str = "none"
+
+    def __post_init__(self) -> None:
+        if self.warp not in WARPS:
+            raise OptionError(f"unknown warp '{self.warp}'", code="unknown-warp", hint=f"use one of {', '.join(WARPS)}")
+        if not 0 < self.start < self.end < np.inf:
+            raise OptionError(
+                f"a phase needs 0 < start < end < inf, got start {self.start} and end {self.end}",
+                code="invalid-phase-range",
+            )
+
+    def __call__(self, wavelengths: ArrayLike) -> Array:
+        """Convert wavelengths (N,) in nm to phases (N,) in [−π, 0]."""
+        warp = WARPS[self.warp]
+        low, high = warp(np.array([self.start, self.end]))
+        inside = np.clip(np.asarray(wavelengths, dtype=float), self.start, self.end)
+        return np.pi * (warp(inside) - low) / (high - low) - np.pi
 
 
 @dataclass(frozen=True)

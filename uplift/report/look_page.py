@@ -21,8 +21,7 @@ from uplift.common.errors import OptionError
 from uplift.common.files import write_text
 from uplift.lookup import Bounds, Cube
 from uplift.models import Moments
-from uplift.models.moments import MAX_COUNT
-from uplift.models.phase import Phase
+from uplift.models.moments import MAX_COUNT, Phase
 from uplift.viz.html import render, resource
 
 DIGITS = 12  # digits of the numbers of the page: the RGB of its spectra is exact to far less than a code

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
 from uplift.models import Moments, Sigmoid
-from uplift.models.phase import WARPS
+from uplift.models.moments import WARPS
 
 BIN_COUNT = 1024
 """Even bins of [0, 1]: few of them contain more than one node."""

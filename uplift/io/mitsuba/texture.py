@@ -10,7 +10,7 @@ import numpy as np
 
 from uplift.io.mitsuba.texels import PADDING, Placement, Samples, Texels
 from uplift.models import Model, Moments, Sigmoid
-from uplift.models.phase import WARPS
+from uplift.models.moments import WARPS
 
 HASH_ROUNDS = 3
 ARCTAN = (

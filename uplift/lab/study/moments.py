@@ -21,7 +21,7 @@ from uplift.common.arrays import Array, Complex
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.models import duality
-from uplift.models.phase import Phase
+from uplift.models.moments import Phase
 
 
 @dataclass(frozen=True)

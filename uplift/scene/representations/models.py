@@ -12,8 +12,8 @@ from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.colorimetry.observer import END, START
 from uplift.common.arrays import Array
 from uplift.models import Moments, Sigmoid
+from uplift.models.arithmetic import matmul_rows
 from uplift.models.duality import cosine_basis
-from uplift.models.matmul import matmul_rows
 from uplift.models.model import Model, evaluate, reflectance
 from uplift.scene.representations.composite import spike_xyz
 from uplift.scene.representations.samples import STEP, TABLE_STRIDE, Representation, wavelengths, xyz_weights

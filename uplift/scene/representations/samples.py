@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
-from uplift.models.matmul import matmul_rows
+from uplift.models.arithmetic import matmul_rows
 from uplift.scene.quadrature import UndefinedRule, gauss_rule, interpolatory_rule
 
 STEP = 1.0

@@ -1,4 +1,4 @@
-"""The vectorised arc tangent compared with the C library, for all magnitudes, and its derivative."""
+"""The vectorised arc tangent compared with the C library, for all magnitudes; sliced matrix products."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from uplift.models.arctan import arctan, arctan_difference
+from uplift.models.arithmetic import SINGLE_THREAD_SIZE, arctan, arctan_difference, matmul_columns, matmul_rows
 
 SIZES = np.concatenate([[0], np.logspace(-300, 300, 4001), np.linspace(0.5, 2, 4001)])
 
@@ -54,3 +54,26 @@ def test_columns_are_independent():
     x, change = np.zeros((2, 3)), np.array([[1e-3, 1e-3, 9.0], [1e-3, np.nan, 1e-3]])
     found = arctan_difference(x, change)
     np.testing.assert_allclose(found, np.arctan(change), rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("count", "shape"),
+    [(0, (9, 16)), (1, (81, 3)), (10_001, (9, 81)), (5_000, (17, 400)), (3, (2, SINGLE_THREAD_SIZE))],
+)
+def test_slices_do_not_change_the_product(count, shape):
+    rng = np.random.default_rng(count)
+    rows, matrix = rng.normal(size=(count, shape[0])), rng.normal(size=shape)
+    for one, other in ((rows, matrix), (rows.copy("F"), matrix.copy("F"))):
+        np.testing.assert_allclose(matmul_rows(one, other), rows @ matrix, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(matmul_columns(other.T, one.T), (rows @ matrix).T, rtol=1e-12, atol=1e-12)
+
+
+def test_non_contiguous_columns():
+    matrix, columns = np.arange(6.0).reshape(2, 3), np.arange(30.0).reshape(3, 10)
+    np.testing.assert_allclose(matmul_columns(matrix, columns[:, 3:7]), (matrix @ columns)[:, 3:7])
+
+
+def test_jax_arrays_stay_jax_arrays():
+    found = matmul_rows(jnp.ones((5, 3)), jnp.ones((3, 2)))
+    assert isinstance(found, jnp.ndarray)
+    assert (found == 3).all()

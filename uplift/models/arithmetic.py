@@ -1,8 +1,11 @@
-"""The arc tangent, which dominates the cost of a fit.
+"""Arithmetic that dominates the cost of fits and lookups: the arc tangent, and products of tall and small matrices.
 
-XLA calls the scalar function of the C library. A polynomial vectorises: it is seven times faster and as accurate
-(tests/models/test_arctan.py). numpy passes through memory for every term, so there the polynomial gains nothing, but a
-series for small differences of arc tangents does.
+The arc tangent of XLA calls the scalar function of the C library. A polynomial vectorises: it is seven times faster and
+as accurate (tests/models/test_arithmetic.py). numpy passes through memory for every term, so there the polynomial gains
+nothing, but a series for small differences of arc tangents does.
+
+The BLAS of numpy distributes products of tall and small matrices over threads at several times their cost, and at a
+hundred times if other processes use the cores. Slices below its threshold stay on one thread.
 """
 
 from __future__ import annotations
@@ -13,6 +16,8 @@ import numpy as np
 
 from uplift.common.arrays import Array
 
+SINGLE_THREAD_SIZE = 1 << 17
+"""Multiplications per slice; OpenBLAS starts threads at twice as many."""
 # arctan(√u) / √u on [0, 1], interpolated at 20 Chebyshev nodes in 60 digits; to 3e-16 of the value.
 _POLYNOMIAL = (
     1.0,
@@ -44,11 +49,9 @@ NEAR = 1 / 32
 def arctan(x: Any) -> Any:
     """Arc tangent of a numpy or JAX array; differentiable in JAX."""
     xp = x.__array_namespace__()
-    return np.arctan(x) if xp is np else _arctan(xp, x)
-
-
-def _arctan(xp: Any, x: Any) -> Any:
-    """Evaluate the polynomial; if |x| > 1, by arctan x = ±π/2 + arctan(−1/x)."""
+    if xp is np:
+        return np.arctan(x)
+    # If |x| > 1, arctan x = ±π/2 + arctan(−1/x)
     large = xp.abs(x) > 1
     t = xp.where(large, -1 / xp.where(large, x, 1), x)
     u = t * t
@@ -80,3 +83,32 @@ def arctan_difference(x: Array, change: Array) -> Array:
     if far.any():
         difference[:, far] = np.arctan(x[:, far] + change[:, far]) - np.arctan(x[:, far])
     return difference
+
+
+def matmul_rows(rows: Any, matrix: Any) -> Any:
+    """Compute ``rows`` (n, K) @ ``matrix`` (K, N) of numpy or JAX arrays."""
+    if rows.__array_namespace__() is not np:
+        return rows @ matrix
+    product = np.empty((len(rows), matrix.shape[1]))
+    size = max(SINGLE_THREAD_SIZE // matrix.size, 1)
+    full = len(rows) // size * size
+    np.matmul(
+        rows[:full].reshape(-1, size, rows.shape[1]),
+        matrix,
+        out=product[:full].reshape(-1, size, matrix.shape[1]),
+    )
+    np.matmul(rows[full:], matrix, out=product[full:])
+    return product
+
+
+def matmul_columns(matrix: Any, columns: Any) -> Any:
+    """Compute ``matrix`` (M, K) @ ``columns`` (K, n) of numpy or JAX arrays."""
+    if columns.__array_namespace__() is not np:
+        return matrix @ columns
+    product = np.empty((len(matrix), columns.shape[1]))
+    size = max(SINGLE_THREAD_SIZE // matrix.size, 1)
+    full = columns.shape[1] // size * size
+    slices, targets = (array[:, :full].reshape(len(array), -1, size).swapaxes(0, 1) for array in (columns, product))
+    np.matmul(matrix, slices, out=targets)
+    np.matmul(matrix, columns[:, full:], out=product[:, full:])
+    return product
