@@ -30,7 +30,7 @@ from uplift.models.model import Model
 MIN_COUNT, MAX_COUNT = 3, 17
 """Numbers of coefficients: the zeroth and 2 to 16 moments."""
 MAX_SAFE_LINEAR = 30.0
-"""Bound of the linear part up to which single precision keeps colours (tests/models/test_rounding.py): reflectances
+"""Bound of the linear part up to which single precision keeps colours (tests/models/test_models.py): reflectances
 from .01 to .99."""
 
 

@@ -18,7 +18,7 @@ from uplift.models.duality import PRECISE, Quadrature
 from uplift.models.model import Model
 
 MAX_SAFE_LINEAR = 1.0
-"""Bound of the linear part up to which single precision keeps colours (tests/models/test_rounding.py)."""
+"""Bound of the linear part up to which single precision keeps colours (tests/models/test_models.py)."""
 LEAST = 1e-30
 """Least 1 - 4(ρ - ½)² of a reflectance ρ, for which 0 and 1 have finite multipliers."""
 
