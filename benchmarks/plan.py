@@ -27,7 +27,7 @@ from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.scene.plan import SearchGrid
-from uplift.scene.plan.colours import ColourSet
+from uplift.scene.plan.context import ColourSet
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # about optional dependencies

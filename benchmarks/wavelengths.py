@@ -17,7 +17,7 @@ from uplift.atlas import on_grid
 from uplift.colorimetry.delta_e import delta_e_1976, lab
 from uplift.common.arrays import Array
 from uplift.scene.quadrature import QuadratureRule, UndefinedRule, gauss_rule
-from uplift.scene.wavelengths import METHODS, ColourErrors, RenderSetup, choose, evaluate, grid, make_setup
+from uplift.scene.wavelengths import METHODS, ColourErrors, choose, grid, make_setup
 from uplift.scene.wavelengths.meyer import (
     POINTS,
     Allocation,
@@ -32,6 +32,7 @@ from uplift.scene.wavelengths.meyer import (
     quadrature_rules,
     xyz_space,
 )
+from uplift.scene.wavelengths.sampling import RenderSetup, evaluate
 from uplift.viz.figure import GREY, INK, STYLE, new_figure, style_axes, write_png
 
 CHANNELS = ("A", "C1", "C2")

@@ -8,7 +8,8 @@ from tests.conftest import MACBETH
 from uplift import read_atlas
 from uplift.atlas import on_grid
 from uplift.common.arrays import Array
-from uplift.scene.wavelengths import RenderSetup, grid, make_setup
+from uplift.scene.wavelengths import grid, make_setup
+from uplift.scene.wavelengths.sampling import RenderSetup
 
 
 @pytest.fixture(scope="session")

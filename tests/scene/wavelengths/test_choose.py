@@ -8,7 +8,8 @@ import pytest
 from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.scene.wavelengths import METHODS, RenderSetup, choose
+from uplift.scene.wavelengths import METHODS, choose
+from uplift.scene.wavelengths.sampling import RenderSetup
 
 
 @pytest.mark.parametrize("method", METHODS)

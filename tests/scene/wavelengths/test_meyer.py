@@ -11,7 +11,7 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.scene.quadrature import UndefinedRule
-from uplift.scene.wavelengths import RenderSetup, choose_orders, evaluate, grid, make_setup
+from uplift.scene.wavelengths import choose_orders, grid, make_setup
 from uplift.scene.wavelengths.meyer import (
     OpponentSpace,
     allocations,
@@ -24,6 +24,7 @@ from uplift.scene.wavelengths.meyer import (
     quadrature_rules,
     xyz_space,
 )
+from uplift.scene.wavelengths.sampling import RenderSetup, balanced, evaluate
 
 
 def _matrix(space: str) -> Array:
@@ -125,7 +126,7 @@ def test_meyer_takes_the_best_allocation(smooth: RenderSetup, count: int, oppone
     reached = evaluate(smooth, chosen).mean
     for allocation in allocations(quadrature_rules(opponent.space, grid(), cmfs), count):
         assert sum(map(len, allocation)) == count
-        assert evaluate(smooth, combine_rules(smooth, opponent.space, allocation).balanced()).mean >= reached
+        assert evaluate(smooth, balanced(combine_rules(smooth, opponent.space, allocation))).mean >= reached
 
 
 @pytest.mark.parametrize("count", [1, 3, 31])

@@ -9,9 +9,16 @@ from tests.helpers import raises
 from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.scene.wavelengths import RenderSetup, choose, evaluate, fit_weights, make_setup
+from uplift.scene.wavelengths import choose, fit_weights, make_setup
 from uplift.scene.wavelengths.optimise import MAX_FITTED_PAIRS, FitProblem, delta_e_factors, fit_at, optimise
-from uplift.scene.wavelengths.sampling import midpoints, prefiltered, prefiltered_uniform, uniform
+from uplift.scene.wavelengths.sampling import (
+    RenderSetup,
+    evaluate,
+    midpoints,
+    prefiltered,
+    prefiltered_uniform,
+    uniform,
+)
 
 
 def test_metric_is_delta_e_of_close_colours(spiky: RenderSetup) -> None:

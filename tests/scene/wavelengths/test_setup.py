@@ -10,7 +10,8 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import lab
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.scene.wavelengths import RenderSetup, grid, make_setup
+from uplift.scene.wavelengths import grid, make_setup
+from uplift.scene.wavelengths.sampling import RenderSetup
 
 
 def test_white_has_y_1_under_every_light(spiky: RenderSetup) -> None:

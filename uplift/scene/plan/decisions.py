@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import shlex
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
@@ -20,13 +21,13 @@ from uplift.lattice import Lattice
 from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
 from uplift.pipeline.options import AXES
-from uplift.scene.plan.colours import occupied_cells
-from uplift.scene.plan.commands import compare_command, cube_args, storage_args, wavelength_args
-from uplift.scene.plan.context import PlanContext
+from uplift.scene.plan.context import PlanContext, occupied_cells
 from uplift.scene.plan.evaluation import WORST_DELTA_E, Decision, EvaluationSet, Trial, decide
+from uplift.scene.plan.scene_file import SceneFile
 from uplift.scene.representations import Representation, all_representations
 from uplift.scene.representations.samples import STEP, wavelengths, xyz_weights
-from uplift.scene.wavelengths import RenderSetup, Sampling, choose, make_setup
+from uplift.scene.wavelengths import Sampling, choose, make_setup
+from uplift.scene.wavelengths.sampling import RenderSetup
 from uplift.viz.format import format_size
 
 BYTES_PER_COEFFICIENT = 4
@@ -39,6 +40,16 @@ FEW = 200
 DIGITS = 2
 """Decimals of a wavelength in nm, so that the measured wavelengths are those of the command line."""
 DEPTHS: dict[str, DTypeLike] = {"half": np.float16, "float": np.float32}
+
+
+def cube_args(options: Mapping[str, Any]) -> str:
+    """Options of ``uplift build`` for fields of `Options` that have an option of their own name."""
+    return " ".join(f"--{name} {value}" for name, value in options.items())
+
+
+def wavelength_args(wavelengths: Array) -> str:
+    """Option of ``uplift texture`` for wavelengths in nm."""
+    return f"--wavelengths {','.join(f'{each:g}' for each in wavelengths)}"
 
 
 def choose_coefficients(context: PlanContext, tests: EvaluationSet, limit: float) -> Decision:
@@ -131,6 +142,11 @@ class Storage:
     form: str
     depth: str
 
+    @property
+    def cli_args(self) -> str:
+        """Options of ``uplift texture``."""
+        return f"--representation {self.form} --depth {self.depth}"
+
     def bytes_per_pixel(self, cube: Cube, wavelengths: Array) -> int:
         """Size of a pixel before compression, without the RGB that textures also store."""
         count = len(wavelengths) if self.form == texture.Spectrum.name else cube.data.model.count
@@ -176,7 +192,7 @@ def choose_storage(
             size = storage.bytes_per_pixel(cube, nm)
             choice = {"as": form, "depth": depth}
             cost = f"{format_size(size)} per pixel"
-            yield Trial(f"{form}, {depth}", size, cost, storage_args(form, depth), choice, error)
+            yield Trial(f"{form}, {depth}", size, cost, storage.cli_args, choice, error)
 
     return decide("storage", "Texture pixel", "bytes per pixel", limit, trials())
 
@@ -189,7 +205,7 @@ def choose_representation(context: PlanContext, tests: EvaluationSet, limit: flo
     dense, powers = _dense_tests(context, tests)
     surfaces = cube.reflectance(dense.rgb, wavelengths())
     representations = all_representations(powers, surfaces)
-    cli_args = compare_command(context.scene, limit)
+    cli_args = _compare_command(context.scene, limit)
     measured = []
     for done, each in enumerate(representations):
         context.progress(Progress(f"representation {each.name}", done, len(representations)))
@@ -226,3 +242,10 @@ def _product_xyz(representation: Representation, power: Array, surfaces: Any, co
         return representation.xyz(representation.multiply(light, surfaces))
     except UpliftError:
         return np.full((count, 3), WORST_DELTA_E)
+
+
+def _compare_command(scene: SceneFile, limit: float) -> str:
+    """``uplift compare`` for the lights and materials of a scene."""
+    words = [word for path in scene.atlases for word in ("--atlas", str(path))]
+    words += [word for light in scene.lights for word in ("--light", light)]
+    return shlex.join(["uplift", "compare", *words, "--tolerance", f"{limit:.3g}"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from uplift.scene.plan.commands import build_command, expanded_command, texture_command
+from uplift.scene.plan.plan_file import commands
 from uplift.scene.plan.planning import FinalBuild, Plan
 from uplift.viz.format import format_error, format_size
 from uplift.viz.html import render
@@ -23,7 +23,7 @@ def page(plan: Plan, path: Path) -> str:
         summary=summary_rows(plan),
         definition=describe_error(plan),
         metamerism=describe_metamerism(plan),
-        commands=(build_command(path), expanded_command(plan, path), texture_command(plan, path)),
+        commands=commands(plan, path),
         shares=[percent(share) for share in dict.fromkeys(each.share for each in plan.previews)],
         previews=[(light, [each for each in plan.previews if each.light == light]) for light in lights],
         decisions=plan.decisions,

@@ -1,8 +1,9 @@
-"""Plans as JSON files, which ``uplift build --plan`` and other tools read."""
+"""Plans as JSON files, which ``uplift build --plan`` and other tools read, and the commands that carry them out."""
 
 from __future__ import annotations
 
 import os
+import shlex
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
@@ -18,17 +19,20 @@ from uplift.common.spec_file import SpecFile, SpecModel, read_json, resolves
 from uplift.common.text import format_value
 from uplift.common.version import VERSION
 from uplift.io.scene_colours import Images, file_digest
+from uplift.io.texture import Spectrum
 from uplift.io.texture.colours import check_encoding
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
 from uplift.pipeline.options import Options, recorded_options
-from uplift.scene.plan.commands import build_command, expanded_command, texture_command
+from uplift.scene.plan.decisions import wavelength_args
 from uplift.scene.plan.evaluation import Decision, ErrorSummary
 from uplift.scene.plan.planning import Plan
+from uplift.scene.plan.scene_file import SceneFile
 
 FORMAT: Literal["uplift plan 1"] = "uplift plan 1"
 HINT = "plan the scene again"
 MAX_FILES = 10_000
+SUFFIX = ".plan.json"
 
 
 def to_json(plan: Plan, path: Path) -> dict[str, Any]:
@@ -85,7 +89,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
             "bytes_sparse": final.sparse_size,
         },
         "decisions": [_decision_json(each) for each in plan.decisions],
-        "lines": [build_command(path), expanded_command(plan, path), texture_command(plan, path)],
+        "lines": list(commands(plan, path)),
     }
 
 
@@ -120,6 +124,46 @@ def _decision_json(decision: Decision) -> dict[str, Any]:
         "taken": decision.selected,
         "kept": decision.within_limit,
     }
+
+
+def cube_name(plan_path: StrPath) -> str:
+    """File name of the cube of a plan: that of the plan with the suffix ``.uplift``."""
+    name = Path(plan_path).name
+    return f"{name.removesuffix(SUFFIX) if name.endswith(SUFFIX) else Path(name).stem}.uplift"
+
+
+def commands(plan: Plan, path: Path) -> tuple[str, str, str]:
+    """Command lines for a plan at ``path``: its build, the same build without the plan file, and all its textures."""
+    scene, options, storage = plan.scene, plan.options, plan.storage
+    encoding = [] if scene.encoding == SceneFile.encoding else ["--encoding", scene.encoding]
+
+    build = [*_repeat("--atlas", scene.atlases), "--dim", options["dim"], "--axis", options["axis"]]
+    build += ["--coefficients", options["coefficients"], *_repeat("--light", options["lights"])]
+    for field in fields(Options):
+        if field.name in ("space", "illuminant", "observer") and options[field.name] != field.default:
+            build += [f"--{field.name}", options[field.name]]
+    if plan.final_build.is_sparse:
+        build += [*_repeat("--scene", scene.textures), *encoding]
+
+    target = f"{scene.textures[0].stem}-uplifted.exr" if len(scene.textures) == 1 else "uplifted"
+    texture = [*scene.textures, "-o", target, "--cube", cube_name(path), *storage.cli_args.split()]
+    if storage.form == Spectrum.name:
+        texture += wavelength_args(plan.sampling.wavelengths).split()
+    return (
+        _join("uplift build --plan", [path]),
+        _join("uplift build", [*build, "-o", cube_name(path)]),
+        _join("uplift texture", [*texture, *encoding]),
+    )
+
+
+def _repeat(option: str, values: Iterable[object]) -> list[object]:
+    """Words that give an option once for each value."""
+    return [word for value in values for word in (option, value)]
+
+
+def _join(command: str, words: Iterable[object]) -> str:
+    """Command line of a command and its words, quoted for a shell."""
+    return f"{command} {shlex.join(map(str, words))}"
 
 
 @dataclass(frozen=True)

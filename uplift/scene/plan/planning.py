@@ -108,11 +108,6 @@ class Plan:
     previews: tuple[Preview, ...]
 
     @property
-    def chain(self) -> tuple[Decision, ...]:
-        """Decisions that build upon one another; a representation is an alternative to the wavelengths."""
-        return tuple(each for each in self.decisions if each.key != "representation")
-
-    @property
     def within_tolerance(self) -> bool:
         """Whether the confirmed error is within the tolerance."""
         return self.confirmed.quantile <= self.scene.tolerance

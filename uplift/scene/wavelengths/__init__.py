@@ -14,20 +14,16 @@ True
 
 from __future__ import annotations
 
-from uplift.scene.wavelengths.choose import MAX_COUNT, METHODS, Choice, choose, choose_orders, fit_weights
-from uplift.scene.wavelengths.sampling import MEASURES, ColourErrors, RenderSetup, Sampling, evaluate, grid, make_setup
+from uplift.scene.wavelengths.choose import METHODS, Choice, choose, choose_orders, fit_weights
+from uplift.scene.wavelengths.sampling import ColourErrors, Sampling, grid, make_setup
 
 __all__ = [
-    "MAX_COUNT",
-    "MEASURES",
     "METHODS",
     "Choice",
     "ColourErrors",
-    "RenderSetup",
     "Sampling",
     "choose",
     "choose_orders",
-    "evaluate",
     "fit_weights",
     "grid",
     "make_setup",

@@ -16,6 +16,7 @@ from uplift.scene.wavelengths.sampling import (
     RenderSetup,
     Sampling,
     evaluate,
+    ordered,
     prefiltered_uniform,
     uniform,
 )
@@ -122,7 +123,7 @@ def fit_weights(setup: RenderSetup, wavelengths: ArrayLike) -> Choice:
     OptionError
         No wavelengths, one that lies outside the grid, or one given twice.
     """
-    sampling = fit_at(setup, wavelengths).ordered()
+    sampling = ordered(fit_at(setup, wavelengths))
     return Choice(GIVEN, sampling, evaluate(setup, sampling))
 
 
@@ -155,14 +156,14 @@ def choose_orders(setup: RenderSetup, orders: tuple[int, int, int], channels: st
     if channels not in CHANNELS:
         raise unknown_name(channels, CHANNELS, "channels")
     space = CHANNELS[channels](setup.wavelengths, setup.cmfs)
-    sampling = meyer_orders(setup, orders, space).ordered()
+    sampling = ordered(meyer_orders(setup, orders, space))
     return Choice("meyer", sampling, evaluate(setup, sampling))
 
 
 def _with_count(setup: RenderSetup, method: str, count: int) -> Choice:
     if not 1 <= count <= MAX_COUNT:
         raise OptionError(f"count must be in [1, {MAX_COUNT}], got {count}", hint="tables at 10 nm have 40")
-    sampling = METHODS[method](setup, count).ordered()
+    sampling = ordered(METHODS[method](setup, count))
     return Choice(method, sampling, evaluate(setup, sampling))
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.scene.quadrature import QuadratureRule, UndefinedRule, gauss_rule, interpolatory_rule
-from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, evaluate, interp_curves
+from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, balanced, evaluate, interp_curves
 
 CONFUSION_POINTS = np.array([[0.171, -0.003], [1.14, -0.14], [0.735, 0.265]])
 """Chromaticities xy at which the confusion lines of tritanopes, deuteranopes and protanopes meet. They belong to the
@@ -155,11 +155,7 @@ def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: ChannelSpace)
     """Quadrature of a given order, 1 to `MAX_ORDER`, for each channel of a space; whites balanced.
 
     Figure 6 of the paper compares AC1C2, the cones and XYZ in this way.
-
-    Raises
-    ------
-    OptionError
-        An order is out of range, or its quadrature is undefined because a node lies outside the spectrum.
+    Raises `OptionError` for an order out of range, or without a rule.
     """
     defined = quadrature_rules(space, setup.wavelengths, setup.cmfs)
     rules = []
@@ -176,18 +172,14 @@ def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: ChannelSpace)
                 hint="choose another order",
             )
         rules.append(rule)
-    return combine_rules(setup, space, rules).balanced()
+    return balanced(combine_rules(setup, space, rules))
 
 
 def meyer(setup: RenderSetup, count: int) -> Sampling:
     """Allocate ``count`` wavelengths to A, C1 and C2 with the least mean ΔE00 in the setup; whites balanced.
 
     The paper does not state how to allocate. The best allocation is an upper bound on the method.
-
-    Raises
-    ------
-    OptionError
-        No allocation of orders 1 to 10 has ``count`` wavelengths.
+    Raises `OptionError` if no allocation of orders 1 to 10 has ``count`` wavelengths.
     """
     nm, cmfs = setup.wavelengths, setup.cmfs
     space = opponent_space(nm, cmfs).space
@@ -199,5 +191,5 @@ def meyer(setup: RenderSetup, count: int) -> Sampling:
         raise OptionError(
             f"method 'meyer' has no rule of {count} wavelengths", code="undefined-rule", hint="give a count in [4, 30]"
         )
-    samplings = (combine_rules(setup, space, allocation).balanced() for allocation in candidates)
+    samplings = (balanced(combine_rules(setup, space, allocation)) for allocation in candidates)
     return min(samplings, key=lambda sampling: evaluate(setup, sampling).mean)

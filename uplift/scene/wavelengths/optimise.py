@@ -13,7 +13,7 @@ from uplift.colorimetry.delta_e import delta_e_2000, lab_jacobian
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.threads import single_threaded_blas
-from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, evaluate, midpoints, prefiltered
+from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, evaluate, midpoints, ordered, prefiltered
 
 STEP = 1e-3
 """Length of the finite differences, in units of L*a*b*."""
@@ -134,7 +134,7 @@ def optimise(setup: RenderSetup, count: int) -> Sampling:
     """
     problem = FitProblem(_thinned(setup))
     starts = (prefiltered(problem.setup, midpoints(count, *span)) for span in START_RANGES)
-    fits = [_with_nearby_powers(problem.setup, local_fit(problem, start).ordered()) for start in starts]
+    fits = [_with_nearby_powers(problem.setup, ordered(local_fit(problem, start))) for start in starts]
     return min(fits, key=lambda sampling: evaluate(setup, sampling).mean)
 
 

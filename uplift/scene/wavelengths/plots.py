@@ -9,8 +9,8 @@ import numpy as np
 from uplift.colorimetry.gamut import SRGB, map_to_gamut
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array, StrPath
-from uplift.scene.wavelengths import Choice, RenderSetup
-from uplift.scene.wavelengths.sampling import interp_curves
+from uplift.scene.wavelengths import Choice
+from uplift.scene.wavelengths.sampling import RenderSetup, interp_curves
 from uplift.viz.figure import GREY, INK, STYLE, new_figure, style_axes, write_figure
 
 WIDTH, PANEL_HEIGHT, MARGIN_HEIGHT = 7.2, 1.55, 0.9

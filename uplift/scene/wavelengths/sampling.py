@@ -31,18 +31,8 @@ UNIFORM_START, UNIFORM_END = 400.0, 700.0
 class RenderSetup:
     """Materials under lights; `make_setup` makes one from names.
 
-    Parameters
-    ----------
-    wavelengths : ndarray, shape (N,)
-        Wavelengths in nm, ascending and evenly spaced.
-    reflectances : ndarray, shape (M, N)
-        Reflectances of the M materials.
-    lights : tuple of str
-        Names of the K lights.
-    powers : ndarray, shape (K, N)
-        Spectral powers of the lights, scaled so that the perfect reflector has Y = 1 under each.
-    cmfs : ndarray, shape (N, 3)
-        Colour-matching functions of the observer.
+    Wavelengths (N,) in nm ascend evenly; reflectances are (M, N), the ``powers`` of the K ``lights`` (K, N), scaled so
+    that the perfect reflector has Y = 1 under each, and the colour-matching functions ``cmfs`` (N, 3).
     """
 
     wavelengths: Array
@@ -72,48 +62,15 @@ class RenderSetup:
         return CubicSpline(self.wavelengths, self.reflectances, axis=1)
 
     def to_lab(self, xyz: Array) -> Array:
-        """Convert XYZ to CIE L*a*b* relative to the white of each light.
-
-        Parameters
-        ----------
-        xyz : ndarray, shape (K, M, 3)
-            Colours of M materials under the K lights.
-
-        Returns
-        -------
-        ndarray, shape (K, M, 3)
-            L*a*b*.
-        """
+        """Convert XYZ (K, M, 3) to CIE L*a*b* relative to the white of each light."""
         return np.stack([lab(colours, white) for colours, white in zip(xyz, self.whites, strict=True)])
 
     def sampled_powers(self, wavelengths: Array) -> Array:
-        """Interpolate the lights at single wavelengths, as a renderer without prefiltering does.
-
-        Parameters
-        ----------
-        wavelengths : ndarray, shape (n,)
-            Wavelengths in nm.
-
-        Returns
-        -------
-        ndarray, shape (K, n)
-            Powers of each light.
-        """
+        """Powers (K, n) of the lights at wavelengths (n,) nm, as a renderer without prefiltering reads them."""
         return interp_curves(wavelengths, self.wavelengths, self.powers)
 
     def only(self, materials: ArrayLike) -> RenderSetup:
-        """Select some of the materials, under the same lights.
-
-        Parameters
-        ----------
-        materials : array_like
-            Indices of the materials, or a mask of shape (M,).
-
-        Returns
-        -------
-        RenderSetup
-            The selection.
-        """
+        """Some of the materials, by indices or a mask (M,), under the same lights."""
         return replace(self, reflectances=self.reflectances[np.asarray(materials)])
 
 
@@ -252,31 +209,21 @@ class Sampling:
         """
         return np.asarray(reflectances @ (self.powers[:, :, None] * self.to_xyz))
 
-    def balanced(self) -> Sampling:
-        """Scale every light so that the perfect reflector has Y = 1.
 
-        Returns
-        -------
-        Sampling
-            The same wavelengths and weights with scaled powers.
-        """
-        return replace(self, powers=self.powers / (self.powers @ self.to_xyz[:, 1])[:, None])
+def balanced(sampling: Sampling) -> Sampling:
+    """Scale every light so that the perfect reflector has Y = 1."""
+    return replace(sampling, powers=sampling.powers / (sampling.powers @ sampling.to_xyz[:, 1])[:, None])
 
-    def ordered(self) -> Sampling:
-        """Sort the wavelengths and scale the weights so that equal energy has Y = 1.
 
-        Returns
-        -------
-        Sampling
-            A sampling with the same radiances and colours.
-        """
-        order, scale = np.argsort(self.wavelengths), self.to_xyz[:, 1].sum()
-        return replace(
-            self,
-            wavelengths=self.wavelengths[order],
-            to_xyz=self.to_xyz[order] / scale,
-            powers=self.powers[:, order] * scale,
-        )
+def ordered(sampling: Sampling) -> Sampling:
+    """Sort the wavelengths and scale the weights so that equal energy has Y = 1; colours stay."""
+    order, scale = np.argsort(sampling.wavelengths), sampling.to_xyz[:, 1].sum()
+    return replace(
+        sampling,
+        wavelengths=sampling.wavelengths[order],
+        to_xyz=sampling.to_xyz[order] / scale,
+        powers=sampling.powers[:, order] * scale,
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -323,20 +270,7 @@ class ColourErrors:
 
 
 def evaluate(setup: RenderSetup, sampling: Sampling) -> ColourErrors:
-    """Compare the colours of a sampling with those of the full grid.
-
-    Parameters
-    ----------
-    setup : RenderSetup
-        Materials and lights.
-    sampling : Sampling
-        Wavelengths, weights and powers for the same lights.
-
-    Returns
-    -------
-    ColourErrors
-        ΔE00 of every material under every light.
-    """
+    """Errors of a sampling for the lights of the setup, in place of the full grid."""
     xyz = sampling.xyz(setup.curves(sampling.wavelengths))
     return ColourErrors(delta_e_2000(setup.lab, setup.to_lab(xyz)))
 
@@ -350,7 +284,7 @@ def uniform(setup: RenderSetup, count: int) -> Sampling:
     """Point sample the lights and the colour-matching functions at even spacing; whites balanced."""
     nm = midpoints(count)
     weights = interp_curves(nm, setup.wavelengths, setup.cmfs.T).T
-    return Sampling(nm, weights, setup.lights, setup.sampled_powers(nm)).balanced()
+    return balanced(Sampling(nm, weights, setup.lights, setup.sampled_powers(nm)))
 
 
 def prefiltered_uniform(setup: RenderSetup, count: int) -> Sampling:
@@ -367,4 +301,4 @@ def prefiltered(setup: RenderSetup, wavelengths: Array) -> Sampling:
     powers = setup.powers @ hats.T / hats.sum(axis=1)
     lit = hats @ (setup.powers.sum(axis=0)[:, None] * setup.cmfs)
     weights = lit / np.maximum(powers.sum(axis=0), np.finfo(float).tiny)[:, None]
-    return Sampling(wavelengths, weights, setup.lights, powers).balanced()
+    return balanced(Sampling(wavelengths, weights, setup.lights, powers))

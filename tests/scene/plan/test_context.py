@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.io.texture.conftest import planes, write_exr
-from uplift.scene.plan.colours import BINS, sample_colours
+from uplift.scene.plan.context import BINS, sample_colours
 
 
 @pytest.fixture
