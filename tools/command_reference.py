@@ -17,25 +17,16 @@ PIPE = r"\|"
 
 
 def command_reference() -> str:
-    """Return the section of every group, command and subcommand, in the order of the help.
-
-    Returns
-    -------
-    str
-        Markdown.
-    """
-    return "".join(_sections())
-
-
-def _sections() -> Iterator[str]:
-    """Yield a section for each group of commands, each command and each subcommand, with its help."""
+    """Return the section of every group, command and subcommand in Markdown, in the order of the help."""
+    parts = []
     with click.Context(main, info_name="uplift", **main.context_settings) as context:
         for title, names in GROUPS.items():
-            yield f"\n## {title}\n"
+            parts.append(f"\n## {title}\n")
             for name in names:
                 command = main.get_command(context, name)
                 assert command is not None
-                yield from _command(command, name, context)
+                parts += _command(command, name, context)
+    return "".join(parts)
 
 
 def _command(command: click.Command, name: str, parent: click.Context) -> Iterator[str]:

@@ -1,9 +1,4 @@
-"""List the codes of errors and warnings in the source: writes docs/data/errors.json.
-
-Examples
---------
-    python -m tools.error_codes
-"""
+"""List the codes of errors and warnings in the source: writes docs/data/errors.json."""
 
 from __future__ import annotations
 
@@ -15,8 +10,6 @@ from typing import Any
 
 ROOT = Path(__file__).parents[1]
 TARGET = ROOT / "docs" / "data" / "errors.json"
-
-
 NAMED = {"unknown_name", "_look_up", "_samples"}
 """Functions whose third argument is the kind of a name; an unknown name has the code ``unknown-`` and the kind."""
 
@@ -35,18 +28,7 @@ def calls(tree: ast.AST) -> Iterator[tuple[str, str]]:
 
 
 def collect(root: Path = ROOT) -> list[dict[str, Any]]:
-    """Return the codes in alphabetical order, each with the packages of the library that use it.
-
-    Parameters
-    ----------
-    root : Path
-        The root of the working tree.
-
-    Returns
-    -------
-    list of dict
-        ``code``, ``kind`` ("error" or "warning") and ``packages``, dotted names.
-    """
+    """Return ``code``, ``kind`` ("error" or "warning") and ``packages`` that use it, by code."""
     found: dict[tuple[str, str], set[str]] = {}
     for path in sorted((root / "uplift").rglob("*.py")):
         package = ".".join(path.relative_to(root).parent.parts)
@@ -58,11 +40,5 @@ def collect(root: Path = ROOT) -> list[dict[str, Any]]:
     ]
 
 
-def main() -> None:
-    """Write the list."""
-    text = json.dumps({"codes": collect()}, indent=1)
-    TARGET.write_text(text + "\n", encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    TARGET.write_text(json.dumps({"codes": collect()}, indent=1) + "\n", encoding="utf-8")

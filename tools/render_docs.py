@@ -18,6 +18,7 @@ import argparse
 import csv
 import io
 import json
+import statistics
 import string
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -41,19 +42,10 @@ Row = Mapping[str, Any]
 
 
 def number(value: Any, spec: str = "") -> str:
-    """Format a value of the data.
+    """Format a value of the data by a format specification of Python or a key of `NAMED`.
 
-    Parameters
-    ----------
-    value : number, str, None, list or dict
-        None is an empty string, a bool a filled or an empty circle. The items of a list are joined by slashes.
-        ``{median, min, max}`` is written as "median (min–max)", ``{mean, std}`` as "mean ± std".
-    spec : str
-        A format specification of Python, or a key of `NAMED`. After "list " the items of a list are joined by commas.
-
-    Returns
-    -------
-    str
+    None is an empty string, a bool a filled or an empty circle. The items of a list are joined by slashes, or by commas
+    after "list ". ``{median, min, max}`` is written as "median (min–max)", ``{mean, std}`` as "mean ± std".
     """
     if value is None:
         return ""
@@ -61,10 +53,9 @@ def number(value: Any, spec: str = "") -> str:
         return str(value)
     if isinstance(value, bool):
         return "●" if value else "○"
-    if isinstance(value, list | tuple) and spec.startswith("list "):
-        return ", ".join(number(item, spec.removeprefix("list ")) for item in value)
     if isinstance(value, list | tuple):
-        return " / ".join(number(item, spec) for item in value)
+        separator = ", " if spec.startswith("list ") else " / "
+        return separator.join(number(item, spec.removeprefix("list ")) for item in value)
     if isinstance(value, Mapping):
         parts = {key: number(item, spec) for key, item in value.items()}
         return "{mean} ± {std}".format_map(parts) if "std" in parts else "{median} ({min}–{max})".format_map(parts)
@@ -110,12 +101,6 @@ def pick(rows: Iterable[Row], **conditions: Any) -> Row:
     return found[0]
 
 
-def mean(values: Iterable[float]) -> float:
-    """Return the arithmetic mean."""
-    numbers = list(values)
-    return sum(numbers) / len(numbers)
-
-
 def pages(docs: Path = DOCS) -> list[str]:
     """Return the names of the pages that have a template."""
     return sorted(path.name.removesuffix(".md.j2") for path in (docs / "templates").glob("*.md.j2"))
@@ -152,15 +137,8 @@ def render(name: str, docs: Path = DOCS, data: Mapping[str, Any] | None = None) 
         keep_trailing_newline=True,
         autoescape=False,
     )
-    environment.filters |= {"num": number, "mean": mean}
-    environment.globals |= {
-        "load": load,
-        "rows": rows,
-        "text": text,
-        "table": table,
-        "where": where,
-        "pick": pick,
-    }
+    environment.filters |= {"num": number, "mean": statistics.fmean}
+    environment.globals |= {"load": load, "rows": rows, "text": text, "table": table, "where": where, "pick": pick}
     return environment.get_template(f"{name}.md.j2").render(load(name) if data is None else data)
 
 

@@ -6,8 +6,7 @@ atlases/README.md describes the files; tests/atlas/test_shipped.py compares them
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Iterator
 from pathlib import Path
 
 import colour
@@ -24,95 +23,78 @@ BABELCOLOR = "Copyright 2004-2012 Danny Pascale (www.babelcolor.com), used by pe
 GRID = colour.SpectralShape(380, 780, 5)
 
 
-@dataclass(frozen=True)
-class AtlasFile:
-    """Name, content and copyright of an atlas file."""
-
-    file: str
-    content: str
-    entries: Callable[[], Iterable[Entry]]
-    copyright: str = COPYRIGHT
-
-    def write(self, folder: Path) -> None:
-        """Write the file."""
-        header = Header(self.content, self.copyright, LICENCE)
-        write_atlas(Atlas(tuple(self.entries())), folder / self.file, header)
-
-
-def checker(key: str, prefix: str, description: str) -> Iterable[Entry]:
-    """Patches of a colour checker; the prefix makes their names unique."""
-    for name, sd in colour.SDS_COLOURCHECKERS[key].items():
-        text = description.format(name.lower())
-        yield Entry(prefix + name, sd.wavelengths, sd.values, description=text)
-
-
-def test_colours() -> Iterable[Entry]:
-    """CIE 13.3, TCS01–TCS14."""
-    for name, sd in SDS_TCS["CIE 1995"].items():
-        text = f"CIE 13.3-1995 test colour sample {int(name[3:])}"
-        yield Entry(name, sd.wavelengths, sd.values, description=text)
-
-
-def vivid_samples() -> Iterable[Entry]:
-    """Colour Quality Scale 9.0, VS01–VS15."""
-    for name, sd in SDS_VS["NIST CQS 9.0"].items():
-        index = int(name[2:])
-        text = f"NIST Colour Quality Scale 9.0 sample {index}"
-        yield Entry(f"VS{index:02}", sd.wavelengths, sd.values, description=text)
-
-
-def evaluation_samples() -> Iterable[Entry]:
-    """CIE 224, CES01–CES99."""
-    samples = load_TCS_CIE2017(GRID)
-    for index, values in enumerate(samples.values.T, start=1):
-        text = f"CIE 224:2017 colour evaluation sample {index}"
-        yield Entry(f"CES{index:02}", samples.wavelengths, values, description=text)
-
-
-def training_patches() -> Iterable[Entry]:
-    """Training patches of RAW to ACES."""
-    patches = read_training_data_rawtoaces_v1()
-    for index, values in enumerate(patches.values.T, start=1):
-        text = f"RAW to ACES training patch {index}"
-        yield Entry(f"patch{index:03}", patches.wavelengths, values, description=text)
-
-
-ATLASES = (
-    AtlasFile(
-        "macbeth.txt",
+def atlases() -> Iterator[tuple[str, Atlas, Header]]:
+    """Yield name, entries and header of every atlas."""
+    checkers = colour.SDS_COLOURCHECKERS
+    yield atlas(
+        "macbeth",
         "24 patches of the Macbeth ColorChecker, measured by Ohta (1997)",
-        lambda: checker("ColorChecker N Ohta", "", '"{}" patch of the Macbeth ColorChecker'),
-    ),
-    AtlasFile(
-        "babelcolor.txt",
+        checkers["ColorChecker N Ohta"],
+        ("{name}", '"{lower}" patch of the Macbeth ColorChecker'),
+    )
+    yield atlas(
+        "babelcolor",
         "24 patches of the ColorChecker Classic, average of 30 charts by BabelColor (2012)",
-        lambda: checker("BabelColor Average", "BabelColor ", '"{}" patch, average of 30 ColorChecker charts'),
+        checkers["BabelColor Average"],
+        ("BabelColor {name}", '"{lower}" patch, average of 30 ColorChecker charts'),
         BABELCOLOR + COPYRIGHT,
-    ),
-    AtlasFile(
-        "pmc.txt",
+    )
+    yield atlas(
+        "pmc",
         "30 patches of the preferred memory colour chart, Luo (2024)",
-        lambda: checker("PMC", "PMC ", '"{}" patch of the preferred memory colour chart'),
-    ),
-    AtlasFile("tcs.txt", "14 test colour samples of the CIE colour rendering index (CIE 13.3-1995)", test_colours),
-    AtlasFile("vs.txt", "15 saturated samples of the NIST Colour Quality Scale 9.0, Ohno (2013)", vivid_samples),
-    AtlasFile(
-        "cie2017.txt",
+        checkers["PMC"],
+        ("PMC {name}", '"{lower}" patch of the preferred memory colour chart'),
+    )
+    yield atlas(
+        "tcs",
+        "14 test colour samples of the CIE colour rendering index (CIE 13.3-1995)",
+        SDS_TCS["CIE 1995"],
+        ("TCS{number:02}", "CIE 13.3-1995 test colour sample {number}"),
+    )
+    yield atlas(
+        "vs",
+        "15 saturated samples of the NIST Colour Quality Scale 9.0, Ohno (2013)",
+        SDS_VS["NIST CQS 9.0"],
+        ("VS{number:02}", "NIST Colour Quality Scale 9.0 sample {number}"),
+    )
+    yield atlas(
+        "cie2017",
         "99 samples of the CIE 2017 colour fidelity index (CIE 224:2017)",
-        evaluation_samples,
-    ),
-    AtlasFile(
-        "rawtoaces.txt",
+        columns(load_TCS_CIE2017(GRID)),
+        ("CES{number:02}", "CIE 224:2017 colour evaluation sample {number}"),
+    )
+    yield atlas(
+        "rawtoaces",
         "190 patches that RAW to ACES 1.0 trains camera transforms on, Dyer et al. (2017)",
-        training_patches,
-    ),
-)
+        columns(read_training_data_rawtoaces_v1()),
+        ("patch{number:03}", "RAW to ACES training patch {number}"),
+    )
+
+
+def atlas(
+    name: str,
+    content: str,
+    spectra: dict[str, colour.SpectralDistribution],
+    patterns: tuple[str, str],
+    copyright: str = COPYRIGHT,
+) -> tuple[str, Atlas, Header]:
+    """Return an atlas whose names and descriptions fill in the patterns."""
+    entries = []
+    for number, (key, spectrum) in enumerate(spectra.items(), start=1):
+        title, description = (each.format(name=key, lower=key.lower(), number=number) for each in patterns)
+        entries.append(Entry(title, spectrum.wavelengths, spectrum.values, description=description))
+    return name, Atlas(tuple(entries)), Header(content, copyright, LICENCE)
+
+
+def columns(spectra: colour.MultiSpectralDistributions) -> dict[str, colour.SpectralDistribution]:
+    """Return the columns of a table by their labels."""
+    return dict(zip(spectra.labels, spectra.to_sds(), strict=True))
 
 
 def main(folder: Path = FOLDER) -> None:
     """Write all atlases to a folder."""
-    for atlas in ATLASES:
-        atlas.write(folder)
+    for name, entries, header in atlases():
+        write_atlas(entries, folder / f"{name}.txt", header)
 
 
 if __name__ == "__main__":
