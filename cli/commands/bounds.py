@@ -8,9 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.colorimetry.lights import RELIGHT_LIGHTS
-from uplift.lookup.light_errors import LIKELY
-
 from ..options import force_option, format_option, light_option, plot_option
 from ..output.answers import format_rgb, hex_code, patch, print_fields
 from ..output.console import csv_writer, emit, make_table, print_json, print_json_stream, say, show
@@ -22,15 +19,13 @@ if TYPE_CHECKING:
 Block = tuple[Sequence["QueryResult"], Sequence["Bounds"]]
 """Answers, and their bounds under each light."""
 UNKNOWN = "–"
-LIKELY_TITLE = f"likely {LIKELY:.0%}"
-"""Heading of the error bounds: ΔE00 that this share of the materials like the atlas stay within."""
 DIVISIONS, SINGLE_DIVISIONS = 2, 3
 """Density of the directions of bounds: 162 of each of many colours, 642 of a single one."""
 
 
 @click.command("bounds", cls=ColourCommand)
 @colour_options
-@light_option("Illuminant under which the bounds are shown", " ".join(RELIGHT_LIGHTS))
+@light_option("Illuminant under which the bounds are shown", "A FL11 HP1")
 @format_option("table", "json", "csv")
 @plot_option("Plot the bounds")
 @click.option(
@@ -58,6 +53,7 @@ def command(
     The page of --html shows the bounds of one colour and a spectrum for every choice in them; it writes the TOML for
     'uplift build --look'.
     """
+    from uplift.colorimetry.lights import RELIGHT_LIGHTS
     from uplift.common.files import check_outputs
 
     check_outputs((plot_path, html), inputs=(colours["cube_path"], colours["input_path"]), force=force)
@@ -107,6 +103,7 @@ def _objects(cube: Cube, results: Sequence[QueryResult], found: Sequence[Bounds]
 
 def _object(found: Bounds, row: int) -> dict[str, Any]:
     from uplift.colorimetry.delta_e import lab
+    from uplift.lookup.light_errors import LIKELY
 
     likely = found.likely(row)
     return {
@@ -146,6 +143,8 @@ def _print_csv(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
 
 def _print_table(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
     """Print a line per colour and light; a single colour has its fields above."""
+    from uplift.lookup.light_errors import LIKELY
+
     for number, (results, found) in enumerate(blocks):
         if single:
             rgb = results[0].rgb
@@ -154,7 +153,7 @@ def _print_table(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
             emit("")
         table = make_table(
             ("hex",) * (not single) + ("light",),
-            ("L* a* b*", LIKELY_TITLE, "largest", "a*", "b*", "share"),
+            ("L* a* b*", f"likely {LIKELY:.0%}", "largest", "a*", "b*", "share"),
             box=None,
             show_header=number == 0,
         )

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import click
-import numpy as np
 
 from ..completion import complete_cube
 from ..options import format_option
@@ -49,6 +48,8 @@ def print_facts(name: str, fields: dict[str, Any], style: str) -> None:
 
 def _look(record: dict[str, Any]) -> str:
     """Format a look: wish and distance of the answer by light."""
+    import numpy as np
+
     from uplift.colorimetry.srgb import hex_codes
 
     wishes = (

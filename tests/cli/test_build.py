@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
@@ -11,34 +12,17 @@ import time
 
 import numpy as np
 import pytest
-from uplift_cli.output.hints import hint_for
 
 import uplift
 from tests.helpers import raises
-from uplift.pipeline.options import Options
+from uplift.pipeline.options import Options, check_memory
 
 from .conftest import warning_lines
 
 SMALL = ("--dim", "4", "--coefficients", "4")
-
-
-def uplift_process(*args):
-    code = "from uplift_cli.main import main; main()"
-    return [sys.executable, "-c", code, *map(str, args)]
-
-
-def test_cube_is_written_and_summarised_on_one_line(run, home):
-    result = run("build", *SMALL, "-o", "cube.uplift")
-    assert os.listdir(home) == ["cube.uplift"]
-    data = uplift.load(home / "cube.uplift").data
-    assert (data.lattice.dim, data.model.count, data.points.round) == (4, 4, None)
-    assert result.stdout.startswith("cube.uplift: 64 nodes, all within 0.0001 (worst ")
-    assert result.stdout.count("\n") == 1
-    assert result.stderr == ""
-
-
-def test_help_has_the_default_lights(run):
-    assert f"[default: {' '.join(Options.lights)}]" in " ".join(run("build", "--help").stdout.split())
+LOOK = '[[look]]\nrgb = "#4060a0"\nA = "#5060a0"\n[[look]]\nrgb = "#8a2a20"\nHP1 = "#70392a"\nname = "brick"\n'
+NIKON = "Nikon 5100 (NPL)"
+CAMERA = ("--dim", "3", "--coefficients", "5", "--space", "camera", "--observer")
 
 
 def test_unrealisable_colours_are_counted(run, home):
@@ -55,9 +39,7 @@ def test_unrealisable_colours_are_counted(run, home):
     ("args", "name"),
     [
         ((), "srgb-2.uplift"),
-        (("--space", "Display P3"), "display-p3-2.uplift"),
         (("--space", "Pal/Secam"), "pal-secam-2.uplift"),
-        (("--atlas", "a.csv"), "a-2.uplift"),
         (("--atlas", "a.csv", "--atlas", "far/b.csv"), "a+b-2.uplift"),
     ],
 )
@@ -70,76 +52,63 @@ def test_default_name_has_atlas_or_space_and_dim(run, home, args, name):
 
 
 def test_all_options_are_passed_to_the_build(run, home):
-    run("build", "--dim", "3", "--coefficients", "5", "--warp", "vision", "--axis", "linear", "--space", "Display P3",
-        "--illuminant", "D50", "--observer", "CIE 1964 10 Degree Standard Observer", "--light", "A",
-        "--light", "FL2", "--start", "neighbours",
-        "--solver", "dogleg", "--threshold", "1e-3", "--debug", "-o", "cube")  # fmt: skip
-    data = uplift.load(home / "cube").data
+    run("build", "--dim", "3", "--coefficients", "5", "--entry-coefficients", 12, "--warp", "vision",
+        "--axis", "linear", "--space", "Display P3", "--illuminant", "D50",
+        "--observer", "CIE 1964 10 Degree Standard Observer", "--light", "A", "--light", "FL2",
+        "--start", "neighbours", "--solver", "dogleg", "--threshold", "1e-3", "--debug", "-o", "cube")  # fmt: skip
+    cube = uplift.load(home / "cube")
+    data = cube.data
     assert data.model == uplift.models.Moments(5, uplift.models.Phase(warp="vision"))
     np.testing.assert_array_equal(data.lattice.nodes, [0, 0.5, 1])
     assert (data.sensor.space, data.sensor.illuminant) == ("Display P3", "D50")
     assert data.sensor.observer == "CIE 1964 10 Degree Standard Observer"
-    assert data.threshold == 1e-3
+    assert (data.threshold, cube.entry_coefficient_count) == (1e-3, 12)
     assert data.points.round is not None
-    assert data.provenance["options"]["lights"] == ["A", "FL2"]
-    assert data.provenance["options"]["start"] == "neighbours"
-    assert data.provenance["options"]["solver"] == "dogleg"
+    given = {"lights": ["A", "FL2"], "start": "neighbours", "solver": "dogleg"}
+    assert given.items() <= data.provenance["options"].items()
 
 
-def test_range_and_step(run, home):
-    run("build", "--dim", "2", "--coefficients", "4", "--range", "360:830", "--step", "10", "-o", "cube")
+def test_range_step_and_model(run, home):
+    run("build", *SMALL, "--range", "360:830", "--step", "10", "-o", "cube")
     data = uplift.load(home / "cube").data
     assert data.sensor.range == (360, 830, 10)
     assert (data.model.phase.start, data.model.phase.end) == (360, 830)
     run("check", "cube")
+    run("build", "--dim", "3", "--model", "sigmoid", "-o", "sigmoid")
+    assert uplift.load(home / "sigmoid").data.model.name == "sigmoid"
 
 
-def test_sigmoid_model(run, home):
-    run("build", "--dim", "3", "--model", "sigmoid", "-o", "cube")
-    assert uplift.load(home / "cube").data.model.name == "sigmoid"
-
-
-def test_the_same_input_gives_the_same_bytes(run, home, macbeth):
-    for name in ("a", "b"):
-        run("build", "--atlas", macbeth, *SMALL, "-o", name)
+def test_the_same_input_gives_the_same_bytes_and_warnings(run, home, macbeth):
+    build = ("build", "--atlas", macbeth, *SMALL, "-o")
+    loud, quiet = run(*build, "a"), run(*build, "b", "-q")
     assert (home / "a").read_bytes() == (home / "b").read_bytes()
+    assert "23 atlas entries" in loud.stdout
+    assert quiet.stdout == ""
+    for result in (loud, quiet):
+        warnings = warning_lines(result)
+        assert "'cyan'" in warnings[0]
+        assert "(-0.0334, 0.2488, 0.3855)" in warnings[0]
+        assert len(warnings) == result.stderr.count("\n")
 
 
-def test_entries_out_of_gamut_are_left_out_with_a_warning(run, macbeth):
-    result = run("build", "--atlas", macbeth, *SMALL, "-o", "cube")
-    warnings = warning_lines(result)
-    assert "'cyan'" in warnings[0]
-    assert "(-0.0334, 0.2488, 0.3855)" in warnings[0]
-    assert len(warnings) == result.stderr.count("\n")
-    assert "23 atlas entries" in result.stdout
-
-
-def test_quiet_prints_only_warnings(run, macbeth):
-    result = run("build", "-q", *SMALL, "-o", "plain")
-    assert (result.stdout, result.stderr) == ("", "")
-    result = run("build", "-q", "--atlas", macbeth, *SMALL, "-o", "cube")
-    assert result.stdout == ""
-    warnings = warning_lines(result)
-    assert "'cyan'" in warnings[0]
-    assert len(warnings) == result.stderr.count("\n")
-
-
-def test_verbose_prints_every_round_and_storing(run):
+def test_verbose_prints_every_round_and_storing(run, home):
     result = run("build", "-v", *SMALL, "-o", "cube")
     rounds = [line for line in result.stderr.splitlines() if line.startswith("fitting: ")]
     counts = [int(re.match(r"fitting: (\d+) of 64", line)[1]) for line in rounds]
     assert counts == sorted(counts)
     assert counts[-1] == 64
     assert "\nstoring: 64 of 64" in result.stderr
-    assert "\x1b" not in result.stderr
-    assert "\r" not in result.stderr
+    assert not {"\x1b", "\r"} & set(result.stderr)
+    data = uplift.load(home / "cube").data
+    assert (data.lattice.dim, data.model.count, data.points.round) == (4, 4, None)
+    assert result.stdout.startswith("cube: 64 nodes, all within 0.0001 (worst ")
+    assert result.stdout.count("\n") == 1
 
 
 def test_files_are_replaced_only_with_force(run, refuse, home):
     (home / "cube").write_text("mine")
     error = refuse("build", *SMALL, "-o", "cube")
     assert (error.code, error.where) == ("file-exists", "cube")
-    assert "--force" in hint_for(error)
     assert (home / "cube").read_text() == "mine"
     run("build", *SMALL, "-o", "cube", "--force")
     assert uplift.load(home / "cube").data.lattice.dim == 4
@@ -153,12 +122,8 @@ def test_files_are_replaced_only_with_force(run, refuse, home):
         (("-o", ""), "not-a-regular-file"),
         (("-o", "x" * 300), "output"),
         (("--dim", "1"), "dim-too-small"),
-        (("--dim", "0"), "dim-too-small"),
-        (("--dim", "-3"), "dim-too-small"),
-        (("--dim", "100000"), "option"),
         (("--dim", "1000000000000"), "option"),
         (("--illuminant", "D66"), "unknown-illuminant"),
-        (("--space", "sRGBB"), "unknown-rgb-space"),
         (("--space", "no/where"), "unknown-rgb-space"),
         (("--observer", "CIE 1931"), "unknown-observer"),
         (("--light", "FL99"), "unknown-illuminant"),
@@ -168,20 +133,16 @@ def test_files_are_replaced_only_with_force(run, refuse, home):
         (("--start", "seeds"), "unknown-start"),
         (("--solver", "newton"), "unknown-solver"),
         (("--range", "360"), "option"),
-        (("--range", "360:830:5"), "option"),
         (("--range", "830:360"), "option"),
-        (("--range", "360:1100"), "option"),
         (("--range", "361:830"), "range-not-in-steps"),
         (("--step", "3"), "unsupported-step"),
-        (("--coefficients", "2"), "coefficients-out-of-range"),
         (("--coefficients", "18"), "coefficients-out-of-range"),
         (("--entry-coefficients", "18"), "entry-coefficients-out-of-range"),
-        (("--threshold", "0"), "threshold-out-of-range"),
         (("--threshold", "0.2"), "threshold-out-of-range"),
-        (("--threshold", "1"), "threshold-out-of-range"),
         (("--atlas", "none.txt"), "file-not-found"),
         (("--atlas", "empty.txt"), "atlas"),
         (("--atlas", "."), "not-a-regular-file"),
+        (("--look", "empty.txt", "-o", "empty.txt", "--force"), "output-is-input"),
     ],
 )
 def test_invalid_input_is_reported_before_the_build(refuse, monkeypatch, home, args, code):
@@ -192,8 +153,6 @@ def test_invalid_input_is_reported_before_the_build(refuse, monkeypatch, home, a
 
 
 def test_suggested_dim_fits_into_memory(refuse):
-    from uplift.pipeline.options import check_memory
-
     error = refuse("build", "--dim", "100000")
     dim = int(re.search(r"\d+", error.hint)[0])
     check_memory(Options(dim=dim))
@@ -201,79 +160,57 @@ def test_suggested_dim_fits_into_memory(refuse):
         check_memory(Options(dim=dim + 1))
 
 
-def test_entries_have_the_given_number_of_coefficients(run, home):
-    for name, *options in (("a", "--entry-coefficients", 12), ("b",)):
-        run("build", "--atlas", "macbeth", "--dim", 2, "--coefficients", 4, *options, "-o", name)
-    counts = {name: uplift.load(home / name).entry_coefficient_count for name in "ab"}
-    assert counts == {"a": 12, "b": 17}
-
-
-def test_progress_bars_need_a_terminal(home):
-    args = uplift_process("build", *SMALL, "-o", "cube")
-    done = subprocess.run(args, cwd=home, capture_output=True, text=True, check=True)
-    assert "\x1b" not in done.stderr
-    assert all(re.fullmatch(r"[a-z ]+: \d+ of \d+.*", line) for line in done.stderr.splitlines())
-    assert done.stdout.startswith("cube: 64 nodes")
-
-
 @pytest.mark.skipif(os.name == "nt", reason="no SIGKILL there")
 def test_killed_builds_leave_the_old_cube(home, cubes):
     path = home / "cube.uplift"
-    path.write_bytes((cubes / "moments-8.uplift").read_bytes())
-    before = path.read_bytes()
-    args = uplift_process("build", "-v", "--dim", "48", "-o", path, "--force")
-    process = subprocess.Popen(args, cwd=home, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
-    assert process.stderr.readline().startswith("fitting: ")
-    time.sleep(0.2)
-    assert process.poll() is None
-    process.send_signal(signal.SIGKILL)
-    assert process.wait() == -signal.SIGKILL
-    process.stderr.close()
+    before = (cubes / "moments-8.uplift").read_bytes()
+    path.write_bytes(before)
+    words = ["build", "-v", "--dim", "48", "-o", str(path), "--force"]
+    command = [sys.executable, "-m", "uplift_cli", *words]
+    with subprocess.Popen(command, cwd=home, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True) as process:
+        assert process.stderr.readline().startswith("fitting: ")
+        time.sleep(0.2)
+        assert process.poll() is None
+        process.send_signal(signal.SIGKILL)
+        assert process.wait() == -signal.SIGKILL
     assert path.read_bytes() == before
-    assert uplift.load(path).data.lattice.dim == 8
-
-
-@pytest.mark.skipif(os.name == "nt", reason="no SIGKILL there")
-def test_builds_killed_while_writing_leave_the_old_cube(home, cubes):
-    path = home / "cube.uplift"
-    path.write_bytes((cubes / "moments-8.uplift").read_bytes())
-    before = path.read_bytes()
-    code = (
-        "import os, signal\n"
-        "from pathlib import Path\n"
-        "from uplift.lookup import load\n"
-        "def write_half_and_die(path, content):\n"
-        "    with path.open('wb') as file:\n"
-        "        file.write(content[:1000])\n"
-        "    os.kill(os.getpid(), signal.SIGKILL)\n"
-        "Path.write_bytes = write_half_and_die\n"
-        "load().save('cube.uplift', force=True)\n"
-    )
-    done = subprocess.run([sys.executable, "-c", code], cwd=home, capture_output=True)
-    assert done.returncode == -signal.SIGKILL
-    assert path.read_bytes() == before
-    assert len(os.listdir(home)) == 2  # the incomplete file has another name
 
 
 def test_looks_are_built_summarised_and_shown(run, home):
-    (home / "looks.toml").write_text('[[look]]\nrgb = "#8a2a20"\nHP1 = "#70392a"\nname = "brick"\n')
+    (home / "looks.toml").write_text(LOOK)
     result = run("build", *SMALL, "--prior", "smooth", "--look", "looks.toml", "-o", "looks.uplift")
-    assert ", 1 look, " in result.stdout
-    assert result.stderr == ""
+    assert ", 2 looks, " in result.stdout
+    (impossible,) = warning_lines(result)
+    assert "looks.toml:1" in impossible
+    assert "#5060a0" in impossible
     line = next(line for line in run("info", "looks.uplift").stdout.splitlines() if line.startswith("look brick"))
     assert line.split()[2:] == ["HP1", "#70392a", "(ΔE00", "0.00)"]
-    assert run("check", "looks.uplift", "--format", "json").exit_code == 0
+    run("check", "looks.uplift")
 
 
-def test_impossible_look_is_a_warning(run, home):
-    (home / "looks.toml").write_text('[[look]]\nrgb = "#4060a0"\nA = "#5060a0"\n')
-    result = run("build", *SMALL, "--prior", "smooth", "--look", "looks.toml", "-o", "looks.uplift")
-    (line,) = warning_lines(result)
-    assert "looks.toml:1" in line
-    assert "#5060a0" in line
+def test_a_camera_cube_is_built_queried_shown_and_checked(run):
+    run("build", *CAMERA, NIKON, "--quiet")
+    query = ("query", "--cube", "camera-3.uplift", 0.5, 0.5, 0.5)
+    answer = json.loads(run(*query, "--mode", "refined", "--format", "json").stdout)
+    assert answer["round_trip"]["rgb"] == pytest.approx([0.5, 0.5, 0.5], abs=1e-4)
+    assert len(answer["xyz"]) == 3
+    assert "XYZ" in run(*query).stdout
+    facts = json.loads(run("info", "camera-3.uplift", "--format", "json").stdout)
+    assert (facts["space"], facts["provenance"]["options"]["observer"]) == (NIKON, NIKON)
+    run("check", "camera-3.uplift")
 
 
-def test_looks_are_not_overwritten(run, home):
-    (home / "looks.toml").write_text('[[look]]\nrgb = "#4060a0"\nA = "#5060a0"\n')
-    result = run("build", *SMALL, "--look", "looks.toml", "-o", "looks.toml", "--force", code=2)
-    assert "looks.toml" in result.stderr
+@pytest.mark.parametrize(
+    ("text", "args", "code"),
+    [
+        ("400,1,0,0\n500,0,nan,0\n", (), "option"),
+        ("400,1,0,0\n500,0,-1,0\n", (), "option"),
+        ("500,1,0,0\n400,0,1,0\n", (), "option"),
+        ("900,1,0,0\n999,0,1,1\n", (), "option"),
+        ("400,1,0,0\n", ("-o", "bad.csv", "--force"), "output-is-input"),
+    ],
+)
+def test_bad_sensitivities_are_refused(refuse, home, text, args, code):
+    (home / "bad.csv").write_text(text)
+    assert refuse("build", *CAMERA, "bad.csv", *args).code == code
+    assert [(path.name, path.read_text()) for path in home.iterdir()] == [("bad.csv", text)]

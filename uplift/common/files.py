@@ -12,9 +12,12 @@ import stat
 import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from uplift.common.arrays import StrPath
 from uplift.common.errors import OutputError, UpliftError
+
+if TYPE_CHECKING:
+    from uplift.common.arrays import StrPath  # which imports numpy
 
 __all__ = [
     "atomic_write",
@@ -80,7 +83,8 @@ def check_outputs(
     paths: Iterable[StrPath | None], *, inputs: Iterable[StrPath | None] = (), force: bool = False
 ) -> None:
     """Check all outputs of a program before it reads and writes anything, as `check_output`; None are left out."""
-    inputs, checked = list(inputs), dict[Path, StrPath]()
+    inputs = list(inputs)
+    checked: dict[Path, StrPath] = {}
     for path in paths:
         if path is None:
             continue
