@@ -60,20 +60,16 @@ def test_headers(save, header):
         lambda text: text.replace("\n", "\r\n"),
         lambda text: text.replace("\n", "\r"),
         lambda text: text.replace("\n", "   \n"),
-        lambda text: text.replace("  :  ", "\t:\t"),
         lambda text: text.replace("  :  ", ":"),
-        lambda text: text.replace(", ", ","),
         lambda text: text.replace(", ", " ,\n  "),
         lambda text: text.replace("{0.5, ", "{\n\n0.5,\n\n").replace("}", "\n}"),
         lambda text: text.replace("---------------------------------------------------------------", "<hr/>"),
-        lambda text: text.replace("---", ""),
         lambda text: text.replace("\n", "\n\n"),
         lambda text: text.replace("0.0625", "6.25E-02"),
         lambda text: text.replace("400.0 nm", "400").replace("100.0 nm", "1e2nm"),
         lambda text: text.replace("Type  ", "TYPE  "),
         lambda text: text.replace("Measured by           :  A. Person\n", ""),
         lambda text: "\ufeff" + text,
-        lambda text: text.rstrip("\n"),
     ],
 )
 def test_equivalent_notations(save, change):
@@ -88,17 +84,10 @@ def test_equivalent_notations(save, change):
         ('"grey" and "card"', '"grey" and "card"'),
         ('""grey""', '"grey"'),
         ('"', '"'),
-        ("", ""),
-        ("ratio 1:2", "ratio 1:2"),
     ],
 )
 def test_descriptions(save, text, expected):
     assert read_atlas(save(PLAIN.replace("a grey card", text))).entries[0].description == expected
-
-
-def test_several_entries_without_blank_lines_between(save):
-    text = PLAIN.rstrip() + "\n" + PLAIN.replace("grey", "gray")
-    assert read_atlas(save(text)).names == ("grey", "gray")
 
 
 def test_latin_1_is_the_fallback_of_utf_8(save):
@@ -151,11 +140,9 @@ FAULTS = [
     (without("Type"), 1),
     (without("Maximum"), 1),
     (without("{"), 1),
-    (without("Sampling info"), 16),
     (without("ASCII"), 16),
     (lambda text: text[: text.index("Measured by")], 6),
     (lambda text: text[: text.index("25")], 17),
-    (lambda text: text.replace("}", "} 3"), 17),
     (lambda text: text.replace("}", "}\n\n\nabc"), 20),
     (lambda text: text.replace("0.25,", "\n0.25,\n oops,"), 19),
     (lambda text: text.replace("0.0625", "0.06 0.02\n"), 17),
@@ -170,9 +157,7 @@ FAULTS = [
     (lambda text: text.replace("Maximum", "Maximun"), 14),
     (lambda text: text.replace("Increment  ", "Start  "), 13),
     (lambda text: text.replace("0.25", "nan"), 1),
-    (lambda text: text.replace("0.25", "25"), 1),
     (lambda text: text.replace("100.0 nm", "0 nm"), 1),
-    (lambda text: text.replace("400.0 nm", "-400 nm"), 1),
     (lambda text: text.replace("400.0 nm", "401 nm"), 1),
     (lambda text: text.replace(", 0.25, 0.125, 0.0625", ""), 1),
 ]

@@ -25,11 +25,6 @@ def test_mapping_of_colour_science(tmp_path):
     assert read_atlas(tmp_path / "out.txt").sources[0].digest == spectra.sources[0].digest
 
 
-def test_single_distribution_of_colour_science():
-    orange = colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"]["orange"]
-    assert from_distributions(orange).names == ("orange",)
-
-
 def test_several_distributions_of_colour_science():
     several = colour.MultiSpectralDistributions(
         np.array([[0.1, 0.8], [0.2, 0.3], [0.9, 0.05]]), NM, labels=["red", "blue"]

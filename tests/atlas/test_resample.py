@@ -51,12 +51,6 @@ def test_one_warning_for_all_clipped_entries():
     with warns("entry-clipped") as caught:
         found = on_grid(spectra(*rows), GRID)
     assert str(caught[0]) == ("3 entries clipped to [0, 1]: 'e0', 'e2', 'e3'; 'e2' has 1.5 at 380 nm clipped to 1")
-    with warns("entry-clipped") as caught:
-        on_grid(spectra(*rows[:2]), GRID)
-    assert str(caught[0]) == "entry 'e0': 1.25 at 700 nm clipped to 1"
-    with warns("entry-clipped") as caught:
-        on_grid(spectra(*rows[:1] * 7), GRID)
-    assert "'e0', 'e1', 'e2', 'e3', 'e4' and 2 more" in str(caught[0])
     assert (found.min(), found.max()) == (0.0, 1.0)
     assert [clip.name for clip in resample(spectra(*rows), GRID).clips] == ["e0", "e2", "e3"]
 

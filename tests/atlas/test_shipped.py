@@ -5,18 +5,15 @@ from __future__ import annotations
 import runpy
 from pathlib import Path
 
-import colour
-import numpy as np
 import pytest
 
 import uplift
 from tests.atlas.atlas_texts import ATLASES
 from tests.helpers import raises, warns
-from uplift.atlas import on_grid, read_atlas, shipped_atlases
+from uplift.atlas import read_atlas, shipped_atlases
 from uplift.atlas.shipped import find_atlas_file
 from uplift.common.errors import AtlasError
 
-GRID = np.arange(380.0, 785.0, 5.0)
 SHIPPED = {
     "babelcolor.txt": (24, 380, 730, 10),
     "cie2017.txt": (99, 380, 780, 5),
@@ -53,20 +50,6 @@ def test_readme_lists_every_file():
     assert sorted(SHIPPED) == sorted(path.name for path in ATLASES.glob("*.txt"))
     for file, (count, start, end, step) in SHIPPED.items():
         assert f"| `{file}` | {count} | {start}–{end}, {step} |" in table
-
-
-def test_measured_values_are_unchanged():
-    spectra = read_atlas(ATLASES / "macbeth.txt")
-    for entry, sd in zip(spectra.entries, colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"].values(), strict=True):
-        np.testing.assert_array_equal(entry.values, sd.values)
-
-
-def test_patches_above_1_are_clipped_with_a_warning():
-    spectra = read_atlas(ATLASES / "rawtoaces.txt")
-    with warns("entry-clipped") as caught:
-        on_grid(spectra, GRID)
-    names = ("patch085", "patch089", "patch114", "patch125", "patch128")
-    assert ", ".join(f"'{name}'" for name in names) in str(caught[0])
 
 
 def test_tool_writes_the_same_bytes(tmp_path):
@@ -109,12 +92,6 @@ def test_hint_names_the_nearest_shipped_atlas(empty_folder, path):
         read_atlas(path)
     assert caught.value.where == path
     assert "'macbeth'" in caught.value.hint
-
-
-def test_hint_names_no_shipped_atlas_for_other_names(empty_folder):
-    with raises(AtlasError, "file-not-found") as caught:
-        read_atlas("paints.txt")
-    assert "shipped" not in caught.value.hint
 
 
 def test_cube_records_the_file_of_a_shipped_atlas(empty_folder):

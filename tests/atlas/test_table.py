@@ -18,11 +18,8 @@ TALL = "wavelength,red,blue\n400,0.1,0.8\n550,0.2,0.3\n700,0.9,0.05\n"
     [
         WIDE,
         TALL,
-        WIDE.replace(",", ";"),
-        TALL.replace(",", "\t"),
         WIDE.replace(",", ";").replace(".", ","),
         TALL.replace(",", ";").replace(".", ","),
-        WIDE.replace("\n", "\r\n"),
         WIDE.replace("\n", ",,\n"),
         WIDE.replace("\n", "\n\n"),
         WIDE.replace(",", " , "),

@@ -60,28 +60,26 @@ def test_a_file_is_read(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("rows", "code"),
+    "rows",
     [
-        ("", "option"),
-        ("400,1,1,1\n", "option"),
-        ("400,1,nan,1\n700,1,1,1\n", "option"),
-        ("400,1,inf,1\n700,1,1,1\n", "option"),
-        ("400,1,-1,1\n700,1,1,1\n", "option"),
-        ("400,-1,-1,-1\n700,-1,-1,-1\n", "option"),
-        ("700,1,1,1\n400,1,1,1\n", "option"),
-        ("400,1,1,1\n400,1,1,1\n", "option"),
-        ("400,1,1\n700,1,1\n", "option"),
-        ("400,1,1,1\nred,green,blue,nm\n", "option"),
-        ("900,1,1,1\n1000,1,1,1\n", "option"),
-        ("400,0,1,1\n700,0,1,2\n", "option"),
-        ("0.4,1,2,1\n0.7,2,1,2\n", "option"),
-        ("400,1,1,1\n700,1,1,1\n", "option"),
-        ("400,1,0,1\n700,0,1,1\n", "option"),
+        "",
+        "400,1,1,1\n",
+        "400,1,nan,1\n700,1,1,1\n",
+        "400,1,-1,1\n700,1,1,1\n",
+        "400,-1,-1,-1\n700,-1,-1,-1\n",
+        "700,1,1,1\n400,1,1,1\n",
+        "400,1,1\n700,1,1\n",
+        "400,1,1,1\nred,green,blue,nm\n",
+        "900,1,1,1\n1000,1,1,1\n",
+        "400,0,1,1\n700,0,1,2\n",
+        "0.4,1,2,1\n0.7,2,1,2\n",
+        "400,1,1,1\n700,1,1,1\n",
+        "400,1,0,1\n700,0,1,1\n",
     ],
 )
 @pytest.mark.parametrize("header", ["", HEADER])
-def test_bad_sensitivities(tmp_path, rows, code, header):
-    with raises(OptionError, code):
+def test_bad_sensitivities(tmp_path, rows, header):
+    with raises(OptionError, "option"):
         observer.sensor(CAMERA, observer=str(write(tmp_path, header + rows)))
 
 

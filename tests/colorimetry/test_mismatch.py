@@ -11,7 +11,7 @@ from tests.helpers import raises
 from uplift.atlas import read_atlas, resample
 from uplift.atlas.shipped import shipped_atlases
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import lab_to_xyz
+from uplift.colorimetry.delta_e import lab, lab_to_xyz
 from uplift.colorimetry.mismatch import mismatch_volumes
 from uplift.common.errors import ColourError
 
@@ -101,8 +101,6 @@ def test_colours_without_reflectance_are_refused(sensor, rgb):
 
 
 def test_lab_to_xyz_inverts_lab():
-    from uplift.colorimetry.delta_e import lab
-
     white = np.array([1.1, 1, 0.4])
     xyz = np.random.default_rng(4).uniform(size=(50, 3)) ** 6 * white
     np.testing.assert_allclose(lab_to_xyz(lab(xyz, white), white), xyz, atol=1e-14)

@@ -1,6 +1,8 @@
-"""Queries of a cube: shapes, types of input, errors, 8-bit codes."""
+"""Queries of a cube: shapes, types of input, errors, 8-bit codes, files by name."""
 
 from __future__ import annotations
+
+import os
 
 import colour
 import numpy as np
@@ -11,7 +13,7 @@ from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import Status
 from uplift.lookup import MODES
-from uplift.lookup.blocks import BLOCK
+from uplift.lookup.cube import DEFAULT, PACKAGED, find_file
 
 RED = (0.6, 0.03, 0.01)
 
@@ -31,15 +33,6 @@ def test_reflectance_keeps_the_shape_of_the_input(small_cube, mode, shape):
     assert small_cube.reflectance(rgb, mode=mode).shape == (*shape, 81)
     assert small_cube.reflectance(rgb, [500, 600], mode).shape == (*shape, 2)
     assert small_cube.coefficients(rgb).shape == (*shape, 9)
-
-
-def test_results_do_not_depend_on_blocks(small_cube, mode):
-    rgb = random_colours(BLOCK + 2)
-    together = small_cube.reflectance(rgb, [450.0, 650.0], mode)
-    for start in (0, BLOCK - 2, BLOCK):
-        for row in range(start, start + 2):
-            alone = small_cube.reflectance(rgb[row], [450.0, 650.0], mode)
-            np.testing.assert_allclose(alone, together[row], rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("kind", [list, tuple, np.float32, np.float16, np.longdouble])
@@ -175,3 +168,21 @@ def test_the_default_cube_is_srgb_without_an_atlas_and_fully_fitted():
     assert not set(data.points.status.tolist()) & {Status.UNFITTED, Status.UNREALISABLE}
     assert data.points.distance.max() <= data.threshold
     assert (data.points.entry == -1).all()
+
+
+@pytest.mark.parametrize("name", PACKAGED)
+def test_names_stand_for_files_in_any_case(name):
+    assert find_file(name) == find_file(name.upper()) == PACKAGED[name]
+    assert os.path.isfile(PACKAGED[name])
+
+
+@pytest.mark.parametrize("name", ["missing", "srgb.uplift", b"other"])
+def test_other_paths_stay_what_they_are(name):
+    assert find_file(name) is name
+
+
+def test_files_take_precedence(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "srgb").write_bytes(PACKAGED["acescg"].read_bytes())
+    assert find_file("srgb") == "srgb"
+    assert find_file("sRGB") == DEFAULT

@@ -96,12 +96,6 @@ def test_answers_are_continuous_across_the_faces_of_boxes(small_cube, data):
             np.testing.assert_allclose(lookup(inside), lookup(outside), rtol=0, atol=1e-5, err_msg=name)
 
 
-def test_answers_are_continuous_at_entries(small_cube, data):
-    near = np.clip(data.atlas.rgb + 1e-9 * np.random.default_rng(1).normal(size=data.atlas.rgb.shape), 0, 1)
-    for name, lookup in lookups(small_cube).items():
-        np.testing.assert_allclose(lookup(near), lookup(data.atlas.rgb), rtol=0, atol=1e-5, err_msg=name)
-
-
 def test_more_coefficients_are_the_moments_of_the_exact_spectra(small_cube, data):
     """By a fine trapezoid rule over the phase."""
     rgb = np.concatenate([in_boxes(data, 1), np.random.default_rng(2).random((30, 3))])
@@ -131,3 +125,9 @@ def test_outside_boxes_multipliers_have_the_refined_spectra(small_cube, data):
 def test_other_counts_are_refused(small_cube, count):
     with raises(OptionError, "option"):
         small_cube.coefficients([0.5, 0.5, 0.5], count)
+
+
+def test_answers_are_continuous_at_entries(small_cube, data):
+    near = np.clip(data.atlas.rgb + 1e-9 * np.random.default_rng(1).normal(size=data.atlas.rgb.shape), 0, 1)
+    for name, lookup in lookups(small_cube).items():
+        np.testing.assert_allclose(lookup(near), lookup(data.atlas.rgb), rtol=0, atol=1e-5, err_msg=name)

@@ -119,8 +119,4 @@ def _merge_headers(atlas: Atlas) -> Header:
     def join(statements: list[str]) -> str:
         return "; ".join(dict.fromkeys(filter(None, statements)))
 
-    return Header(
-        join([header.content for header in headers]),
-        join([header.copyright for header in headers]),
-        join([header.licence for header in headers]),
-    )
+    return Header(*(join([getattr(header, key) for header in headers]) for key in ("content", "copyright", "licence")))

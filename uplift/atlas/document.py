@@ -105,13 +105,10 @@ def _utf_16(data: bytes) -> str | None:
     """Return the name of the UTF-16 encoding of data with a byte-order mark, or whose first letters are ASCII."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return "utf-16"
-    start = data[:UTF_16_START]
-    if len(start) < UTF_16_START or len(data) % 2:
+    even, odd = data[:UTF_16_START:2], data[1:UTF_16_START:2]
+    if len(data) < UTF_16_START or len(data) % 2 or any(even) == any(odd) or not (all(even) or all(odd)):
         return None
-    even, odd = start[::2], start[1::2]
-    if not any(odd) and all(even):
-        return "utf-16-le"
-    return "utf-16-be" if not any(even) and all(odd) else None
+    return "utf-16-le" if any(even) else "utf-16-be"
 
 
 def parse_number(token: str, location: SourceLocation, label: str) -> float:

@@ -15,12 +15,9 @@ def text(atlas: Atlas, header: Header) -> str:
     """Format an archive: version 1.1, or 1.2 if an entry has an additional description."""
     version = "1.2" if any(entry.additional_description for entry in atlas) else "1.1"
     lines = [f"ART measurement archive version {version}", ""]
-    lines += [
-        f"Archive content: {_one_line(header.content) or NOT_STATED}",
-        f"Archive copyright: {_one_line(header.copyright) or NOT_STATED}",
-        f"Archive license: {_one_line(header.licence) or NOT_STATED}",
-        "",
-    ]
+    for key, value in (("content", header.content), ("copyright", header.copyright), ("license", header.licence)):
+        lines.append(f"Archive {key}: {_one_line(value) or NOT_STATED}")
+    lines.append("")
     for entry in atlas:
         lines += _entry(entry)
     return "\n".join(lines)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from uplift.atlas.atlas import Header, SkippedEntry
-from uplift.atlas.document import Document
+from uplift.atlas.document import Document, SourceLocation
 from uplift.atlas.formats.xml import check_xml, root_name
 from uplift.atlas.measurements import Measurements, Spectrum, not_used_note, parsed_by
 from uplift.common.errors import AtlasError, needs_extra
@@ -32,24 +32,16 @@ def read(document: Document) -> Measurements:
     with needs_extra("io", "CxF files", AtlasError):
         from colour_cxf import cxf3
     with parsed_by("colour-cxf", "CxF3", document.path):
-        found = _content(_parse(document, cxf3.CxF), document.path)
+        from xsdata.formats.dataclass.parsers import XmlParser
+        from xsdata.formats.dataclass.parsers.config import ParserConfig
+
+        # elements and attributes that the schema does not have are ignored
+        lenient = ParserConfig(fail_on_unknown_properties=False, fail_on_unknown_attributes=False)
+        found = _content(XmlParser(config=lenient).from_bytes(document.data, cxf3.CxF), document.path)
     if not found.spectra and not found.skipped:
-        raise AtlasError(
-            "has no object with a spectrum",
-            code="not-an-atlas",
-            path=document.path,
-            hint="export the spectra with the colours",
-        )
+        location, hint = SourceLocation(document.path), "export the spectra with the colours"
+        raise location.error("has no object with a spectrum", hint, code="not-an-atlas")
     return found
-
-
-def _parse(document: Document, kind: Any) -> Any:
-    """Parse a file; elements and attributes that the schema does not have are ignored."""
-    from xsdata.formats.dataclass.parsers import XmlParser
-    from xsdata.formats.dataclass.parsers.config import ParserConfig
-
-    lenient = ParserConfig(fail_on_unknown_properties=False, fail_on_unknown_attributes=False)
-    return XmlParser(config=lenient).from_bytes(document.data, kind)
 
 
 def _content(cxf: Any, path: str) -> Measurements:
@@ -70,7 +62,8 @@ def _content(cxf: Any, path: str) -> Measurements:
             skipped.append(SkippedEntry(name, f"it is {others[0]}, not reflectance", path))
         colours.update(kind for kind in kinds if kind.startswith("Color"))
     header = Header(" ".join((information.description or "").split()) if information else "")
-    scale = 1.0 if _is_fraction(spectra) else None
+    # the schema has values in (−0.1, 3); some programs write percent
+    scale = 1.0 if all(-0.1 < value < 3 for spectrum in spectra for value in spectrum.values) else None
     notes = ("layout: an object per spectrum", *not_used_note(sorted(colours)))
     return Measurements(tuple(spectra), tuple(skipped), scale, header, notes)
 
@@ -93,8 +86,3 @@ def _spectrum(name: str, choice: Any, ranges: dict[str, tuple[float | None, floa
     values = [float(value) for value in choice.value]
     date = str(choice.measure_date) if choice.measure_date else ""
     return Spectrum(name, [float(first + step * index) for index in range(len(values))], values, date=date)
-
-
-def _is_fraction(spectra: list[Spectrum]) -> bool:
-    """Whether all values are in the range of the schema, (−0.1, 3); some programs write percent."""
-    return all(-0.1 < value < 3 for spectrum in spectra for value in spectrum.values)

@@ -38,15 +38,16 @@ def read(document: Document) -> Measurements:
         _check_size(fields, data, location)
         library = envi.open(os.fspath(header), os.fspath(data))
         names = [" ".join(str(name).split()) for name in library.names]
-        scale = _scale(fields, location)
+        factor = fields.get("reflectance scale factor")
+        scale = None if factor is None else check_scale(float(factor), "the reflectance scale factor", location)
         centers, values = library.bands.centers, np.asarray(library.spectra, dtype=float)
     unit = str(fields.get("wavelength units", "")).strip().lower()
-    factor = TO_NANOMETRES.get(unit if unit != "<unspecified>" else "")
-    if centers is None or factor is None:
+    length = TO_NANOMETRES.get(unit if unit != "<unspecified>" else "")
+    if centers is None or length is None:
         problem = "the header has no wavelengths" if centers is None else f"unknown wavelength unit '{truncate(unit)}'"
         raise location.error(problem, HINT)
     with np.errstate(over="ignore"):  # infinite wavelengths are refused later
-        nm = factor * np.asarray(centers, dtype=float)
+        nm = length * np.asarray(centers, dtype=float)
     spectra = tuple(Spectrum(name, nm, row) for name, row in zip(names, values, strict=True))
     return Measurements(spectra, scale=scale, notes=(f"layout: {Path(data).name} with its header",))
 
@@ -74,10 +75,3 @@ def _check_size(fields: dict[str, Any], data: Path, location: SourceLocation) ->
     count = int(fields["samples"]) * int(fields["lines"])
     if count <= 0 or count > data.stat().st_size or int(fields.get("header offset", 0)) != 0:
         raise location.error(f"the header states {count:,} values, which the file {data.name} does not hold", HINT)
-
-
-def _scale(fields: dict[str, Any], location: SourceLocation) -> float | None:
-    """Return the divisor that the header states."""
-    if "reflectance scale factor" not in fields:
-        return None
-    return check_scale(float(fields["reflectance scale factor"]), "the reflectance scale factor", location)

@@ -19,21 +19,13 @@ from uplift.atlas.measurements import (
     refuse_as_lamp,
     refuse_quantity,
 )
-from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, needs_extra
 
 POINTS = re.compile(r"^##\s*NPOINTS\s*=\s*(\S+)", re.IGNORECASE | re.MULTILINE)
 MAX_POINTS = 1_000_000
-TO_NANOMETRES = {
-    "nanometers": lambda x: x,
-    "nanometres": lambda x: x,
-    "nm": lambda x: x,
-    "micrometers": lambda x: 1e3 * x,
-    "micrometres": lambda x: 1e3 * x,
-    "um": lambda x: 1e3 * x,
-    "1/cm": lambda x: 1e7 / x,
-}
-"""Conversion of the abscissa by its unit, in lower case."""
+TO_NANOMETRES = {"nanometers": 1.0, "nanometres": 1.0, "nm": 1.0, "micrometers": 1e3, "micrometres": 1e3, "um": 1e3}
+"""Factor by the unit of the abscissa, in lower case."""
+WAVE_NUMBER = "1/cm"
 
 
 def is_jcamp(document: Document) -> bool:
@@ -47,9 +39,8 @@ def read(document: Document) -> Measurements:
     location = SourceLocation(document.path)
     for count in POINTS.findall(document.text):
         if not re.fullmatch(r"\d{1,7}(\.0*)?", count) or float(count) > MAX_POINTS:
-            raise location.error(
-                f"NPOINTS must be at most {MAX_POINTS:,}, got {truncate(count)}", "export the file again"
-            )
+            problem = f"NPOINTS must be at most {MAX_POINTS:,}, got {truncate(count)}"
+            raise location.error(problem, "export the file again")
     with needs_extra("io", "JCAMP-DX files", AtlasError):
         import jcamp
     with parsed_by("jcamp", "JCAMP-DX", document.path), contextlib.redirect_stdout(io.StringIO()) as printed:
@@ -58,7 +49,7 @@ def read(document: Document) -> Measurements:
     if "failed" in printed.getvalue() or "Mismatch" in printed.getvalue():
         problem = truncate(printed.getvalue())
         raise location.error(f"the data contradict their check values: {problem}", "export the file again")
-    found = [_spectrum(block, document, len(blocks)) for block in blocks]
+    found = [_spectrum(block, document) for block in blocks]
     scales = {scale for _, scale in found}
     return Measurements(
         tuple(spectrum for spectrum, _ in found),
@@ -67,7 +58,7 @@ def read(document: Document) -> Measurements:
     )
 
 
-def _spectrum(block: dict[str, Any], document: Document, count: int) -> tuple[Spectrum, float | None]:
+def _spectrum(block: dict[str, Any], document: Document) -> tuple[Spectrum, float | None]:
     """Return the spectrum of a block, and the scale that it states."""
     name = " ".join(str(block.get("title", "")).split()) or document.stem
     location = SourceLocation(document.path, entry=name)
@@ -75,22 +66,15 @@ def _spectrum(block: dict[str, Any], document: Document, count: int) -> tuple[Sp
     if "reflect" in unit:
         refuse_as_lamp(unit, location)
     else:
-        check_quantity(unit + " " + str(block.get("data type", "")), location)
-    if "reflect" not in unit and unit not in ("", "%r", "r", "arbitrary units"):
-        refuse_quantity(f"YUNITS must be reflectance, got '{truncate(unit)}'", location)
-    values = np.asarray(block.get("y", ()), dtype=float)
-    return (
-        Spectrum(name, _nanometres(block, location), values, date=str(block.get("date", ""))),
-        PERCENT if "%" in unit or "percent" in unit else None,
-    )
-
-
-def _nanometres(block: dict[str, Any], location: SourceLocation) -> Array:
-    unit = str(block.get("xunits", "")).strip().lower()
-    if unit not in TO_NANOMETRES:
-        raise location.error(
-            f"XUNITS must be nanometers, micrometers or 1/cm, got '{truncate(unit)}'",
-            "export the file with wavelengths in nm",
-        )
+        check_quantity(f"{unit} {block.get('data type', '')}", location)
+        if unit not in ("", "%r", "r", "arbitrary units"):
+            refuse_quantity(f"YUNITS must be reflectance, got '{truncate(unit)}'", location)
+    length = str(block.get("xunits", "")).strip().lower()
+    if length not in (WAVE_NUMBER, *TO_NANOMETRES):
+        problem = f"XUNITS must be nanometers, micrometers or 1/cm, got '{truncate(length)}'"
+        raise location.error(problem, "export the file with wavelengths in nm")
+    x, y = (np.asarray(block.get(axis, ()), dtype=float) for axis in "xy")
     with np.errstate(all="ignore"):
-        return np.asarray(TO_NANOMETRES[unit](np.asarray(block.get("x", ()), dtype=float)))
+        nm = 1e7 / x if length == WAVE_NUMBER else TO_NANOMETRES[length] * x
+    spectrum = Spectrum(name, nm, y, date=str(block.get("date", "")))
+    return spectrum, PERCENT if "%" in unit or "percent" in unit else None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 from uplift.atlas.document import Document, SourceLocation
@@ -45,8 +45,7 @@ def read(document: Document) -> Measurements:
             problem = error
             continue
         if found is not None:
-            notes = (f"sheet: {name}", *found.notes)
-            return Measurements(found.spectra, found.skipped, found.scale, found.header, notes)
+            return replace(found, notes=(f"sheet: {name}", *found.notes))
     location = SourceLocation(document.path)
     raise problem or location.error(NO_TABLE, HINT, code="not-an-atlas")
 
@@ -62,14 +61,8 @@ def _rows(book: Any, name: str, path: str) -> list[Row]:
             )
         start = sheet.start[0] if sheet.start else 0
         lines = sheet.to_python(skip_empty_area=True)
-    return list(_filled(lines, start + 1))
-
-
-def _filled(lines: list[list[Any]], first: int) -> Iterator[Row]:
-    for line, values in enumerate(lines, first):
-        row = trimmed(Cell(_text(value), line) for value in values)
-        if row and not row[0].text.startswith("#"):
-            yield row
+    rows = [trimmed(Cell(_text(value), line) for value in values) for line, values in enumerate(lines, start + 1)]
+    return [row for row in rows if row and not row[0].text.startswith("#")]
 
 
 def _text(value: Any) -> str:
@@ -84,17 +77,11 @@ def _check_content(document: Document) -> None:
     if not document.data.startswith(ZIP):
         return
     location = SourceLocation(document.path)
-    total = 0
+    left = MAX_CONTENT
     with parsed_by("zipfile", "a spreadsheet", document.path), zipfile.ZipFile(io.BytesIO(document.data)) as archive:
-        for size in _sizes(archive):
-            total += size
-            if total > MAX_CONTENT:
-                raise location.error(f"its content must not exceed {MAX_CONTENT:,} bytes", HINT, code="file-unreadable")
-
-
-def _sizes(archive: zipfile.ZipFile) -> Iterator[int]:
-    """Yield the sizes of parts of all files, decompressed one at a time."""
-    for member in archive.infolist():
-        with archive.open(member) as file:
-            while chunk := file.read(CHUNK):
-                yield len(chunk)
+        for member in archive.infolist():
+            with archive.open(member) as file:
+                while left >= 0 and (chunk := file.read(CHUNK)):  # the size that an archive states may be wrong
+                    left -= len(chunk)
+    if left < 0:
+        raise location.error(f"its content must not exceed {MAX_CONTENT:,} bytes", HINT, code="file-unreadable")

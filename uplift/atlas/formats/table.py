@@ -34,8 +34,10 @@ def read(document: Document) -> Measurements:
     """
     comments = "\n".join(line for line in document.lines if line.lstrip().startswith("#"))
     rows = _rows(document)
-    if _is_single(rows):
-        return _single(rows, document)
+    if all(len(row) == 2 and all(is_number(cell.text) for cell in row) for row in rows):
+        nm, values = ([parse_float(row[column].text) for row in rows] for column in (0, 1))
+        spectrum = Spectrum(document.stem, nm, values, rows[0][0].line)
+        return Measurements((spectrum,), notes=("layout: wavelength and value", "name: that of the file"))
     return read_grid(rows, document.path, comments)
 
 
@@ -50,23 +52,11 @@ def text(atlas: Atlas) -> str:
     return csv_text(["name", *first.wavelengths.tolist()], rows, quote_text=True)
 
 
-def _is_single(rows: list[Row]) -> bool:
-    """Whether all rows are a wavelength and a value."""
-    return len(rows) > 1 and all(len(row) == 2 and all(is_number(cell.text) for cell in row) for row in rows)
-
-
-def _single(rows: list[Row], document: Document) -> Measurements:
-    nm, values = ([parse_float(row[column].text) for row in rows] for column in (0, 1))
-    spectrum = Spectrum(document.stem, nm, values, rows[0][0].line)
-    return Measurements((spectrum,), notes=("layout: wavelength and value", "name: that of the file"))
-
-
 def _rows(document: Document) -> list[Row]:
     """Split a document into rows that are neither blank nor comments."""
     location = SourceLocation(document.path)
-    delimiter = _delimiter(document)
     try:
-        rows = list(_split(document, delimiter))
+        rows = list(_split(document, _delimiter(document)))
     except csv.Error as error:
         raise location.error(f"not a readable table: {error}", LAYOUT) from None
     if len(rows) < 2:

@@ -1,4 +1,4 @@
-"""Invariants of each gamut mapping, and vectorised code against scalar code with a root finder."""
+"""Gamuts of displays: matrices, Oklab, and laws of each mapping, with a root finder as the oracle."""
 
 from __future__ import annotations
 
@@ -9,13 +9,209 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from tests.colorimetry.gamut.conftest import GAMUTS
+from tests.helpers import raises
 from uplift.colorimetry import gamut as mapping
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, cone_responses, cube_roots, map_to_gamut, oklab
+from uplift.colorimetry.gamut import (
+    BLOCK,
+    METHODS,
+    SRGB,
+    Primaries,
+    cone_responses,
+    conversion,
+    cube_roots,
+    map_to_gamut,
+    oklab,
+)
+from uplift.common.arrays import Array
+from uplift.common.errors import ColourError, OptionError
+
+P3 = Primaries((0.680, 0.320), (0.265, 0.690), (0.150, 0.060), (0.3127, 0.3290))
+ACESCG = Primaries((0.713, 0.293), (0.165, 0.830), (0.128, 0.044), (0.32168, 0.33767))
+GAMUTS = {"sRGB": SRGB, "P3": P3, "ACEScg": ACESCG}
+
+
+@pytest.fixture(params=[*GAMUTS, "a cube's"])
+def gamut(request):
+    """Gamuts of displays by primaries, and of a cube by its sensor."""
+    return GAMUTS.get(request.param) or observer.sensor("sRGB", "A")
+
+
+@pytest.fixture(scope="module")
+def outside() -> Array:
+    """(n, 3) linear RGB, all outside [0, 1]: slightly, far, too bright, too dark, too saturated, and combinations."""
+    rng = np.random.default_rng(0)
+    near = np.clip(rng.normal(0.5, 0.5, (3000, 3)), 0, 1) + rng.normal(0, 1e-3, (3000, 3))
+    found = [near, rng.normal(0.5, 1, (4000, 3)), 20 * rng.random((1000, 3)), -rng.random((100, 3))]
+    grey = np.linspace(-1, 3, 41)[:, None].repeat(3, axis=1)
+    rgb = np.concatenate([*found, grey, 3 * np.eye(3), -np.eye(3), 2 - 2 * np.eye(3)])
+    return rgb[((rgb < 0) | (rgb > 1)).any(axis=1)]
+
 
 MOVERS = [method for method in METHODS if method != "error"]
+
+
+@pytest.mark.parametrize("shape", [(3,), (0, 3), (2, 3), (2, 5, 3)])
+@pytest.mark.parametrize("method", MOVERS)
+def test_shapes_are_kept(shape, method):
+    rgb = np.full(shape, 0.5)
+    rgb[..., 0] = 1.5
+    found = map_to_gamut(rgb, SRGB, method)
+    assert found.rgb.shape == found.requested.shape == shape
+    assert found.outside.shape == shape[:-1]
+    assert found.count == rgb.size // 3
+    assert found.max_change == pytest.approx(0.5 if rgb.size else 0, rel=1)
+
+
+def test_result_reports_the_moved_colours():
+    found = map_to_gamut([[0.2, 0.3, 0.4], [-0.25, 0.5, 1.5], [1.125, 0, 0]], SRGB, "clip")
+    assert found.outside.tolist() == [False, True, True]
+    assert (found.count, found.max_change) == (2, 0.5)
+    np.testing.assert_array_equal(found.rgb, [[0.2, 0.3, 0.4], [0, 0.5, 1], [1, 0, 0]])
+    np.testing.assert_array_equal(found.requested[1], [-0.25, 0.5, 1.5])
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_rounding_errors_are_in_gamut(method):
+    found = map_to_gamut([1 + 1e-12, -1e-12, 0.5], SRGB, method)
+    assert found.rgb.tolist() == [1, 0, 0.5]
+    assert found.count == 0
+
+
+@pytest.mark.parametrize("method", MOVERS)
+def test_float32_stays_float32_and_gives_the_same_colours(method):
+    rgb = np.random.default_rng(0).normal(0.5, 0.6, (50, 3)).astype(np.float32)
+    found = map_to_gamut(rgb, SRGB, method).rgb
+    assert found.dtype == np.float32
+    expected = map_to_gamut(rgb.astype(float), SRGB, method).rgb
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-7)
+    inside = ((rgb >= 0) & (rgb <= 1)).all(axis=1)
+    np.testing.assert_array_equal(found[inside], rgb[inside])
+
+
+@pytest.mark.parametrize("method", MOVERS)
+def test_result_does_not_depend_on_blocks(method):
+    rgb = np.random.default_rng(0).normal(0.5, 1, (BLOCK + 10, 3))
+    found = map_to_gamut(rgb, SRGB, method).rgb
+    np.testing.assert_array_equal(found[-20:], map_to_gamut(rgb[-20:], SRGB, method).rgb)
+
+
+@pytest.mark.parametrize("method", MOVERS)
+@pytest.mark.parametrize("value", [1.7e308, 1e150, 5e-324, 1e-160])
+def test_extreme_magnitudes_are_mapped_inside(method, value):
+    signs = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3), axis=-1).reshape(-1, 3)
+    found = map_to_gamut(value * signs - (value < 1) * np.array([0, 0, 1e-3]), SRGB, method).rgb
+    assert np.isfinite(found).all()
+    assert found.min() >= 0
+    assert found.max() <= 1
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_non_finite_colours_raise(method, bad):
+    code = "rgb-out-of-gamut" if method == "error" else "rgb-not-finite"
+    with raises(ColourError, code) as caught:
+        map_to_gamut([[0.1, 0.2, 0.3], [0.5, 0.5, bad], [2, 0, 0]], SRGB, method)
+    assert f"(0.5, 0.5, {bad})" in caught.value.problem
+
+
+@pytest.mark.parametrize(
+    ("rgb", "code"),
+    [
+        (0.5, "rgb-wrong-shape"),
+        ([0.1, 0.2], "rgb-wrong-shape"),
+        ("red", "rgb-not-numeric"),
+        ([["a", "b", "c"]], "rgb-not-numeric"),
+        ([[0.1, 0.2, 0.3], [0.1]], "rgb-not-numeric"),
+    ],
+)
+def test_values_that_are_not_colours_raise(rgb, code):
+    with raises(ColourError, code):
+        map_to_gamut(rgb, SRGB, "clip")
+
+
+def test_unknown_method_raises():
+    with raises(OptionError, "unknown-gamut-mapping"):
+        map_to_gamut([0.1, 0.2, 0.3], SRGB, "squash")
+
+
+CIE_RGB = Primaries((0.73467, 0.26533), (0.27376, 0.71741), (0.16658, 0.00886), (1 / 3, 1 / 3))
+D65 = (0.3127, 0.3290)
+
+
+def test_example_of_the_thesis():
+    """Equations 4.2 and 4.3, whose last printed digit is unreliable: .26553 stands for .26533."""
+    np.testing.assert_allclose(CIE_RGB.lengths, [0.66694, 1.1324, 1.2006], rtol=0, atol=2e-4)
+    printed = [[0.48989, 0.31001, 0.20000], [0.176696, 0.81240, 0.01064], [0, 0.01000, 0.98999]]
+    np.testing.assert_allclose(CIE_RGB.rgb_to_xyz, printed, rtol=0, atol=3e-4)
+
+
+def test_matrices_agree_with_all_spaces_of_colour_science():
+    for space in colour.RGB_COLOURSPACES.data.values():
+        ours = Primaries.of([*space.primaries.ravel(), *space.whitepoint])
+        theirs = colour.normalised_primary_matrix(space.primaries, space.whitepoint)
+        np.testing.assert_allclose(ours.rgb_to_xyz, theirs, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(ours.rgb_to_xyz.sum(axis=1)[1], 1, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(("source", "name"), [(P3, "P3-D65"), (ACESCG, "ACEScg")])
+def test_conversions_agree_with_colour_science(source, name):
+    theirs = colour.matrix_RGB_to_RGB(name, "sRGB", chromatic_adaptation_transform="Bradford")
+    np.testing.assert_allclose(conversion(source, SRGB), theirs, rtol=0, atol=2e-4)  # of rounded matrices
+
+
+def test_conversions_keep_white_and_are_invertible():
+    there, back = conversion(ACESCG, P3), conversion(P3, ACESCG)
+    np.testing.assert_allclose(there @ [1, 1, 1], 1, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(back @ there, np.eye(3), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(conversion(SRGB, SRGB), np.eye(3), rtol=0, atol=1e-15)
+
+
+def test_sensor_of_a_cube_is_a_gamut_under_any_light():
+    np.testing.assert_allclose(conversion(observer.sensor("sRGB", "A"), SRGB), np.eye(3), rtol=0, atol=3e-4)
+
+
+@pytest.mark.parametrize(
+    "pairs",
+    [
+        ((0.6, 0.3), (0.3, 0.6), (0.15, 0.06), (0.7, 0.3)),
+        ((0.6, 0.3), (0.3, 0.3), (0.1, 0.3), D65),
+        ((0.6, 0.3), (0.6, 0.3), (0.15, 0.06), D65),
+        ((0.6, 0.3), (0.3, 0.6), (0.15, 0.06), (0.3, 0)),
+        ((float("nan"), 0.3), (0.3, 0.6), (0.15, 0.06), D65),
+        ((0.6, 0.3), (0.3, float("inf")), (0.15, 0.06), D65),
+        ((0.6, 0.3), (0.3, 0.6), (0.15, 0.06), (1e308, 0.3)),
+        ((0.6, 0.3), (0.3, 0.6), (0.15, 0.06), (0.3, 1e308)),
+    ],
+)
+def test_invalid_primaries_raise(pairs):
+    with raises(OptionError, "invalid-primaries"):
+        Primaries(*pairs)
+
+
+def test_primaries_are_eight_numbers():
+    assert Primaries.of([0.64, 0.33, 0.3, 0.6, 0.15, 0.06, *D65]) == SRGB
+    with raises(OptionError, "invalid-primaries"):
+        Primaries.of([0.64, 0.33, 0.3, 0.6, 0.15, 0.06])
+
+
+def test_oklab_agrees_with_colour_science(outside):
+    """Up to the white: colour-science rounds that of D65 to four digits."""
+    theirs = colour.XYZ_to_Oklab(outside @ SRGB.rgb_to_xyz.T)
+    np.testing.assert_allclose(oklab(outside, SRGB), theirs, rtol=0, atol=5e-4)
+
+
+def test_grey_has_zero_a_and_b_in_every_gamut(gamut):
+    grey = np.linspace(0, 1, 11)[:, None].repeat(3, axis=1)
+    found = oklab(grey, gamut)
+    np.testing.assert_allclose(found[:, 0], np.cbrt(grey[:, 0]), rtol=0, atol=1e-7)
+    np.testing.assert_allclose(found[:, 1:], 0, rtol=0, atol=1e-7)
+
+
+def test_cube_roots_invert_oklab(outside):
+    back = cube_roots(oklab(outside, ACESCG)) ** 3 @ np.linalg.inv(cone_responses(ACESCG)).T
+    np.testing.assert_allclose(back, outside, rtol=0, atol=1e-10)
 
 
 def luminance(rgb, gamut):
@@ -65,14 +261,6 @@ def test_dominant_wavelength_is_kept(method, gamut, outside):
     off, nearer = distance_from_line(before, map_to_gamut(before, gamut, method).rgb, gamut)
     assert off.max() < 1e-9
     assert nearer.all()
-
-
-def test_dominant_wavelength_agrees_with_colour_science(outside):
-    before = chromatic(outside, SRGB)[:12]
-    after = map_to_gamut(before, SRGB, "desaturate").rgb
-    white = chromaticity(np.ones(3), SRGB)
-    theirs = [colour.dominant_wavelength(chromaticity(rgb, SRGB), white)[0] for rgb in (before, after)]
-    np.testing.assert_allclose(*theirs, rtol=0, atol=1e-6)
 
 
 def test_desaturating_keeps_luminance(gamut, outside):
@@ -219,3 +407,11 @@ def test_vectorised_code_agrees_with_scalar_code(method, gamut, outside):
     np.testing.assert_allclose(
         map_to_gamut(some, gamut, method).rgb, [scalar_mapping(rgb, gamut, method) for rgb in some], rtol=0, atol=1e-6
     )
+
+
+def test_dominant_wavelength_agrees_with_colour_science(outside):
+    before = chromatic(outside, SRGB)[:12]
+    after = map_to_gamut(before, SRGB, "desaturate").rgb
+    white = chromaticity(np.ones(3), SRGB)
+    theirs = [colour.dominant_wavelength(chromaticity(rgb, SRGB), white)[0] for rgb in (before, after)]
+    np.testing.assert_allclose(*theirs, rtol=0, atol=1e-6)
