@@ -12,7 +12,6 @@ from scipy.integrate import quad
 from tests.helpers import raises
 from uplift.common.errors import UpliftError
 from uplift.models import complex_moments, duality
-from uplift.models.roots import moments_by_roots
 
 small = st.floats(-3, 3)
 
@@ -94,7 +93,7 @@ def test_moments_outside_the_moment_space_are_invalid(dual, kind):
 @pytest.mark.parametrize("count", [3, 5, 9])
 def test_roots_agree_with_the_trapezoid_rule(count):
     multipliers = np.random.default_rng(count).normal(size=(200, count)) * 5
-    found = moments_by_roots(multipliers)
+    found = duality.moments_by_roots(multipliers)
     np.testing.assert_allclose(found, duality.moments_from_multipliers(multipliers), rtol=0, atol=1e-9)
 
 
@@ -107,7 +106,7 @@ def test_steps_narrower_than_the_nodes():
         return (0.5 + np.arctan(x) / np.pi) * np.cos(order * phi) / np.pi
 
     steps = [np.arccos(y) - np.pi for y in np.roots([1.6e6, 2e6, -1.1e6]).real if abs(y) < 1]
-    for order, moment in enumerate(moments_by_roots(multipliers)[0]):
+    for order, moment in enumerate(duality.moments_by_roots(multipliers)[0]):
         expected = quad(integrand, -np.pi, 0, args=(order,), points=steps, limit=2000, epsabs=1e-12)[0]
         assert moment == pytest.approx(expected, abs=1e-9)
 
@@ -118,7 +117,7 @@ def test_grey_has_only_remote_roots(level):
     multipliers[:, 0] = level
     expected = np.zeros((1, 9))
     expected[:, 0] = 0.5 + np.arctan(level) / np.pi
-    np.testing.assert_allclose(moments_by_roots(multipliers), expected, atol=1e-6)
+    np.testing.assert_allclose(duality.moments_by_roots(multipliers), expected, atol=1e-6)
 
 
 def test_boxes_survive_a_round_trip():

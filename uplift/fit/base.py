@@ -178,12 +178,8 @@ def _match_nodes(problem: Problem, model: Moments, goal: Array, factor: Array) -
     They are matched at the actual brightness, ``factor`` (n, 1) of the brightened one. Where the result cannot be
     brightened, as no reflectance has such moments, the brightened spectrum is matched instead.
     """
-
-    def match(spectra: Array) -> Array:
-        multipliers = match_spectra(model, problem.sensor.wavelengths, spectra, problem.lights)
-        return model.to_storage(multipliers, COMPILED)
-
-    nodes = match(goal * factor) / factor
+    wavelengths, lights = problem.sensor.wavelengths, problem.lights
+    nodes = model.to_storage(match_spectra(model, wavelengths, goal * factor, lights), COMPILED) / factor
     _, valid = real_dual(nodes)
-    nodes[~valid] = match(goal[~valid])
+    nodes[~valid] = model.to_storage(match_spectra(model, wavelengths, goal[~valid], lights), COMPILED)
     return nodes

@@ -31,14 +31,13 @@ class Weights:
     """Weights of the objective, relative to the root-mean-square difference of the spectra (docs/fidelity.md).
 
     ``lights`` is that of a unit of CIE L*a*b* under a light, ``ends`` that of the two ends of the spectrum relative to
-    its middle, ``curvature`` that of the second difference. ``smoothness`` weighs the multipliers but the constant one,
-    in the metric M of docs/mathematics.md, 5: without it the minimum of a dark entry jumps, as of two spectra that meet
-    its colours nearly equally well one has multipliers ten times as large, and noise decides between them.
+    its middle. ``smoothness`` weighs the multipliers but the constant one, in the metric M of docs/mathematics.md, 5:
+    without it the minimum of a dark entry jumps, as of two spectra that meet its colours nearly equally well one has
+    multipliers ten times as large, and noise decides between them.
     """
 
     lights: float = 0.03
     ends: float = 1.0
-    curvature: float = 0.0
     smoothness: float = 1e-3
 
 
@@ -49,15 +48,13 @@ BALANCED = Weights()
 class Objective:
     """Residuals of the fit of a measured reflectance (N,), and their derivative.
 
-    ``values`` (N,) and ``bends`` (B, N) weigh the values and second differences of a difference of spectra, ``weight``
-    a unit of CIE L*a*b*, ``multipliers`` (C,) the multipliers. ``lights`` (L, 3, N) maps spectra to XYZ, and ``whites``
-    (L, 3) are those of the perfect reflector.
+    ``values`` (N,) weighs a difference of spectra, ``weight`` a unit of CIE L*a*b*, ``multipliers`` (C,) the
+    multipliers. ``lights`` (L, 3, N) maps spectra to XYZ, and ``whites`` (L, 3) are those of the perfect reflector.
     """
 
     model: Model
     basis: Array
     values: Array
-    bends: Array
     lights: Array
     whites: Array
     weight: float
@@ -68,20 +65,19 @@ class Objective:
         return lab_of(self.lights @ spectrum, self.whites)
 
     def residuals(self, multipliers: Any, measured: Any, colours: Any) -> Any:
-        """Residuals (N + B + 3 L + C,) for a measurement (N,) with its `colours`; all of numpy or of JAX."""
+        """Residuals (N + 3 L + C,) for a measurement (N,) with its `colours`; all of numpy or of JAX."""
         spectrum = self.model.squash(self.basis @ multipliers)
         difference, colour_difference = spectrum - measured, self.colours(spectrum) - colours
         return multipliers.__array_namespace__().concat(
             [
                 self.values * difference,
-                self.bends @ difference,
                 self.weight * colour_difference.ravel(),
                 self.multipliers * multipliers,
             ]
         )
 
     def jacobian(self, multipliers: Array) -> Array:
-        """Derivative (N + B + 3 L + C, C) of the residuals; it does not depend on the measurement."""
+        """Derivative (N + 3 L + C, C) of the residuals; it does not depend on the measurement."""
         x = self.basis @ multipliers
         change = self.model.slope(x)[:, None] * self.basis  # g = S(B p), so ∂g/∂p = S′(B p) B
         to_lab = lab_jacobian(self.lights @ self.model.squash(x), self.whites)
@@ -89,7 +85,6 @@ class Objective:
         return np.concatenate(
             [
                 self.values[:, None] * change,
-                self.bends @ change,
                 self.weight * colours,
                 np.diag(self.multipliers),
             ]
@@ -103,18 +98,16 @@ class Objective:
 
 
 def objective(problem: Problem, weights: Weights = BALANCED) -> Objective:
-    """Make the objective of entries; the squared weights of values and bends sum to a weighted mean square."""
+    """Make the objective of entries; the squared weights of values sum to a weighted mean square."""
     model, count = problem.model, len(problem.forward.basis)
     importance = np.ones(count)
     importance[: count // ENDS] = importance[-(count // ENDS) :] = weights.ends
-    second = np.diff(np.eye(count), n=2, axis=0) if weights.curvature else np.zeros((0, count))
     # M = diag(1 + j²), but the constant multiplier is left to the measurement.
     smooth = np.maximum(weights.smoothness * np.sqrt(model.roughness()), FLATNESS)
     return Objective(
         model,
         problem.forward.basis,
         np.sqrt(importance / importance.sum()),
-        second * weights.curvature / np.sqrt(count),
         np.stack([light.xyz for light in problem.lights]),
         np.stack([light.white for light in problem.lights]),
         weights.lights,

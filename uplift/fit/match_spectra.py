@@ -32,9 +32,9 @@ def match_spectra(model: Moments, wavelengths: Array, reflectances: Array, light
     The wavelengths (N,) are evenly spaced over the range of the model.
     """
     start = model.from_storage(matmul_rows(reflectances, moment_matrix(model, wavelengths)))
-    step = _Step(model, model.basis(wavelengths), lights)
+    basis = model.basis(wavelengths)
     blocks = (slice(first, first + BLOCK_ROWS) for first in range(0, len(start), BLOCK_ROWS))
-    found = [step(start[block], reflectances[block]) for block in blocks]
+    found = [_step(model, basis, lights, start[block], reflectances[block]) for block in blocks]
     return np.concatenate(found) if found else start
 
 
@@ -49,46 +49,38 @@ def moment_matrix(model: Moments, wavelengths: Array) -> Array:
     return np.asarray(samples @ weights)
 
 
-class _Step:
-    """A Gauss–Newton step of the objective; spectra that it would not bring nearer stay."""
+def _step(model: Moments, basis: Array, lights: Sequence[Light], multipliers: Array, goal: Array) -> Array:
+    """Take a Gauss–Newton step of the objective; spectra that it would not bring nearer stay."""
+    matrices, whites = np.concatenate([light.xyz for light in lights]), np.stack([light.white for light in lights])
+    colours = (matrices.T[:, :, None] * basis[:, None, :]).reshape(len(basis), -1)
+    squares = (basis[:, :, None] * basis[:, None, :]).reshape(len(basis), -1) / len(basis)
 
-    def __init__(self, model: Moments, basis: Array, lights: Sequence[Light]) -> None:
-        self.model, self.basis = model, basis
-        self.lights = np.concatenate([light.xyz for light in lights])
-        self.whites = np.stack([light.white for light in lights])
-        self.colours = (self.lights.T[:, :, None] * basis[:, None, :]).reshape(len(basis), -1)
-        self.squares = (basis[:, :, None] * basis[:, None, :]).reshape(len(basis), -1) / len(basis)
+    def xyz(spectra: Array) -> Array:
+        return (spectra @ matrices.T).reshape(len(spectra), -1, 3)
 
-    def __call__(self, multipliers: Array, goal: Array) -> Array:
-        # With g = S(B p), minimise mean (g − goal)² + Σ |w ΔL*a*b*|²: p − (JᵀJ + μ I)⁻¹ Jᵀ r.
-        count = multipliers.shape[1]
-        x = multipliers @ self.basis.T
-        difference, colour_difference = self._differences(x, goal)
-        slope = self.model.slope(x)
-        to_lab = LIGHTS_WEIGHT * lab_jacobian(self._xyz(self.model.squash(x)), self.whites)
-        change = (slope @ self.colours).reshape(len(x), -1, 3, count)
-        change = (to_lab @ change).reshape(len(x), -1, count)
-        # JᵀJ of the spectra is Σ_λ S′(x)² b bᵀ / N; that of the colours is the product of their changes.
-        matrix = ((slope * slope) @ self.squares).reshape(-1, count, count) + change.mT @ change
-        damping = DAMPING * np.trace(matrix, axis1=1, axis2=2) / count
-        matrix[:, np.arange(count), np.arange(count)] += damping[:, None]
-        gradient = (difference * slope) @ self.basis / len(self.basis)
-        gradient += (colour_difference[:, None, :] @ change)[:, 0]
-        trial = multipliers - np.linalg.solve(matrix, gradient[..., None])[..., 0]
-        before, after = (
-            (spectra**2).mean(axis=1) + (colours**2).sum(axis=1)
-            for spectra, colours in (
-                (difference, colour_difference),
-                self._differences(trial @ self.basis.T, goal),
-            )
-        )
-        return np.where((after < before)[:, None], trial, multipliers)
-
-    def _differences(self, x: Array, goal: Array) -> tuple[Array, Array]:
+    def differences(x: Array) -> tuple[Array, Array]:
         """Differences of the spectra (n, N), and weighted ones of their colours (n, 3 L)."""
-        spectra = self.model.squash(x)
-        colours = lab(self._xyz(spectra), self.whites) - lab(self._xyz(goal), self.whites)
-        return spectra - goal, LIGHTS_WEIGHT * colours.reshape(len(x), -1)
+        spectra = model.squash(x)
+        difference = lab(xyz(spectra), whites) - lab(xyz(goal), whites)
+        return spectra - goal, LIGHTS_WEIGHT * difference.reshape(len(x), -1)
 
-    def _xyz(self, spectra: Array) -> Array:
-        return (spectra @ self.lights.T).reshape(len(spectra), -1, 3)
+    # With g = S(B p), minimise mean (g − goal)² + Σ |w ΔL*a*b*|²: p − (JᵀJ + μ I)⁻¹ Jᵀ r.
+    count = multipliers.shape[1]
+    x = multipliers @ basis.T
+    difference, colour_difference = differences(x)
+    slope = model.slope(x)
+    to_lab = LIGHTS_WEIGHT * lab_jacobian(xyz(model.squash(x)), whites)
+    change = (slope @ colours).reshape(len(x), -1, 3, count)
+    change = (to_lab @ change).reshape(len(x), -1, count)
+    # JᵀJ of the spectra is Σ_λ S′(x)² b bᵀ / N; that of the colours is the product of their changes.
+    matrix = ((slope * slope) @ squares).reshape(-1, count, count) + change.mT @ change
+    damping = DAMPING * np.trace(matrix, axis1=1, axis2=2) / count
+    matrix[:, np.arange(count), np.arange(count)] += damping[:, None]
+    gradient = (difference * slope) @ basis / len(basis)
+    gradient += (colour_difference[:, None, :] @ change)[:, 0]
+    trial = multipliers - np.linalg.solve(matrix, gradient[..., None])[..., 0]
+    before, after = (
+        (spectra**2).mean(axis=1) + (lit**2).sum(axis=1)
+        for spectra, lit in ((difference, colour_difference), differences(trial @ basis.T))
+    )
+    return np.where((after < before)[:, None], trial, multipliers)

@@ -23,11 +23,6 @@ BLOCK_NODES = 1 << 15
 """Nodes that are tested at a time."""
 
 
-def solver_tolerance(threshold: float) -> float:
-    """Residual at which solvers stop: the last steps converge quadratically and cost little."""
-    return threshold / 100
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Problem:
     """Sensor, spectrum model, lights under which colours are kept, light of the errors, threshold and solver.
@@ -50,8 +45,8 @@ class Problem:
 
     @property
     def tolerance(self) -> float:
-        """Residual at which solvers stop."""
-        return solver_tolerance(self.threshold)
+        """Residual at which solvers stop: the last steps converge quadratically and cost little."""
+        return self.threshold / 100
 
     def solve(self, target: Array, start: Array, max_passes: int, prior: Array | None = None) -> Solution:
         """Find multipliers (n, C) of linear RGB (n, 3); see `uplift.fit.solver.solve`."""

@@ -21,8 +21,8 @@ from uplift.common.arrays import Array
 from uplift.fit.batch import batches, replicate, shard
 from uplift.models import Model
 from uplift.models.arithmetic import matmul_rows
+from uplift.models.duality import MAX_MULTIPLIER
 from uplift.models.minimum_norm import ForwardMap, anchored_step, residual
-from uplift.models.roots import MAX_MULTIPLIER
 
 FIRST_DAMPING = 1e-6
 """Initial μ; divided by four after a successful step, multiplied by four after a rejected one."""

@@ -13,8 +13,8 @@ from uplift.common.arrays import Array, Indices, Values
 from uplift.cube import CubeData
 from uplift.models import Model
 from uplift.models.arithmetic import matmul_columns, matmul_rows
+from uplift.models.duality import MAX_MULTIPLIER
 from uplift.models.minimum_norm import ForwardMap, forward_map, minimum_norm_step
-from uplift.models.roots import MAX_MULTIPLIER
 
 TOLERANCE = 1e-8
 """Residual, max |linear RGB|, at which a colour is exact."""

@@ -226,14 +226,15 @@ def _build(
 
         targets = targets_of(looks, entry_model, sensor, atlas.names, measured)
 
-    # Entries, and the prior that they and the families let expect.
+    # Entries p_i: min ‖g − m‖² + Σ |w ΔL*a*b*|² subject to r(p) = t (docs/mathematics.md, 6).
+    # Prior c(x) = s(x) + d(x): smooth spectra, what families deviate from them, and kriging of the entries (7).
     constraints = spectra.fit_constraints(problem, entry_model, measured)
     base, relevance = learn_base(problem, families, constraints.at_nodes)
     prior = fit_prior(problem, constraints.at_nodes, base)
     if targets is not None:
         targets, constraints, prior = targets.fit(problem, constraints, prior)
 
-    # The lattice, the boxes of the entries in it, and the nodes that start from entries.
+    # The lattice, the boxes of the entries in it (8), and the nodes that start from entries: c = w c_i + (1 − w) c(x).
     blend = FULL_ENTRY if options.seed_corners or neighbours else learnt_blend(prior)
     if options.dim == AUTO:
         options = choose_dim(options, problem, constraints, prior, blend)
@@ -243,7 +244,8 @@ def _build(
     own = constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
     guess = InitialGuess(prior, seeds, own, blend)
 
-    # The nodes that a scene needs, or all, grow outward, are improved and stored.
+    # The nodes that a scene needs, or all, grow from coarse to fine: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7),
+    # where t is the nearest colour that some reflectance has (9). They are improved and stored as coefficients.
     kept = None if scene is None else np.flatnonzero(scene.required_points(boxes, sensor, progress))
     fitted = None if kept is None or neighbours else supporting_points(lattice, kept)
     nodes = nodes_of(lattice, sensor, options.threshold / 2, fitted)
@@ -261,7 +263,10 @@ def _build(
         "prior": prior.describe() and {**prior.describe(), "corner_share": blend.near},
         "improvements": [{"step": step, "tried": tried, "mended": fixed} for step, tried, fixed in improvements],
         **({} if scene is None else {"scene": scene.describe()}),
-        **spectra.describe_libraries(libraries, families, relevance),
+        "libraries": [{"name": library.name, "digest": library.digest} for library in libraries],
+        "families": [
+            {"name": family.name, "relevance": value} for family, value in zip(families, relevance, strict=True)
+        ],
         **({} if targets is None else targets.describe(table, model, sensor)),
     }
     return Cube(

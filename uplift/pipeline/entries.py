@@ -61,7 +61,7 @@ class Constraints:
         """
         if self.at_entries is self.at_nodes or not len(self.at_nodes):
             return self.at_nodes.multipliers
-        stored = self.entry_model.to_storage(self.at_entries.multipliers)
+        stored = self.entry_model.to_storage(self.at_entries.multipliers)  # c_j = (1/π) ∫ g cos jφ dφ for any count
         return model.from_storage(stored[:, : model.count])
 
     def table(self, model: Model, boxes: EntryBoxes, prior: Prior) -> AtlasTable:
@@ -215,16 +215,6 @@ def _family(library: Library, sensor: Sensor) -> Family:
         problem = f"{outside} of {len(resampled.values)} spectra not used: their colours lie outside {sensor.space}"
         warn(f"library '{library.name}': {problem}", "library-out-of-gamut")
     return Family(library.name, resampled.values, SPREAD, RELATED)
-
-
-def describe_libraries(
-    libraries: Sequence[Library], used: Sequence[Family], relevance: Sequence[float]
-) -> dict[str, Any]:
-    """Return the libraries and the relevance of the families, in JSON values."""
-    return {
-        "libraries": [{"name": library.name, "digest": library.digest} for library in libraries],
-        "families": [{"name": family.name, "relevance": value} for family, value in zip(used, relevance, strict=True)],
-    }
 
 
 def warn(problem: str, code: str, entry: str | None = None, hint: str = "") -> None:

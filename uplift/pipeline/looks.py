@@ -55,6 +55,7 @@ class LookTargets:
         """
         if not self.looks:
             return self, entries, prior
+        # The wish becomes w y + (1 − w) y₀ in XYZ, with the colours y₀ of the spectrum p₀ that is expected at x.
         rgb = np.array([goal.rgb for goal in self.goals])
         expected = solve_singly(problem.model, problem.forward, prior(rgb), rgb, problem.tolerance, MAX_STEPS)
         expected = evaluate(problem.model, expected, problem.sensor.wavelengths)
