@@ -80,7 +80,7 @@ def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = PRECIS
     """Moments (n, C) of the spectra of multipliers (n, C), by the trapezoid rule over the phase.
 
     The rule converges geometrically, so its error is about the square of the last change. The nodes are doubled for
-    spectra that have not converged. Nearly box-shaped spectra would need too many nodes; `moments_by_roots` handles them.
+    spectra that have not converged. Nearly box-shaped ones would need too many nodes; `moments_by_roots` handles them.
     """
     # T_2K = (T_K + M_K) / 2: the first rule and its midpoints together, then midpoints of those that need more.
     count, nodes = multipliers.shape[1], _FIRST_NODES
