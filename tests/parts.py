@@ -84,21 +84,12 @@ def _open_device() -> None:
 
 MITSUBA = Part("Mitsuba 3", "pip install '.[mitsuba]'", partial(_evaluate_texture, "scalar_spectral"))
 LLVM = Part("LLVM that Mitsuba works with", "apt install libllvm19", partial(_evaluate_texture, "llvm_ad_spectral"))
-CC = Part(
-    "a C compiler, cc",
-    "apt install gcc",
-    partial(_compile, "main.c", EMPTY_PROGRAM, "cc main.c -o main", "./main"),
-)
-CXX = Part(
-    "a C++ compiler, c++",
-    "apt install g++",
-    partial(_compile, "main.cpp", EMPTY_PROGRAM, "c++ main.cpp -o main", "./main"),
-)
+_cc = partial(_compile, "main.c", EMPTY_PROGRAM, "cc main.c -o main", "./main")
+_cxx = partial(_compile, "main.cpp", EMPTY_PROGRAM, "c++ main.cpp -o main", "./main")
+_glslang = partial(_compile, "a.comp", EMPTY_SHADER, "glslangValidator a.comp")
+CC = Part("a C compiler, cc", "apt install gcc", _cc)
+CXX = Part("a C++ compiler, c++", "apt install g++", _cxx)
 CHROMIUM = Part("Chromium", "apt install chromium", _open_tab)
 VULKAN = Part("a Vulkan driver", "pip install '.[gpu]' and apt install mesa-vulkan-drivers", _open_device)
 NVCC = Part("nvcc", "the CUDA toolkit", partial(_compile, "a.cu", EMPTY_KERNEL, "nvcc -ptx a.cu"))
-GLSLANG = Part(
-    "glslangValidator",
-    "apt install glslang-tools",
-    partial(_compile, "a.comp", EMPTY_SHADER, "glslangValidator a.comp"),
-)
+GLSLANG = Part("glslangValidator", "apt install glslang-tools", _glslang)

@@ -40,11 +40,6 @@ def test_the_contracts_hold(repository):
     assert "0 broken" in text
 
 
-def test_the_contracts_hold_for_a_copy(copied_code):
-    code, text = lint(copied_code)
-    assert code == 0, text
-
-
 @pytest.mark.parametrize(
     ("module", "line", "contract"),
     [

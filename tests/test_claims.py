@@ -99,6 +99,10 @@ def from_code(claim):
     return value(claim["argument"]) if inspect.isfunction(value) else value
 
 
+def label(claim):
+    return claim["text"][:40]
+
+
 def from_data(path):
     """Datum at ``file.json: key[name=value].0``."""
     file, _, keys = path.partition(": ")
@@ -118,18 +122,14 @@ def test_every_number_is_listed(path):
     assert unlisted(prose(path), [claim for claim in CLAIMS if claim["page"] == page]) == []
 
 
-@pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: claim["text"][:40])
+@pytest.mark.parametrize("claim", CLAIMS, ids=label)
 def test_claim_occurs_and_names_one_source(claim):
     assert spans(prose(ROOT / claim["page"]), [claim]) != []
     assert len([key for key in SOURCES if claim.get(key)]) == 1
     assert ("data" in claim) == ("command" in claim)
 
 
-@pytest.mark.parametrize(
-    "claim",
-    [claim for claim in CLAIMS if "code" in claim or "data" in claim],
-    ids=lambda claim: claim["text"][:40],
-)
+@pytest.mark.parametrize("claim", [claim for claim in CLAIMS if {"code", "data"} & claim.keys()], ids=label)
 def test_number_agrees_with_its_source(claim):
     number = re.split("[«»]", claim["text"])[1]
     stated = as_number(number) / (100 if claim.get("percent") else 1) * (-1 if claim.get("negative") else 1)
@@ -140,7 +140,7 @@ def test_number_agrees_with_its_source(claim):
         assert abs(actual - stated) <= digits(number) + 1e-15, (number, actual)
 
 
-@pytest.mark.parametrize("claim", [claim for claim in CLAIMS if "test" in claim], ids=lambda claim: claim["text"][:40])
+@pytest.mark.parametrize("claim", [claim for claim in CLAIMS if "test" in claim], ids=label)
 def test_named_file_has_the_number(claim):
     value = as_number(re.split("[«»]", claim["text"])[1])
     text = (ROOT / claim["test"]).read_text(encoding="utf-8")
@@ -151,14 +151,3 @@ def test_a_header_of_32_nodes_has_about_5_megabytes(tmp_path, macbeth_cube):
     path = tmp_path / "cube.h"
     write_program(macbeth_cube.data, path)
     assert 4.5e6 < path.stat().st_size < 5.5e6
-
-
-@pytest.mark.parametrize("text", ["is 3 times faster", "within 0.02", "takes 20 ms", "ΔE00 1.5", "to 1e-6"])
-def test_an_unlisted_number_is_noticed(text):
-    assert unlisted(text, []) == [text]
-
-
-def test_a_wrong_number_is_noticed():
-    claim = {"page": "", "text": "«0.5»", "code": "uplift.fit.kriging:JITTER"}
-    with pytest.raises(AssertionError):
-        test_number_agrees_with_its_source(claim)

@@ -50,15 +50,6 @@ def test_commands_and_options_exist():
     assert unknown_options(PAGE) == []
 
 
-@pytest.mark.parametrize("code", ["`uplift invent`", "`uplift build --dimension 3`", "`uplift study nothing`"])
-def test_unknown_names_are_noticed(code):
-    assert unknown_options(code)
-
-
-def test_an_empty_cell_is_noticed():
-    assert rows("| 1 | subject | |") == [["1", "subject", ""]]
-
-
 @pytest.mark.parametrize("title", ["Tódová", "Kment", "Meyer", "Bergner", "Fishkin"])
 def test_every_document_has_a_table(title):
     assert re.search(rf"^## {title}.*\n\n\| section \|", PAGE, re.MULTILINE)

@@ -37,15 +37,6 @@ def test_command_lines_parse(line):
         command.make_context(name, arguments, parent=context)
 
 
-def test_pages_have_command_lines():
-    assert len(LINES) >= 8
-
-
-def test_unknown_options_do_not_parse():
-    with click.Context(main, **main.context_settings) as context, pytest.raises(click.NoSuchOption):
-        main.get_command(context, "build").make_context("build", ["--dimension", "3"], parent=context)
-
-
 def test_the_python_page_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (code,) = re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import ast
 import json
 
-from tools.error_codes import calls, collect
+from tools.error_codes import collect
 
 from .conftest import ROOT
 
@@ -18,14 +17,3 @@ def test_codes_are_kebab_case():
 def test_listed_codes_are_those_of_the_source():
     listed = json.loads((ROOT / "docs" / "data" / "errors.json").read_text(encoding="utf-8"))
     assert listed["codes"] == collect(), "run 'make docs'"
-
-
-def test_calls_yields_literal_codes():
-    tree = ast.parse("raise OptionError('x', code='too-small')\nwarn(UpliftWarning('y', code='left-out'))")
-    assert sorted(calls(tree)) == [("OptionError", "too-small"), ("UpliftWarning", "left-out")]
-
-
-def test_calls_yields_codes_of_unknown_names():
-    assert list(calls(ast.parse("raise unknown_name(x, known, 'RGB space')"))) == [
-        ("unknown_name", "unknown-rgb-space")
-    ]

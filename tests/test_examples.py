@@ -63,25 +63,11 @@ def test_example_runs(outcomes, line):
 
 
 def test_every_command_has_an_example_that_runs():
+    assert BEGIN in EXAMPLES[:3]
+    assert set(EXAMPLES) >= ELSEWHERE
     assert {line.split()[1] for line in FEW} >= set(COMMANDS) - SLOW.keys()
     assert set(FEW) <= set(EXAMPLES)
     assert all((ROOT / path).is_file() for path in SLOW.values())
-
-
-def test_the_samples_are_copied_first():
-    assert examples()[0].source == "README.md"
-    assert BEGIN in EXAMPLES[:3]
-
-
-def test_lines_that_no_single_machine_runs_are_written_somewhere():
-    assert set(EXAMPLES) >= ELSEWHERE
-    assert all("--scheduler tcp://" in line for line in ELSEWHERE)
-
-
-def test_examples_come_from_all_places():
-    sources = {example.source for example in examples()}
-    assert {"README.md", "docs/commands.md", "uplift query --help", "uplift study moments --help"} <= sources
-    assert len(EXAMPLES) > 100
 
 
 def test_blocks_of_pages_are_read():

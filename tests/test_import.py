@@ -63,15 +63,6 @@ def test_queries_of_lights_load_the_table_and_the_numpy_part_of_the_core():
     assert not modules & {"uplift.colorimetry.observer", *HEAVY_OF_FITS}
 
 
-@pytest.mark.parametrize("subpackage", ["io", "viz", "report", "scene", "design", "lab"])
-def test_check_of_loaded_subpackages_detects_an_added_import(subpackage):
-    assert loaded_subpackages(f"{QUERY}import uplift.{subpackage}")[0] >= CORE | {subpackage}
-
-
-def test_check_of_loaded_modules_detects_the_observer():
-    assert "uplift.colorimetry.observer" in loaded_subpackages(f"{QUERY}import uplift.colorimetry.observer")[1]
-
-
 @pytest.mark.parametrize(
     "use",
     [

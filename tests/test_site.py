@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 
 import pytest
 from uplift_cli.main import COMMANDS
@@ -40,16 +38,6 @@ def test_no_page_loads_from_the_network():
         text = page.read_text(encoding="utf-8")
         loaded = re.findall(r'(?:src|<link[^>]*href)="(https?:[^"]+)"', text)
         assert loaded == [], page.name
-
-
-@pytest.mark.site
-def test_broken_link_fails_the_build(tmp_path):
-    (tmp_path / "conf.py").write_text((DOCS / "conf.py").read_text(encoding="utf-8"), encoding="utf-8")
-    (tmp_path / "index.md").write_text("# Index\n\n[nowhere](missing.md)\n", encoding="utf-8")
-    command = ["-m", "sphinx", "-W", "-q", "-b", "html", str(tmp_path), str(tmp_path / "out")]
-    result = subprocess.run([sys.executable, *command], cwd=ROOT, capture_output=True, text=True, check=False)
-    assert result.returncode == 1
-    assert "missing.md" in result.stderr
 
 
 def test_reference_has_every_command():

@@ -67,11 +67,8 @@ def help_examples() -> Iterator[Example]:
         for name in COMMANDS:
             command = main.get_command(context, name)
             assert command is not None
-            children = getattr(command, "commands", {})
-            for path, each in {
-                name: command,
-                **{f"{name} {child}": children[child] for child in children},
-            }.items():
+            children = {f"{name} {key}": child for key, child in getattr(command, "commands", {}).items()}
+            for path, each in {name: command, **children}.items():
                 for line in (each.help or "").splitlines():
                     if line.strip().startswith("uplift "):
                         yield Example(f"uplift {path} --help", line.strip())

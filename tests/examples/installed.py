@@ -24,18 +24,13 @@ def source_files(repository: Path) -> list[str]:
     return [name for name in listed.split("\0") if name and (repository / name).is_file()]
 
 
-def copy_source(folder: Path) -> None:
-    """Copy the source without leftovers of earlier builds."""
-    for name in source_files(ROOT):
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / name, folder / name)
-
-
 def build_wheel(folder: Path) -> Path:
-    """Build a wheel of the source."""
-    folder.mkdir(exist_ok=True)
-    copy_source(folder / "copy")
-    args = ["-m", "build", "--wheel", "--no-isolation", "--outdir", folder / "dist", folder / "copy"]
+    """Build a wheel of a copy of the source, without leftovers of earlier builds."""
+    copy = folder / "copy"
+    for name in source_files(ROOT):
+        (copy / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, copy / name)
+    args = ["-m", "build", "--wheel", "--no-isolation", "--outdir", folder / "dist", copy]
     done = subprocess.run([sys.executable, *args], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     (path,) = (folder / "dist").iterdir()
