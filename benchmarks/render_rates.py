@@ -99,11 +99,12 @@ def _textures(folder: Path) -> dict[str, dict[str, Any]]:
     import mitsuba
 
     from uplift.io import texture
+    from uplift.io.texture.pixel_encoding import PixelEncoding
 
     image = _image(SIZE)
     mitsuba.Bitmap(image).write(str(folder / "image.exr"))
 
-    def convert(encoding: texture.PixelEncoding) -> dict[str, Any]:
+    def convert(encoding: PixelEncoding) -> dict[str, Any]:
         target = folder / f"{encoding.name}.exr"
         texture.convert(texture.prepare(uplift.load(PLAIN), encoding), folder / "image.exr", target)
         return {"type": "uplift", "filename": str(target)}

@@ -22,12 +22,13 @@ from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.io import texture
 from uplift.io.mitsuba.texture_file import multipliers_of_rounded
+from uplift.io.texture.pixel_encoding import PixelEncoding
 from uplift.lab.timing import time_process
 from uplift.lookup import Cube
 from uplift.models import Moments, evaluate
 from uplift.viz.figure import new_figure, write_png
 
-FORMS: tuple[tuple[str, texture.PixelEncoding, str], ...] = (
+FORMS: tuple[tuple[str, PixelEncoding, str], ...] = (
     ("spectrum_half", texture.Spectrum(), "half"),
     ("spectrum_float", texture.Spectrum(), "float"),
     ("moments_half", texture.Moments(), "half"),
@@ -61,7 +62,7 @@ def round_trips(cube: Cube, images: list[Picture], target: Path) -> Iterator[dic
         }
 
 
-def _rgb(cube: Cube, form: texture.PixelEncoding, names: tuple[str, ...], path: Path) -> Array:
+def _rgb(cube: Cube, form: PixelEncoding, names: tuple[str, ...], path: Path) -> Array:
     """Return the linear RGB (h, w, 3) of a texture, read as Mitsuba reads it."""
     sensor, model = cube.data.sensor, cube.data.model
     channels = OpenEXR.File(str(path), separate_channels=True).channels()

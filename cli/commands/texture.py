@@ -38,7 +38,8 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.io.texture import Conversion, Failure, Job, PixelEncoding, TextureSettings
+    from uplift.io.texture import Conversion, Failure, Job, TextureSettings
+    from uplift.io.texture.pixel_encoding import PixelEncoding
 
 
 def image_options(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -169,6 +170,7 @@ def convert(
     """Convert images, on as many threads as the processes leave; the other parameters are those of `image_options`."""
     enable_jit_cache()
     from uplift.io import texture
+    from uplift.io.texture.sequence import converter_for
 
     pairs = _texture_paths(sources, target)
     cores = os.cpu_count() or 1
@@ -176,7 +178,7 @@ def convert(
     settings = replace(settings, threads=max(cores // count, 1))
     jobs = [texture.Job(settings, source.absolute(), path.absolute(), force) for source, path in pairs]
     pending = texture.pending(jobs, resume=resume)
-    texture.converter_for(settings)  # report invalid options once, not once per image
+    converter_for(settings)  # report invalid options once, not once per image
     begin = time.perf_counter()
     if scheduler is None and len(jobs) == 1:
         results: list[Conversion | Failure] = [_convert_here(job, quiet=quiet) for job in pending]
@@ -251,12 +253,11 @@ def as_tuple(wavelengths: Array | None) -> tuple[float, ...] | None:
 
 def _convert_here(job: Job, *, quiet: bool) -> Conversion:
     """Convert one image in this process, with a progress bar over its rows."""
-    from uplift.io import texture
+    from uplift.io.texture import convert
+    from uplift.io.texture.sequence import converter_for
 
     with progress_bar("rows", quiet=quiet) as progress:
-        return texture.convert(
-            texture.converter_for(job.settings), job.source, job.target, force=job.force, progress=progress
-        )
+        return convert(converter_for(job.settings), job.source, job.target, force=job.force, progress=progress)
 
 
 def _collect(results: Generator[Conversion | Failure], total: int, *, quiet: bool) -> list[Conversion | Failure]:

@@ -10,7 +10,7 @@ import pytest
 from uplift_cli.output.hints import hint_for
 
 from tests.io.texture.conftest import planes, write_exr
-from uplift.io.texture import converter_for
+from uplift.io.texture.sequence import converter_for
 
 from .conftest import warning_lines
 

@@ -17,7 +17,8 @@ from tests.fuzz.campaign import Target
 from tests.fuzz.mutate import Random, choose, mutate
 from tests.io.texture.exr_bytes import attribute, exr_bytes
 from uplift.colorimetry.observer import sensor
-from uplift.io.texture import Converter, Counts, convert
+from uplift.io.texture import Counts, convert
+from uplift.io.texture.uplifter import Converter
 
 SIZE = (6, 7)
 MANY = (10, 1000, 1025, 9000, 100_000)

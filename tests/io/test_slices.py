@@ -120,17 +120,6 @@ def test_invalid_paths_raise(tmp_path, name, code):
         write_slices(hand_made(), tmp_path / name)
 
 
-def test_a_full_disk_leaves_nothing(tmp_path, monkeypatch):
-    full = Path("/dev/full")
-    if not full.exists():
-        pytest.skip("no /dev/full here")
-    opened = Path.open
-    monkeypatch.setattr(Path, "open", lambda path, mode="r": opened(full if mode == "wb" else path, mode))
-    with raises(OutputError, "output"):
-        write_slices(hand_made(2), tmp_path / "slices.exr")
-    assert not list(tmp_path.iterdir())
-
-
 def test_writing_images_does_not_import_the_fit(tmp_path):
     write(hand_made(), tmp_path / "small.uplift")
     script = (

@@ -123,8 +123,5 @@ def test_rule_is_equivariant_to_scale_and_shift() -> None:
 def test_invalid_measures_and_orders_raise(points: list[float], masses: list[float], order: int) -> None:
     with raises(OptionError):
         gauss_rule(points, masses, order)
-
-
-def test_duplicate_nodes_raise() -> None:
     with raises(OptionError):
         interpolatory_rule([500, 500], POINTS, BELL)

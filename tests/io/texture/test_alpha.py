@@ -128,12 +128,3 @@ def test_pictures_weigh_colours_by_alpha(max_side, multiplied, colours, alpha, s
             mean = (colours[block] * weights).sum(axis=(0, 1)) / max(weights.sum(), 1e-9)
             np.testing.assert_allclose(found.rgb[row, column], mean, rtol=0, atol=2e-6)
             np.testing.assert_allclose(found.opacity[row, column], weights.mean(), rtol=1e-5)
-
-
-def test_codes_are_divided_and_limited():
-    values = np.array([[10, 20, 30, 100], [200, 100, 0, 100], [5, 0, 0, 0]], np.uint8)
-    assert CHANNELS.straight(values).tolist() == [[26, 51, 76], [255, 255, 0], [255, 0, 0]]
-    assert CHANNELS.opacity(values)[:, 0].tolist() == pytest.approx([100 / 255, 100 / 255, 0])
-    straight = ColourChannels((0, 1, 2))
-    assert straight.straight(values).tolist() == values[:, :3].tolist()
-    assert straight.opacity(values) is None

@@ -1,16 +1,23 @@
 # ruff: noqa: F811
-"""``uplift plan`` and ``uplift build --plan``."""
+"""``uplift plan``, ``uplift build --plan``, the page of a plan and its command lines."""
 
 from __future__ import annotations
 
+import dataclasses
 import json
+import re
+import shlex
 import shutil
-from dataclasses import replace
 
+import click
 import pytest
+from uplift_cli.main import main
 
+from tests.browsing import check_page
 from tests.cli.conftest import home, refuse, run, shown  # noqa: F401
 from uplift.cube import read
+from uplift.scene.plan.page import page, verdict
+from uplift.scene.plan.plan_file import commands, cube_name
 
 
 @pytest.fixture
@@ -19,7 +26,7 @@ def here(home, kitchen, planned, monkeypatch):
     shutil.copytree(kitchen.parent, home, dirs_exist_ok=True)
 
     def plan(scene, progress):
-        return replace(planned[0], scene=scene)
+        return dataclasses.replace(planned[0], scene=scene)
 
     monkeypatch.setattr("uplift.scene.plan.plan", plan)
     return home
@@ -55,3 +62,55 @@ def test_other_files_are_refused_as_plans(refuse, here):
     ):
         error = refuse("build", "--plan", name)
         assert (error.code, error.where) == (code, name)
+
+
+def test_the_page_is_self_contained_and_lists_every_candidate(planned, tmp_path):
+    plan, _ = planned
+    text = page(plan, tmp_path / "kitchen.plan.json")
+    assert not re.search(r'(src|href)="(?!#)', text)
+    for decision in plan.decisions:
+        assert decision.title in text
+        assert all(trial.name in text for trial in decision.trials)
+    assert f"{verdict(plan)}." in text
+    assert text == page(plan, tmp_path / "kitchen.plan.json")
+
+
+def test_the_page_fits_and_is_accessible(planned, tmp_path):
+    check_page(page(planned[0], tmp_path / "kitchen.plan.json"), tmp_path)
+
+
+def test_names_cannot_break_the_page(planned, tmp_path):
+    path = tmp_path / "</style><script>.toml"
+    plan = dataclasses.replace(planned[0], scene=dataclasses.replace(planned[0].scene, path=path))
+    assert "<script" not in page(plan, tmp_path / "<b>.plan.json")
+
+
+def test_commands_are_accepted_by_the_command_line(planned, tmp_path):
+    plan, _ = planned
+    path = tmp_path / "my plan.plan.json"
+    assert cube_name(path) == "my plan.uplift"
+    for line in commands(plan, path):
+        parse(line)
+    words = shlex.split(commands(plan, path)[1])
+    assert words[words.index("--dim") + 1] == str(plan.options["dim"])
+    assert words[words.index("--coefficients") + 1] == str(plan.options["coefficients"])
+
+
+def test_options_of_candidates_are_accepted_by_the_command_line(planned):
+    start = {
+        "coefficients": "uplift build",
+        "lattice": "uplift build",
+        "wavelengths": "uplift texture a.png -o b.exr",
+        "storage": "uplift texture a.png -o b.exr",
+        "representation": "",
+    }
+    for decision in planned[0].decisions:
+        for trial in decision.trials:
+            parse(f"{start[decision.key]} {trial.cli_args}")
+
+
+def parse(line):
+    program, name, *arguments = shlex.split(line)
+    assert program == "uplift"
+    with click.Context(main, **main.context_settings) as context:
+        main.get_command(context, name).make_context(name, arguments, parent=context)

@@ -57,12 +57,8 @@ TEXTURES = "textures = 'a.png'\n"
         (TEXTURES + "\nlight = 'A'", 3, "light"),
         ("textures = 'x.*.png'", 1, "textures"),
         ("textures = ['a.png', '" + "x" * 300 + "']", 1, "textures[1]"),
-        ("textures = '" + "x" * 5000 + "*'", 1, "textures"),
         ('textures = ["x\\u0000*"]', 1, "textures[0]"),
-        ("textures = []", 1, "textures"),
-        ("textures = [3]", 1, "textures[0]"),
         (TEXTURES + "lights = ['D65', 'FL99']", 2, "lights[1]"),
-        (TEXTURES + "tolerance = true", 2, "tolerance"),
         (TEXTURES + "tolerance = nan", 2, "tolerance"),
         (TEXTURES + "tolerance = 0x1" + "0" * 9000, 2, "tolerance"),
         (TEXTURES + "quantile = 97.5", 2, "quantile"),
@@ -70,7 +66,6 @@ TEXTURES = "textures = 'a.png'\n"
         (TEXTURES + 'space = "' + "x" * 5000 + '"', 2, "space"),
         (TEXTURES + '"a\\nb" = 3', None, "a b"),
         (TEXTURES + "illuminant = 'D66'", 2, "illuminant"),
-        (TEXTURES + "observer = 'me'", 2, "observer"),
     ],
 )
 def test_an_invalid_file_is_refused_with_line_and_key(read, text, line, key):
@@ -81,16 +76,6 @@ def test_an_invalid_file_is_refused_with_line_and_key(read, text, line, key):
     assert error.problem.startswith(key)
     assert len(error.problem) < 500
     assert "\n" not in str(error)
-
-
-@pytest.mark.parametrize(
-    ("text", "suggestion"),
-    [("tolerence = 1", "'tolerance'"), ("lights = 'D66'", "'D65'"), ("space = 'sRGV'", "'sRGB'")],
-)
-def test_the_nearest_name_is_suggested(read, text, suggestion):
-    with pytest.raises(PlanFileError) as caught:
-        read(TEXTURES + text)
-    assert suggestion in caught.value.hint
 
 
 def test_a_missing_or_binary_file_is_refused(tmp_path):

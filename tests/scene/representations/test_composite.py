@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from uplift.colorimetry import observer
-from uplift.common.errors import OptionError
 from uplift.scene.representations.composite import enhanced_riemann, fourier_coefficients, split_spikes, sun_composite
-from uplift.scene.representations.samples import hat_functions, wavelengths, xyz_weights
+from uplift.scene.representations.samples import hat_functions, xyz_weights
 
 TABLES = arrays(float, (2, 81), elements=st.floats(0, 100, width=32))
 
@@ -60,12 +59,6 @@ def test_product_of_fourier_series_is_not_aliased(count):
     np.testing.assert_allclose(one.multiply(first, second), kept, atol=1e-12)
 
 
-@pytest.mark.parametrize("count", [-1, 0, 4])
-def test_even_number_of_fourier_coefficients_raises(count):
-    with pytest.raises(OptionError):
-        fourier_coefficients(count)
-
-
 @pytest.mark.parametrize("make", [sun_composite, enhanced_riemann])
 def test_spikes_multiply_exactly_on_constant_spectra(make):
     one = replace(make(7), threshold=1e-9)  # all of a spike belongs to the spikes
@@ -77,10 +70,3 @@ def test_spikes_multiply_exactly_on_constant_spectra(make):
     assert actual.spikes.positions.tolist() == [40, 60]
     np.testing.assert_allclose(one.xyz(actual), dense(light * surface) @ xyz_weights(), rtol=1e-6)
     assert one.storage(actual).tolist() == [7 + 4]
-
-
-def test_enhanced_sums_of_a_smooth_spectrum_are_riemann_sums(every):
-    even = 0.5 + 0.3 * np.sin(wavelengths() / 60)[None]
-    enhanced_code, plain = (every[name].encode_surface(even) for name in ("RE16", "RS16"))
-    np.testing.assert_allclose(enhanced_code.smooth, plain, atol=1e-3)
-    assert enhanced_code.spikes.positions.size == 0

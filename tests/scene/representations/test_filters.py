@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.scene.representations.filters import COARSE_STRIDE, EXTENTS, KINDS, Filter, candidates, resampling_matrix
+from uplift.scene.representations.filters import Filter, resampling_matrix
 
 SOME = [
     Filter("box", 5),
@@ -58,13 +58,3 @@ def test_pieces_of_the_mitchell_filter_meet_and_sum_to_one(b, c):
     scaled = taps / taps.sum() * len(taps) / 4
     assert np.abs(np.diff(scaled)).max() < 0.05 * (1 + abs(b) + abs(c))
     assert scaled[len(taps) // 2] == pytest.approx((6 - 2 * b) / 6, rel=0.02)
-
-
-def test_candidates_are_every_combination_once():
-    for kind, made in KINDS.items():
-        filters = candidates(kind)
-        sizes = [len(values) for values in made.choices.values()]
-        assert len(set(filters)) == len(filters) == len(EXTENTS) * int(np.prod(sizes))
-        coarse = candidates(kind, COARSE_STRIDE)
-        assert set(coarse) < set(filters)
-        assert all(np.isfinite(resampling_matrix(low_pass, 16)).all() for low_pass in coarse)

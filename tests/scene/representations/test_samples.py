@@ -5,11 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.scene.representations.models import interp_rows
 from uplift.scene.representations.samples import (
-    cell_overlaps,
     gauss_samples,
-    interpolation_matrix,
     point_samples,
     riemann_sums,
     sample_points,
@@ -30,13 +27,6 @@ def test_point_samples_are_linear_interpolation_both_ways(count):
     np.testing.assert_allclose(samples.xyz(taken), back @ xyz_weights(), rtol=1e-12)
 
 
-@pytest.mark.parametrize("count", [4, 7, 32])
-def test_cells_partition_the_range(count):
-    shares = cell_overlaps(count)
-    np.testing.assert_allclose(shares.sum(axis=0), 1)
-    np.testing.assert_allclose(shares.sum(axis=1), 401 / count)
-
-
 @pytest.mark.parametrize("count", [4, 16])
 def test_riemann_sums_are_means_of_cells(count):
     fine = np.repeat(RANDOM, 16 * count, axis=1)  # 401 · 16 · count samples fill the cells evenly
@@ -54,10 +44,3 @@ def test_quadrature_is_exact_for_polynomials(count):
         power = np.polynomial.chebyshev.chebval(x, np.eye(degree + 1)[-1])[None]
         # Spectra are linear between dense samples, so the rule is only approximate.
         np.testing.assert_allclose(rule.xyz(rule.encode_light(power)), power @ xyz_weights(), atol=1e-3)
-
-
-def test_interpolation_equals_numpy():
-    points = np.array([380.0, 380.25, 555.5, 780.0])
-    expected = [np.interp(points, wavelengths(), row) for row in RANDOM]
-    np.testing.assert_allclose(RANDOM @ interpolation_matrix(points), expected, rtol=1e-12)
-    np.testing.assert_allclose(interp_rows(RANDOM, np.tile(points, (3, 1))), expected, rtol=1e-12)

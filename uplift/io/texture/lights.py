@@ -32,18 +32,9 @@ UNITS = "W.m^-2.sr^-1"
 
 @dataclass(frozen=True, eq=False)
 class LightUplifter(Converter):
-    """A converter of the colours of lights to spectral power, made by `prepare_lights`, for any number of images.
+    """A converter of the colours of lights to power at ``wavelengths`` (N,) nm, made by `prepare_lights`.
 
-    Parameters
-    ----------
-    sensor, depth, encoding, out_of_gamut, channels, header, space
-        As in `Converter`; ``out_of_gamut`` is ``clip``, towards white at the same luminance.
-    table : EmissionTable
-        The table that uplifts.
-    wavelengths : ndarray, shape (N,)
-        Wavelengths of the channels in nm.
-    threads : int
-        Threads that share a band.
+    Colours that no light has are moved towards white at the same luminance.
     """
 
     table: EmissionTable

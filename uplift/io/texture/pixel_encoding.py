@@ -38,54 +38,14 @@ class PixelEncoding(ABC):
 
     @abstractmethod
     def channels(self, cube: Cube) -> tuple[str, ...]:
-        """Return the channel names.
-
-        Parameters
-        ----------
-        cube : Cube
-            The cube that uplifts.
-
-        Returns
-        -------
-        tuple of str
-            One name per number.
-
-        Raises
-        ------
-        OptionError
-            The cube has no such numbers, or wavelengths do not ascend.
-        """
+        """Names of the channels, one per number. Raises `OptionError` if the cube has no such numbers."""
 
     @abstractmethod
     def make_sampler(self, cube: Cube, threads: int) -> Sampler:
-        """Return the function that computes the numbers.
-
-        Parameters
-        ----------
-        cube : Cube
-            The cube that uplifts.
-        threads : int
-            Number of threads.
-
-        Returns
-        -------
-        callable
-            From linear RGB (..., 3), float32 in [0, 1], to numbers (..., N).
-        """
+        """The function that computes the numbers."""
 
     def describe(self, cube: Cube) -> dict[str, Any]:
-        """Return the encoding as JSON values.
-
-        Parameters
-        ----------
-        cube : Cube
-            The cube that uplifts.
-
-        Returns
-        -------
-        dict
-            ``as``, the name, and the wavelengths of a spectrum.
-        """
+        """The encoding as JSON values: ``as``, its name, and the wavelengths of a spectrum."""
         return {"as": self.name}
 
 

@@ -135,18 +135,7 @@ class Failure:
 
 @lru_cache(maxsize=1)
 def converter_for(settings: TextureSettings) -> Converter:
-    """Return the converter of the settings, which each process prepares once.
-
-    Parameters
-    ----------
-    settings : TextureSettings
-        Settings of the sequence.
-
-    Returns
-    -------
-    Converter
-        The converter.
-    """
+    """The converter of the settings, which each process prepares once."""
     return settings.prepare()
 
 

@@ -43,24 +43,10 @@ ConvertRows = Callable[[Part, int, Floats], Converted]
 
 @dataclass(frozen=True, eq=False)
 class Converter(ABC):
-    """Conversion of colours to the channels of an OpenEXR file.
+    """Conversion of linear RGB of a sensor to the channels of an OpenEXR file.
 
-    Parameters
-    ----------
-    sensor : Sensor
-        The sensor whose linear RGB are converted.
-    depth : {"half", "float"}
-        Type of the channels.
-    encoding : {"auto", "linear", "encoded"}
-        Interpretation of the numbers in images.
-    out_of_gamut : str
-        Gamut mapping for pixels outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
-    channels : tuple of str
-        Names (N,) of the channels after R, G and B.
-    header : mapping
-        Attributes of every file.
-    space : ImageSpace, optional
-        RGB space of images, by default the one that each file states.
+    ``depth`` is the type of the channels, ``channels`` (N,) the names of those after R, G and B, ``header`` the
+    attributes of every file, and ``space`` the RGB space of images, None for the one that each file states.
     """
 
     sensor: Sensor
@@ -73,82 +59,23 @@ class Converter(ABC):
 
     @abstractmethod
     def convert(self, rgb: Floats) -> Converted:
-        """Convert a block of colours.
-
-        Parameters
-        ----------
-        rgb : ndarray of shape (..., 3)
-            Linear RGB of `decoder`, float32.
-
-        Returns
-        -------
-        tuple of ndarray
-            R, G, B and the other channels: arrays that make (..., 3 + N) side by side.
-        Counts
-            Pixels that the conversion could not represent.
-        """
+        """Arrays that make R, G, B and the channels (…, 3 + N) side by side, for linear RGB (…, 3) of `decoder`."""
 
     def multiply(self, values: tuple[Floats, ...], opacity: Floats) -> tuple[Floats, ...]:
-        """Multiply converted channels by alpha.
-
-        Parameters
-        ----------
-        values : tuple of ndarray
-            What `convert` returns; the arrays are not changed.
-        opacity : ndarray of shape (..., 1)
-            Alpha in [0, 1].
-
-        Returns
-        -------
-        tuple of ndarray
-            Arrays of the same shapes.
-        """
+        """Multiply the arrays of `convert`, which are not changed, by alpha (…, 1)."""
         return tuple(each * opacity for each in values)
 
     def colour_channels(self, found: ColourChannels) -> ColourChannels:
-        """Choose how the colour channels of a part are read.
-
-        Parameters
-        ----------
-        found : ColourChannels
-            The channels that the part has.
-
-        Returns
-        -------
-        ColourChannels
-            The same, by default.
-        """
+        """How the colour channels that a part has are read: by default as they were found."""
         return found
 
     def decoder(self, part: Part) -> ReadColours:
-        """Make the conversion of a part's colours to linear RGB.
-
-        Parameters
-        ----------
-        part : Part
-            Part of an image.
-
-        Returns
-        -------
-        callable
-            From the numbers of the part to linear RGB, by default in [0, 1].
-        """
+        """Conversion of the numbers of a part to linear RGB, by default in [0, 1]."""
         return make_decoder(self.sensor, part, self.encoding, self.out_of_gamut, self.space)
 
     @contextlib.contextmanager
     def opened(self, image: Image) -> Iterator[ConvertRows]:
-        """Prepare for an image.
-
-        Parameters
-        ----------
-        image : Image
-            The image.
-
-        Yields
-        ------
-        callable
-            The conversion of rows of the image: by default `convert`, wherever they are.
-        """
+        """Yield the conversion of rows of an image: by default `convert`, wherever they are."""
         yield lambda part, first, rgb: self.convert(rgb)
 
 
@@ -156,19 +83,9 @@ class Converter(ABC):
 class Uplifter(Converter):
     """A converter of colours to spectra, made by `prepare`, for any number of images.
 
-    Parameters
-    ----------
-    sensor, depth, encoding, out_of_gamut, channels, header, space
-        As in `Converter`. The header suffices to evaluate the spectra of a texture.
-    cube : Cube
-        The cube that uplifts.
-    sample : callable
-        From linear RGB (..., 3) to the numbers (..., N) of a pixel.
-    rgb_error : callable or None
-        From linear RGB (..., 3) to the largest error (..., 1) of the spectrum's colour. None if the cube has no
-        unrealisable nodes.
-    is_linear : bool
-        Whether the numbers are linear in the spectrum.
+    ``sample`` maps linear RGB (…, 3) to the numbers (…, N) of a pixel, which ``is_linear`` if they are linear in the
+    spectrum. ``rgb_error`` maps it to the largest error (…, 1) of the spectrum's colour; None without unrealisable
+    nodes.
     """
 
     cube: Cube
@@ -266,17 +183,7 @@ def _rgb_error(cube: Cube, threads: int) -> Sampler | None:
 
 @dataclass(frozen=True, eq=False)
 class MaskedUplifter(Converter):
-    """A converter of colours to the spectra of several cubes, made by `prepare_masked`.
-
-    Parameters
-    ----------
-    sensor, depth, encoding, out_of_gamut, channels, header, space
-        As in `Converter`.
-    uplifters : tuple of Uplifter
-        The uplifters of n cubes.
-    mask : Path
-        Image of which cube a pixel belongs to.
-    """
+    """A converter of colours to the spectra of n cubes, chosen by an image, made by `prepare_masked`."""
 
     uplifters: tuple[Uplifter, ...]
     mask: Path
@@ -292,22 +199,7 @@ class MaskedUplifter(Converter):
         return self.uplifters[0].convert(rgb)
 
     def mix(self, rgb: Floats, weights: Floats) -> Converted:
-        """Uplift a block of colours.
-
-        Parameters
-        ----------
-        rgb : ndarray of shape (k, width, 3)
-            Linear RGB in [0, 1], float32.
-        weights : ndarray of shape (k, width, n)
-            Weights of the cubes, whose sum is 1.
-
-        Returns
-        -------
-        tuple of ndarray
-            R, G, B (k, width, 3), and the numbers (k, width, N) of the pixel encoding.
-        Counts
-            Pixels close to unrealisable colours.
-        """
+        """Uplift linear RGB (k, width, 3) in [0, 1] by the cubes, with weights (k, width, n) of sum 1."""
         first = self.uplifters[0]
         is_mixed = weights.max(axis=-1) < 1 if not first.is_linear else np.zeros(rgb.shape[:2], dtype=bool)
         values = np.zeros((*rgb.shape[:2], len(self.channels)), dtype=np.float32)
