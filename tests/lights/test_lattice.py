@@ -49,12 +49,9 @@ def test_nodes_are_their_own_cells():
 def test_chromaticities_outside_are_not_contained_and_move_to_the_rim():
     outside = WHITE + 1.5 * (KNOTS - WHITE)
     assert not LATTICE.contains(outside).any()
+    assert not LATTICE.contains(np.full((1, 2), np.nan)).any()
     cells = LATTICE.locate(outside)
     np.testing.assert_allclose((cells.weights[..., None] * corners(cells)).sum(axis=1), KNOTS, atol=1e-12)
-
-
-def test_nan_is_not_contained():
-    assert not LATTICE.contains(np.full((1, 2), np.nan)).any()
 
 
 def test_chromaticity_of_equal_energy():

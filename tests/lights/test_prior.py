@@ -25,11 +25,6 @@ def fitted():
     return fit_lamp_prior(LAMPS.power, SURFACES, RADIOMETRY)
 
 
-def test_rim_spectra_lie_at_the_knots():
-    np.testing.assert_allclose(chromaticity(RIM @ RADIOMETRY), LATTICE.knots, atol=1e-12)
-    assert ((RIM > 0).sum(axis=1) <= 6).all()
-
-
 def test_every_node_is_exact_and_positive():
     uv = LATTICE.nodes[:, :-1].reshape(-1, 2)
     power = mix_with_rim(smoothest_lights(uv, RADIOMETRY), uv, LATTICE, RIM, RADIOMETRY)

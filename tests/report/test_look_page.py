@@ -232,17 +232,5 @@ def test_buttons_release_reset_and_copy(opened, found):
     assert opened.errors == []
 
 
-def test_touch_moves_a_colour(opened):
-    x, y = opened.evaluate(f"(box => [box.x + box.width / 2, box.y + box.height / 2])({rect('point-1')})")
-    for kind, points in (
-        ("touchStart", [{"x": x, "y": y}]),
-        ("touchMove", [{"x": x - 40, "y": y}]),
-        ("touchEnd", []),
-    ):
-        opened.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
-    opened.evaluate(SETTLE)
-    assert text(opened, "state-1") == "chosen"
-
-
 def test_the_page_fits_and_is_accessible(html, tmp_path):
     check_page(html, tmp_path)

@@ -123,10 +123,10 @@ def test_close_entries_are_listed(crowded_cube, macbeth, hostile):
 
 def test_lost_entries_are_named(lossy_cube):
     found = assess(lossy_cube, "lossy.uplift", 1, None, ("D65",))
-    read = Page(render_report(found, worst=0))
-    assert "Lost, as an earlier entry has the same colour: über (that of grey)." in read.text
-    assert "2 crowded entries" in read.text
-    assert "; 1 lost" in read.text
+    assert (
+        "Lost, as an earlier entry has the same colour: über (that of grey)."
+        in Page(render_report(found, worst=0)).text
+    )
     values = json.loads(json.dumps(to_json(found), allow_nan=False))["crowding"]
     assert values["lost"] == [{"name": "über", "same_colour": "grey"}]
     assert {entry["name"]: entry["reach"] for entry in values["entries"]} == {"grey": 0.5, "über": 0}
@@ -138,12 +138,8 @@ def test_predicted_and_actual_errors_are_shown(small_cube, repository):
     read, measured = Page(render_report(found, worst=0)), found.calibration
     under = found.light_calibrations["FL11"]
     assert f"FL11 {under.predicted:.2f} {under.actual:.2f} {under.within_error:.0%}" in " ".join(read.text.split())
-    assert f"{found.unlike:.0%} of these colours are unlike" in read.text
-    assert f"predicted that 68 % lie within ΔE00 {measured.predicted:.2f} under A" in read.text
     assert f"they lie within {measured.actual:.2f}" in read.text
     assert "The standard errors are too small" in read.text
-    assert f"{measured.within_error:.0%} of the entries lie within their standard error" in read.text
-    assert f"mean {found.standard_error.mean:.2f}, ΔE00 under A" in read.text
     values = to_json(found)
     assert values["standard_error"]["calibration"]["within_bound"] == measured.within_bound
     assert values["standard_error"]["calibrations"]["FL11"]["real"] == under.actual
@@ -178,13 +174,9 @@ def test_json_holds_the_numbers_of_the_assessment(judged):
     assert sum(found["round_trip"]["delta_e_2000"]["moments"]["counts"]) == found["round_trip"]["colours"]
     crowded = [entry["name"] for entry in found["crowding"]["entries"]]
     assert crowded == list(judged.crowding.entries.names)
-    first = found["entries"][0]
-    assert list(first["delta_e_2000_lattice"].values()) == judged.entries.delta_e_lattice[0].tolist()
-    assert (first["reach"], first["standard_error"]) == (
-        judged.entries.half_width[0],
-        judged.entries.predicted[0],
-    )
-    assert found["standard_error"]["light"] == "A"
+    first, entries = found["entries"][0], judged.entries
+    assert list(first["delta_e_2000_lattice"].values()) == entries.delta_e_lattice[0].tolist()
+    assert (first["reach"], first["standard_error"]) == (entries.half_width[0], entries.predicted[0])
     assert found["standard_error"]["delta_e_2000"]["mean"] == judged.standard_error.mean
     assert found["standard_error"]["calibration"] is None
     assert found["failures"]["over_threshold"] == 0

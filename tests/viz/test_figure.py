@@ -61,10 +61,3 @@ def test_text_of_files_is_drawn_as_it_is(text):
         svg = to_svg(figure)
     ElementTree.fromstring(svg)
     assert svg.count(str(escape(printable(text)))) >= 2  # title and legend
-
-
-def test_mathematics_would_fail_without_figure_text():
-    figure = new_figure(3, 2)
-    figure.subplots().set_title(r"$\frac{A$")
-    with pytest.raises(ValueError, match="frac"):
-        to_svg(figure)

@@ -10,7 +10,7 @@ from uplift.common.errors import ColourError, OptionError
 from uplift.design.mixing import Ingredients, Medium, Surface, make_coat, mix
 from uplift.design.mixing.coats import COATS, DARKEST, dye_absorption, dye_transmittance, ramp
 from uplift.design.mixing.layers import NO_SURFACE, Layer
-from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, Pigment, from_opaque
+from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, from_opaque
 
 WHITE = np.ones(5)
 PLAIN = Medium(scattering=SQUARE_ROOT)
@@ -142,19 +142,6 @@ def on_ground(transmittance, ground, surface):
 def test_a_dye_on_a_ground_is_the_sum_over_passes(surface, ground):
     expected = rays_in_contact(T, ground, surface)
     np.testing.assert_allclose(on_ground(T, ground, surface), expected, atol=1e-12)
-
-
-def test_the_printed_closed_form_creates_energy():
-    """Eq. 9.7 as printed lacks the ground in its numerator: R is 24."""
-    rho = 0.04
-    assert (rho + (1 - rho) ** 2 / (rho * (1 - T**2 * rho)) > 20).all()
-    assert (on_ground(T, 1.0, Surface(rho, rho)) <= 1).all()
-
-
-def test_a_dye_is_paint_that_does_not_scatter():
-    K = np.array([0.1, 1, 5])
-    painted = Pigment(K, np.zeros(3)).layer(0.7).over(0.8)
-    np.testing.assert_allclose(on_ground(dye_transmittance(K, 0.7), 0.8, NO_SURFACE), painted)
 
 
 def test_thicknesses_of_dyes_compose_and_black_is_finite():

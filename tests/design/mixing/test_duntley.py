@@ -42,13 +42,6 @@ def test_the_differential_equations_are_satisfied(place):
     assert found.transmittance[place] == pytest.approx(T, abs=1e-7)
 
 
-def test_forward_scattering_of_diffuse_light_has_no_effect():
-    more = Flux(DIFFUSE.absorption, DIFFUSE.backward, 5 * DIFFUSE.forward)
-    np.testing.assert_array_equal(
-        duntley.layer(BEAM, DIFFUSE, 1.0).reflectance, duntley.layer(BEAM, more, 1.0).reflectance
-    )
-
-
 def test_dyes():
     """B = B' = F = F' = 0: nothing is reflected, and T = exp(−K'X)."""
     found = duntley.layer(Flux(np.array([0.4, 2.0]), NONE, NONE), Flux(np.array([0.4, 0.7]), NONE, NONE), 1.5)

@@ -21,7 +21,6 @@ from uplift.design.mixing.pigments import (
 SEVERAL = Pigment(np.array([0.3, 2.0, 0.01]), np.array([1.5, 0.2, 4.0]))
 R = np.linspace(pigments.DARKEST, 1, 200)
 RULES = [CONSTANT, SQUARE_ROOT, PowerOfReflectance(1.0)]
-GREEN_EDGE = 520.0
 
 
 def printed(K, S, X, ground):
@@ -110,14 +109,6 @@ def test_thick_paint_hides_its_ground_and_thickness_0_shows_it(paint):
     np.testing.assert_array_equal(limits.opaque_reflectance(), [1, 0, 0])
 
 
-def test_thickness_can_be_an_image(rng):
-    """A thickness for each pixel of (4, 5)."""
-    thickness = rng.random((4, 5))
-    found = SEVERAL.layer(thickness).over(0.6)
-    assert found.shape == (4, 5, 3)
-    np.testing.assert_allclose(found[2, 3], SEVERAL.layer(thickness[2, 3]).over(0.6))
-
-
 @pytest.mark.parametrize("X", [-1, np.nan, np.inf])
 def test_invalid_thickness_raises(X):
     with raises(OptionError, "invalid-thickness"):
@@ -160,13 +151,6 @@ def test_two_constants_with_equal_scattering_are_one(spectra, parts):
     np.testing.assert_allclose(mixture.absorption / mixture.scattering, expected)
 
 
-def test_the_printed_reflectivity_is_wrong():
-    """Eq. 10.6 with 1 − R² in place of (1 − R)² does not invert eq. 10.5."""
-    opaque = Pigment(np.array([0.5]), np.array([0.7])).opaque_reflectance()
-    assert (1 - opaque) ** 2 / (2 * opaque) == pytest.approx(5 / 7)
-    assert pytest.approx(5 / 7, rel=0.2) != (1 - opaque**2) / (2 * opaque)
-
-
 def test_two_grounds_determine_k_and_s(paint):
     layer = paint.layer(1.0)
     known = layer.transmittance > 0.02
@@ -188,16 +172,6 @@ def test_contradictory_reflectances_raise(on_black, on_white):
 def test_grey_paints_scatter_alike_at_all_wavelengths(sensor):
     found = dispersive(sensor)(np.full((2, 81), [[0.2], [1.0]]))
     np.testing.assert_allclose(found, np.full((2, 81), [[0.2**0.75], [1.0]]), rtol=1e-12)
-
-
-def test_scattering_is_strongest_where_an_absorption_ends(sensor):
-    """Anomalous dispersion: more on the long-wave side of an absorption band, less on its short-wave side."""
-    wavelengths, assumed = sensor.wavelengths, dispersive(sensor)
-    yellow = assumed(np.where(wavelengths < GREEN_EDGE, 0.05, 0.9))
-    blue = assumed(np.where(wavelengths < GREEN_EDGE, 0.9, 0.05))
-    assert abs(wavelengths[yellow.argmax()] - GREEN_EDGE) <= 5
-    assert abs(wavelengths[blue.argmin()] - GREEN_EDGE) <= 5
-    assert yellow.max() > 1.5 * yellow[-1]
 
 
 def test_h_is_the_mean_on_one_side_less_that_on_the_other(sensor, rng):

@@ -8,7 +8,6 @@ import pytest
 import uplift
 from benchmarks.mixing import BLUES, acrylics, published
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.design.mixing import criteria
 from uplift.design.mixing.amounts import add_lights, average_areas, stack_filters
 from uplift.design.mixing.criteria import CRITERIA, evaluate
 from uplift.design.mixing.theories import Mixer, mixers
@@ -70,15 +69,6 @@ def test_every_criterion_can_fail(small_cube, colours, mix, failed):
     assert not failed & passed(evaluate(Mixer("", "", mix), small_cube.data.sensor, colours))
 
 
-def test_hue_difference_is_an_angle(small_cube):
-    sensor = small_cube.data.sensor
-    red, orange, cyan = np.array([1.0, 0, 0]), np.array([1, 0.5, 0]), np.array([0, 1.0, 1.0])
-    assert criteria.hue_difference(sensor, red, red) == pytest.approx(0, abs=1e-9)
-    assert criteria.hue_difference(sensor, red, cyan) == pytest.approx(180, abs=1e-6)
-    there, back = criteria.hue_difference(sensor, red, orange), criteria.hue_difference(sensor, orange, red)
-    assert there == pytest.approx(back)
-
-
 def test_lights_add_up_and_areas_are_averaged(spectra, parts, sensor, rng):
     expected = sum(parts[:, i, None] * spectra[:, i] for i in range(3))
     np.testing.assert_allclose(add_lights(spectra, parts), expected)
@@ -94,15 +84,6 @@ def test_thickness_of_filters_composes_without_creating_energy(spectra):
     np.testing.assert_allclose(stack_filters(spectra, [3, 2, 1.5]), first * second)
     assert ((first >= 0) & (first <= 1)).all()
     assert (stack_filters(spectra, np.zeros(3)) == 1).all()
-
-
-def test_blue_and_yellow_of_an_atlas_are_green(small_cube, paints):
-    pair = np.stack([paints["blue"], paints["yellow"]])
-    mixer = next(one for one in mixers(small_cube) if one.name == "pigments")
-    red, green, blue = mixer.mix(pair, np.ones(2))
-    assert green > 1.05 * max(red, blue)
-    average = pair.mean(axis=0)
-    assert average[1] < average[0]
 
 
 def errors(mixtures, mixer, sensor):
@@ -126,7 +107,7 @@ def test_blues_and_yellows_are_nearer_to_measured_greens(by_name, sensor):
 
 @pytest.mark.parametrize(
     ("blue", "yellow"),
-    [("#002185", "#fcd200"), ("#005fa0", "#ffd200"), ("#0000ff", "#ffff00"), ("#190059", "#fcd200")],
+    [("#002185", "#fcd200"), ("#0000ff", "#ffff00")],
 )
 def test_common_blues_and_yellows_are_green(by_name, smooth_cube, blue, yellow):
     rgb = np.array([smooth_cube.decode([int(c[i : i + 2], 16) for i in (1, 3, 5)]) for c in (blue, yellow)])

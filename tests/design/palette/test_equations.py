@@ -64,13 +64,6 @@ def test_smoothness_is_the_second_difference_over_10_nm(metamers, model, guess):
     np.testing.assert_allclose(residuals(palette, model, guess), np.concatenate(expected), atol=1e-12)
 
 
-def test_linear_spectra_have_no_smoothness_error(metamers, model, guess):
-    x = guess.copy()
-    x[unknowns(metamers)["material", "fox"]] = np.linspace(0, 1, 81)
-    x[unknowns(metamers)["material", "moss"]] = 0.3
-    np.testing.assert_allclose(residuals(only(metamers, goals=(), smoothness=1.0), model, x), 0, atol=1e-12)
-
-
 def test_model_error_residuals_are_differences_between_colours(metamers, model, guess):
     """Also for a designed light on a given paint."""
     paint = SpectrumSpec("paint", np.linspace(0.1, 0.9, 81))

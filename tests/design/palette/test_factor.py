@@ -61,12 +61,8 @@ def test_two_reflections_are_five_times_more_accurate_than_in_rgb(model, sensor,
     assert errors[0] * 5 < errors[1]
 
 
-def test_the_flat_power_has_luminance_1(sensor):
-    rgb = screen_matrix(sensor) @ np.ones(81)
-    assert sensor.xyz(rgb)[1] == pytest.approx(1)
-
-
-def test_the_build_illuminant_is_white_on_the_screen(sensor):
+def test_the_build_illuminant_is_white_on_the_screen_and_the_flat_power_has_luminance_1(sensor):
+    assert sensor.xyz(screen_matrix(sensor) @ np.ones(81))[1] == pytest.approx(1)
     np.testing.assert_allclose(screen_matrix(sensor) @ illuminant(sensor, "D65"), 1, atol=1e-12)
 
 

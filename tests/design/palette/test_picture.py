@@ -28,26 +28,19 @@ def exr(path, **planes):
     return path
 
 
-def test_colours_are_labels_and_black_is_empty(tmp_path):
-    path = png(tmp_path / "a.png", [[SKIN, BONE, BLACK], [BONE, BONE, SKIN]])
-    found = read_weights(path, NAMES, LABELS)
+@pytest.mark.parametrize(
+    ("pixels", "labels", "weights"),
+    [
+        ([SKIN, BONE, BLACK], LABELS, [[1, 0], [0, 1], [0, 0]]),  # black is empty
+        ([SKIN, BLACK], {**LABELS, "bone": "#000000"}, [[1, 0], [0, 1]]),  # unless it is a label
+        ([(0, 0, 0), (1, 1, 1), (2, 2, 2)], None, [[0, 0], [1, 0], [0, 1]]),  # greys in order by default
+        ([(*SKIN, 255), (*SKIN, 51), (*BONE, 0), (9, 9, 9, 0)], LABELS, [[1, 0], [0.2, 0], [0, 0], [0, 0]]),  # alpha
+    ],
+)
+def test_colours_are_labels_and_alpha_is_the_weight(tmp_path, pixels, labels, weights):
+    found = read_weights(png(tmp_path / "a.png", [pixels]), NAMES, labels)
     assert found.dtype == np.float32
-    assert found.tolist() == [[[1, 0], [0, 1], [0, 0]], [[0, 1], [0, 1], [1, 0]]]
-
-
-def test_black_can_be_a_label(tmp_path):
-    path = png(tmp_path / "a.png", [[SKIN, BLACK]])
-    assert read_weights(path, NAMES, {**LABELS, "bone": "#000000"}).tolist() == [[[1, 0], [0, 1]]]
-
-
-def test_default_labels_are_greys_in_order(tmp_path):
-    path = png(tmp_path / "a.png", [[(0, 0, 0), (1, 1, 1), (2, 2, 2)]])
-    assert read_weights(path, NAMES).tolist() == [[[0, 0], [1, 0], [0, 1]]]
-
-
-def test_alpha_is_the_weight(tmp_path):
-    path = png(tmp_path / "a.png", [[(*SKIN, 255), (*SKIN, 51), (*BONE, 0), (9, 9, 9, 0)]])
-    assert read_weights(path, NAMES, LABELS)[0] == pytest.approx(np.array([[1, 0], [0.2, 0], [0, 0], [0, 0]]))
+    assert found[0] == pytest.approx(np.array(weights))
 
 
 def test_channels_named_after_materials_are_their_weights(tmp_path):

@@ -20,7 +20,7 @@ from uplift.common.errors import OptionError
 from uplift.design.palette import design, illuminant
 from uplift.design.palette.palette import Palette, SpectrumSpec
 from uplift.design.palette.picture import cutaway
-from uplift.design.palette.relight_page import MAX_MATERIALS, Relighting, page, relighting, to_half
+from uplift.design.palette.relight_page import MAX_MATERIALS, Relighting, page, relighting
 
 DISC = 84
 
@@ -140,15 +140,6 @@ def test_the_numbers_of_the_page_give_the_picture(view):
     assert numbers["materials"] == list(view.materials)
 
 
-def test_relighting_rgb_agrees_with_the_plain_formula(view):
-    assert np.abs(codes(view.rgb([0.1, 0.7, 0.4])) - expected_codes(view, [0.1, 0.7, 0.4])).max() <= 1
-
-
-def test_half_precision_is_finer_than_8_bit_codes():
-    linear = np.linspace(0, 1, 4001)
-    assert 255 * np.abs(encode(to_half(linear)) - encode(linear)).max() < 0.06
-
-
 def test_the_page_is_self_contained_and_reproducible(view):
     text = page(view)
     assert not re.search(r"""(?:src|href)=["'](?!#)|url\(|@import|https?://(?!www\.w3\.org/2000/svg)""", text)
@@ -163,11 +154,6 @@ def test_names_cannot_break_the_page():
     assert text.count("</script>") == page(arbitrary()).count("</script>")
     assert name not in text.replace(html.escape(name), "")
     assert json.loads(script(text, "numbers"))["lights"][0] == name
-
-
-def test_a_page_has_no_numbers_that_are_not_finite(view):
-    with pytest.raises(ValueError, match="JSON"):
-        page(dataclasses.replace(view, power=np.full_like(view.power, np.nan)))
 
 
 def test_the_picture_agrees_with_full_spectra(model, sensor, small_cube):
@@ -278,18 +264,13 @@ def test_sliders_scale_their_light_exposure_scales_all_and_reset_restores(opened
     assert largest_difference(tab, view, gains=[0.4, 1, 0], stops=-1.5) <= 1
     texts = [tab.evaluate(f"document.getElementById('gain-{row}-text').value") for row in range(3)]
     assert texts == ["40 %", "100 %", "0 %"]
+    slide(tab, "gain-1", 0)
+    tab.evaluate("document.querySelector('[data-light=\"1\"]').click()")
+    assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, [0, 1, 0], -1.5)).max() <= 1
     tab.evaluate("document.getElementById('reset').click()")
     start = np.eye(3)[view.start_light]
     assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, start)).max() <= 1
     assert tab.errors == []
-
-
-def test_the_name_of_a_light_selects_it_alone(opened, view):
-    tab = opened(view)
-    slide(tab, "gain-1", 0)
-    assert expected_codes(view, [0, 1, 0]).max() > 0
-    tab.evaluate("document.querySelector('[data-light=\"1\"]').click()")
-    assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, [0, 1, 0])).max() <= 1
 
 
 def test_patches_are_colours_by_full_spectra_and_by_the_factor_model(opened, view):
@@ -333,10 +314,3 @@ def test_names_highlight_materials_and_pointing_shows_names(opened, view):
     assert tab.evaluate("document.getElementById('pointed').textContent") == "material 1"
     tab.evaluate("document.querySelector('[data-material=\"2\"]').click()")
     assert (tab.canvas("mask")[..., 3] == 0).all()
-
-
-def test_the_comparison_detects_a_wrong_matrix(opened, view):
-    tab = opened(dataclasses.replace(view, to_rgb=view.to_rgb[[1, 0, 2]]))
-    assert largest_difference(tab, view) > 1
-    tab = opened(dataclasses.replace(view, to_rgb=view.to_rgb * 1.02))
-    assert largest_difference(tab, view) > 1

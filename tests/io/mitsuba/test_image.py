@@ -33,13 +33,7 @@ def texture(mi, cube_path):
 
 @pytest.mark.parametrize(
     "options",
-    [
-        {},
-        {"filter_type": "nearest"},
-        {"wrap_mode": "mirror"},
-        {"wrap_mode": "clamp"},
-        {"filter_type": "nearest", "wrap_mode": "clamp"},
-    ],
+    [{}, {"wrap_mode": "mirror"}, {"wrap_mode": "clamp"}, {"filter_type": "nearest", "wrap_mode": "clamp"}],
 )
 def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, options):
     import drjit
