@@ -13,13 +13,13 @@ import numpy as np
 
 import uplift
 from benchmarks import CUBES, DOCS, REFERENCE, record
+from benchmarks.mixing_criteria import CRITERIA, SHARES, evaluate
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import colour_science
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.design.mixing import Ingredients, Medium, dispersive, layers, make_coat, overpainter, pigments
 from uplift.design.mixing.coats import ramp
-from uplift.design.mixing.criteria import CRITERIA, SHARES, evaluate
 from uplift.design.mixing.heuristics import hsl_to_rgb
 from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, Pigment, PowerOfReflectance, Scattering, from_opaque
 from uplift.design.mixing.theories import mixers, spectral_models

@@ -7,9 +7,9 @@ import pytest
 
 import uplift
 from benchmarks.mixing import BLUES, acrylics, published
+from benchmarks.mixing_criteria import CRITERIA, evaluate
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.design.mixing.amounts import add_lights, average_areas, stack_filters
-from uplift.design.mixing.criteria import CRITERIA, evaluate
 from uplift.design.mixing.theories import Mixer, mixers
 
 SELF, CHROMATICITY, DARKER, HUE, LIGHTER, GREY, GREEN = range(len(CRITERIA))
