@@ -12,7 +12,7 @@ from tests.pages import Page
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.progress import Progress
 from uplift.lab.chart.measure import MAX_CLAIM_RATIO, SLOW_STEP, measure_method, measure_methods
-from uplift.lab.chart.method import Claims, Method, NotInstalledError, PreparedMethod, ours
+from uplift.lab.chart.method import Claims, Method, PreparedMethod, ours
 from uplift.lab.chart.methods.mallett2019 import FAMILIES
 from uplift.lab.chart.picture import render_chart
 from uplift.lab.chart.table import State, all_panels
@@ -192,14 +192,6 @@ def test_judge_is_the_stated_sensor_at_1_nm(small_task, greys, method_of):
     assert numbers["coarse_round_trip_mean"] > 1
     other = measure_method(greys, method_of(exact, claims=free), small_task).numbers
     assert 1e-3 < other["round_trip_mean"] < 0.1
-
-
-def test_missing_package_is_reported(small_task, greys):
-    def prepare(task):
-        raise NotInstalledError("it is not installed: pip install it")
-
-    row = measure_method(greys, Method("absent", "Absent", prepare), small_task)
-    assert (row.state, row.why, row.numbers) == (State.MISSING, "it is not installed: pip install it", {})
 
 
 def test_chart_describes_test_set_and_environment(small_task, greys, method_of):

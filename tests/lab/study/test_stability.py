@@ -119,11 +119,6 @@ def test_sample_covers_every_value_of_every_axis():
         assert {getattr(config, name) for config in sample} == set(values), name
 
 
-def test_sample_of_a_small_space_is_all_of_it():
-    space = DesignSpace(dims=(4,), coefficients=(3,), spaces=("sRGB",), atlases=(NO_ATLAS,), samples=100)
-    assert len(draw_sample(space)) == 2 * 5
-
-
 def test_unknown_atlas_raises_before_any_build(monkeypatch):
     monkeypatch.setattr(stability, "run", lambda *args: pytest.fail("a build ran"))
     with raises(UnknownNameError, "unknown-atlas"):

@@ -1,8 +1,6 @@
-"""Errors are those of single products, and zero for dense data."""
+"""Errors are those of single products, results are ranked, and the cheapest one is recommended."""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 import pytest
@@ -12,15 +10,20 @@ from tests.conftest import MACBETH
 from tests.helpers import raises
 from tests.lab.comparison.conftest import EFFORT
 from uplift.colorimetry.delta_e import delta_e_2000, lab
-from uplift.common.errors import AtlasError, UnknownNameError, UpliftError
+from uplift.common.errors import AtlasError, OptionError, UnknownNameError, UpliftError
 from uplift.lab.comparison.compare import (
     HEADINGS,
-    QUICK_SURFACES,
+    Comparison,
+    RepresentationResult,
+    Statistics,
+    cheapest,
     compare,
     compute_statistics,
     error_statistics,
     make_scene,
+    most_accurate,
 )
+from uplift.lab.timing import Spread
 from uplift.scene.representations.samples import SampleRepresentation, point_samples, xyz_weights
 
 
@@ -93,9 +96,40 @@ def test_named_lights_form_one_set():
         make_scene({"none": uplift.Atlas()})
 
 
-def test_thinned_scene_keeps_the_first_and_last_surface(checker):
-    assert checker.thinned(QUICK_SURFACES).names == checker.names
-    few = checker.thinned(5)
-    assert len(few.names) == len(few.surfaces) == 5
-    assert (few.names[0], few.names[-1]) == (checker.names[0], checker.names[-1])
-    assert math.isclose(few.surfaces[1, 0], checker.surfaces[checker.names.index(few.names[1]), 0])
+def row(name, high, floats, light_floats=8.0, ns=5.0, lights="smooth"):
+    found = Statistics(high / 2, 0.1, high / 2, 0.0, high / 3, high / 1.5, high)
+    return RepresentationResult(name, "made up", lights, found, floats, light_floats, Spread(ns, ns, ns, 3))
+
+
+ROWS = (
+    row("near", 0.2, 32.0),
+    row("even", 0.8, 9.0, 12.0, 30.0),
+    row("rough", 0.9, 9.0, 12.0, 3.0),
+    row("tabled", 0.7, 9.0, 81.0, 1.0),
+    row("far", 1.1, 3.0),
+    row("other", 0.1, 1.0, lights="spiky"),
+)
+FOUND = Comparison({}, {"smooth": "smooth lights (A)", "spiky": "spiky lights (FL2)"}, ROWS)
+
+
+@pytest.mark.parametrize(
+    ("target", "name"),
+    [(2.0, "far"), (1.1, "far"), (1.0, "even"), (0.9, "even"), (0.75, "tabled"), (0.5, "near")],
+)
+def test_surfaces_count_first_then_lights_then_errors(target, name):
+    assert cheapest(FOUND, "smooth", target).name == name
+
+
+def test_sets_of_lights_are_independent():
+    assert cheapest(FOUND, "spiky", 0.5).name == "other"
+
+
+def test_no_representation_is_accurate_enough():
+    assert cheapest(FOUND, "smooth", 0.1) is None
+    assert most_accurate(FOUND, "smooth").name == "near"
+
+
+@pytest.mark.parametrize("target", [0, -1, float("nan"), float("inf")])
+def test_target_must_be_positive(target):
+    with raises(OptionError, "target-not-positive"):
+        cheapest(FOUND, "smooth", target)

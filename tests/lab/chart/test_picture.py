@@ -12,7 +12,7 @@ from benchmarks.browser import browser
 from tests.browsing import check_page, open_page
 from tests.pages import Page, external_links
 from tests.parts import CHROMIUM, need
-from uplift.lab.chart.picture import SHOWN, drawn_results, render_chart, write_panel, write_pictures
+from uplift.lab.chart.picture import SHOWN, drawn_results, render_chart, write_pictures
 from uplift.lab.chart.table import State, all_panels, panels_of
 
 HOSTILE = "</script><b>x</b>"
@@ -81,11 +81,6 @@ def test_the_reader_chooses_the_number_of_colours(row_of, chart_of, tmp_path):
         assert tab.evaluate("document.querySelector('[data-choice=\"64\"]').hidden") is True
 
 
-def test_a_panel_is_a_picture_as_wide_as_a_phone(row_of, chart_of, tmp_path):
-    write_panel(chart_of(row_of("one", 80, 0.4)), panels_of(64)[1], tmp_path / "one.png")
-    assert matplotlib.image.imread(tmp_path / "one.png").shape[1] == 410
-
-
 def test_page_is_self_contained_and_escapes_names(row_of, chart_of):
     rows = row_of(HOSTILE, 80, 0.4), row_of("wrong", 1, 1, state=State.BROKEN, why=HOSTILE, numbers={})
     text = render_chart(chart_of(*rows))
@@ -98,8 +93,3 @@ def test_page_is_self_contained_and_escapes_names(row_of, chart_of):
     assert first["title"] == HOSTILE
     assert ["memory", "10 kB"] in first["lines"]
     assert second["lines"] == []
-
-
-def test_same_chart_gives_the_same_page(row_of, chart_of):
-    chart = chart_of(row_of("one", 80, 0.4))
-    assert render_chart(chart) == render_chart(chart)
