@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
 from typing import Any
 
@@ -16,3 +17,9 @@ MACBETH = ATLASES / "macbeth.txt"
 def record(page: str, data: str = "", **figures: Any) -> None:
     """Write the figures of a page to docs/data/PAGE.json, or to DATA.json if the page has several."""
     write_record(DATA / f"{data or page}.json", f"make measure PAGE={page}", **figures)
+
+
+def read_reference(name: str) -> list[dict[str, str]]:
+    """Return the rows of a published table in tests/reference, whose comments begin with '#'."""
+    with (REFERENCE / name).open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))

@@ -23,7 +23,7 @@ from uplift.colorimetry.lights import STANDARD_ILLUMINANTS, Lamps
 from uplift.common.arrays import Array
 from uplift.fit.solver import solve
 from uplift.lab.timing import spread
-from uplift.lights.discs import CLEARANCE, MAX_RADIUS, LampEntries
+from uplift.lights.discs import LampEntries
 from uplift.lights.fit import nearest_lights, unit_xyz
 from uplift.lights.lattice import DENOMINATOR, chromaticity
 from uplift.lights.lookup import EmissionTable
@@ -409,8 +409,6 @@ def main() -> None:
         space=table.space,
         shape=table.data.lattice.shape,
         prior=table.data.provenance["prior"],
-        clearance=CLEARANCE,
-        max_radius=MAX_RADIUS,
         same_colours=SAME_COLOURS,
         left_out={rule: float(rows.sum(axis=1).mean()) for rule, rows in unknown.items()},
         families=len({lamp_family(name) for name in lamps.names}),

@@ -264,8 +264,6 @@ def compare_methods(name: str) -> Row:
         "set": name,
         "spectra": len(some.rgb),
         "without_metamer": float(np.isnan(centroids[:, 0, 0]).mean()),
-        "best": best,
-        "against": {method: means[OURS] / means[method] for method in means},
         "rows": [
             {
                 "method": method,

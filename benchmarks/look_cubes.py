@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import tempfile
-import time
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -34,14 +33,12 @@ Row = dict[str, Any]
 def main() -> None:
     """Measure, draw and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
-    timed(lambda: uplift.build(ATLAS, dim=DIM))  # compiles
-    plain, seconds = timed(lambda: uplift.build(ATLAS, dim=DIM))
-    looked, with_looks = timed(lambda: uplift.build(ATLAS, dim=DIM, looks=sample_path("looks.toml")))
+    plain = uplift.build(ATLAS, dim=DIM)
+    looked = uplift.build(ATLAS, dim=DIM, looks=sample_path("looks.toml"))
     record(
         "look-cubes",
         atlas=ATLAS,
         dim=DIM,
-        build={"plain": seconds, "looks": with_looks},
         looks=looks(plain, looked),
         entries=entries(plain, looked),
         near=near(plain, looked),
@@ -50,15 +47,9 @@ def main() -> None:
     )
 
 
-def timed(build: Callable[[], Cube]) -> tuple[Cube, float]:
-    """Return a cube and the seconds that it took."""
-    begin = time.perf_counter()
-    return build(), time.perf_counter() - begin
-
-
 def looks(plain: Cube, looked: Cube) -> list[Row]:
     """Return wish, answer and distances of each look under each of its lights."""
-    rows, srgb = [], looked.data.sensor
+    rows = []
     for look in looked.data.provenance["looks"]:
         for each in look["lights"]:
             (screen,) = display_sensors([each["light"]], plain.observer)
@@ -74,20 +65,16 @@ def looks(plain: Cube, looked: Cube) -> list[Row]:
                     "before": answered,
                     "without": delta_e_rgb(screen, before, wish),
                     "with_look": delta_e_rgb(screen, after, wish),
-                    "by_day": delta_e_rgb(srgb, srgb.rgb(looked.reflectance(look["rgb"])), look["rgb"]),
                 }
             )
     return rows
 
 
 def entries(plain: Cube, looked: Cube) -> Row:
-    """Return the largest change of a reflectance at the colours of the measured entries, by mode."""
+    """Return the largest change of a reflectance at the colours of the measured entries."""
     rgb = plain.data.atlas.rgb
-    change = {
-        mode: np.abs(looked.reflectance(rgb, mode=mode) - plain.reflectance(rgb, mode=mode)).max()
-        for mode in ("spectra", "refined", "moments")
-    }
-    return {"count": len(rgb), "change": change}
+    change = np.abs(looked.reflectance(rgb) - plain.reflectance(rgb)).max()
+    return {"count": len(rgb), "change": {"spectra": change}}
 
 
 def near(plain: Cube, looked: Cube) -> list[Row]:
@@ -126,7 +113,7 @@ def render(plain: Cube, looked: Cube) -> Row:
             middle = slice(PIXELS // 2 - 12, PIXELS // 2 + 12)
             halves = np.split(images[lamp], 2, axis=1)
             patches = np.array([half[middle, middle].mean(axis=(0, 1)) for half in halves])
-            found[lamp] = {"codes": hex_codes(patches), "delta_e": delta_e_rgb(here, *patches)}
+            found[lamp] = {"delta_e": delta_e_rgb(here, *patches)}
     figure = new_figure(4.5, 4.3)
     for axes, (lamp, image) in zip(figure.subplots(2, 1), images.items(), strict=True):
         axes.imshow(to_display_codes(image, SRGB).astype(np.uint8), interpolation="nearest")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -10,13 +9,12 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, DOCS, REFERENCE, record
+from benchmarks import ATLASES, DOCS, read_reference, record
 from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.lab.study.moments import TECHNIQUES, MomentsResult, MomentsStudy, Technique, study_moments
 from uplift.lab.study.moments_plots import Curve, curves, plot_errors, plot_patches, plot_worst
 
 PICTURES = DOCS / "moments"
-THESIS = REFERENCE / "moments_todova2020.csv"
 FLOATS = (3, 5, 9, 13, 16)
 DEFAULT_FLOATS = 9
 Pair = list[float]
@@ -47,9 +45,8 @@ def main() -> None:
 def read_thesis() -> Thesis:
     """Return mean and largest ΔE76 of appendix B.1."""
     by_short = {technique.short: technique for technique in TECHNIQUES}
-    with THESIS.open(encoding="utf-8") as file:
-        rows = csv.DictReader(line for line in file if not line.startswith("#"))
-        return {(by_short[row["method"]], int(row["moments"])): [float(row["mean"]), float(row["max"])] for row in rows}
+    rows = read_reference("moments_todova2020.csv")
+    return {(by_short[row["method"]], int(row["moments"])): [float(row["mean"]), float(row["max"])] for row in rows}
 
 
 def thesis_curves(thesis: Thesis) -> dict[Technique, Curve]:

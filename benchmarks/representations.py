@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, DOCS, REFERENCE, record
+from benchmarks import ATLASES, DOCS, read_reference, record
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.lab.comparison.compare import (
@@ -78,7 +77,7 @@ def _compare(scene: Scene) -> Comparison:
 
 def printed_tables() -> dict[tuple[str, str], Printed]:
     """Return tables 6.1 and 6.2 of the thesis, by lights and representation."""
-    rows = _printed("representations_kment2011.csv")
+    rows = read_reference("representations_kment2011.csv")
     return {(row["lights"], row["representation"]): Printed(float(row["mean"]), float(row["q97_5"])) for row in rows}
 
 
@@ -88,13 +87,8 @@ def printed_filters() -> dict[tuple[str, int, str], Printed]:
         (row["lights"], int(row["samples"]), row["filter"]): Printed(
             float(row["mean"]), parameters=row["parameters"].replace(";", ",")
         )
-        for row in _printed("filters_kment2011.csv")
+        for row in read_reference("filters_kment2011.csv")
     }
-
-
-def _printed(name: str) -> list[dict[str, str]]:
-    with (REFERENCE / name).open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
 def advice(comparison: Comparison) -> Iterator[Row]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-import time
 import warnings
 from collections.abc import Callable
 from typing import Any
@@ -41,15 +40,12 @@ def main(keep_map: bool) -> None:
     """Measure, draw and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     FOLDER.mkdir(exist_ok=True)
-    begin = time.perf_counter()
     if keep_map:
         stored = json.loads((DATA / "stability.json").read_text(encoding="utf-8"))
         rows, map_environment = stored["map"], stored.get("map_environment", stored["environment"])
     else:
         rows, map_environment = failure_map(), environment()
-    print(f"failure map: {time.perf_counter() - begin:.0f} s", file=sys.stderr)
     cubes = {name: cube_sensitivity(name) for name in STORED}
-    print(f"with sensitivity: {time.perf_counter() - begin:.0f} s", file=sys.stderr)
     record(
         "stability",
         light=NARROW_BAND_LIGHT,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, DOCS, MACBETH, REFERENCE, record
+from benchmarks import ATLASES, DOCS, MACBETH, read_reference, record
 from uplift.atlas import on_grid
 from uplift.colorimetry.delta_e import delta_e_1976, lab
 from uplift.common.arrays import Array
@@ -40,23 +39,16 @@ Nodes = tuple[Array, Array]
 """Wavelengths (n,) and weights (n,)."""
 
 
-def printed_rows(name: str) -> list[dict[str, str]]:
-    """Return the rows of a table of the paper."""
-    path = REFERENCE / f"meyer1988_{name}.csv"
-    with path.open(encoding="utf-8") as file:
-        return list(csv.DictReader(line for line in file if not line.startswith("#")))
-
-
 def tables_1() -> Mapping[tuple[str, int], Nodes]:
     """Return tables 1a and 1b by channel and order; undefined orders are absent."""
-    lines = printed_rows("table1")
+    lines = read_reference("meyer1988_table1.csv")
     keys = dict.fromkeys((row["channel"], int(row["order"])) for row in lines)
     return {key: _nodes(lines, "order", key[0], str(key[1])) for key in keys}
 
 
 def table_2(row: str) -> tuple[list[Nodes], float]:
     """Return a row of table 2: the rules of the channels, and the error."""
-    lines = printed_rows("table2")
+    lines = read_reference("meyer1988_table2.csv")
     error = next(float(one["error"]) for one in lines if one["row"] == row)
     return [_nodes(lines, "row", channel, row) for channel in CHANNELS], error
 
@@ -172,7 +164,7 @@ def matrices(setup: RenderSetup, opponent: OpponentSpace) -> list[Row]:
     """Return each channel as a sum of X, Y and Z."""
     spaces = {"SML": cone_space(setup.wavelengths, setup.cmfs), "AC1C2": opponent.space}
     rows = []
-    for row in printed_rows("matrices"):
+    for row in read_reference("meyer1988_matrices.csv"):
         space = spaces[row["space"]]
         index = space.channels.index(row["channel"])
         expected, ours = np.array([float(row[axis]) for axis in "XYZ"]), space.matrix[index]

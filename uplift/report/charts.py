@@ -71,9 +71,7 @@ def spectra_chart(wavelengths: Array, measured: Array, answered: Array, lattice:
 def _new_axes(position: tuple[float, float, float, float]) -> tuple[Any, Any]:
     figure = new_figure(*SIZE, layout=None)
     figure.set_dpi(72)
-    figure.patch.set_visible(False)
     axes = figure.add_axes(position)
-    axes.patch.set_visible(False)
     axes.spines[["top", "right"]].set_visible(False)
     axes.set_axisbelow(True)
     return figure, axes

@@ -90,7 +90,5 @@ def _diagram(draw: Callable[..., None], label: str, table: EmissionTable) -> Mar
 
     with matplotlib.rc_context(STYLE):
         figure, ((axes,),) = new_panels(1, 1, PANEL, MARGINS)
-        figure.patch.set_visible(False)
-        axes.patch.set_visible(False)
         draw(axes, table)
         return to_page_svg(figure, label)

@@ -154,7 +154,12 @@ def to_svg(figure: Any, label: str = "") -> Markup:
 
 
 def to_page_svg(figure: Any, label: str = "") -> Markup:
-    """Render a figure as an ``svg`` element whose colours follow the light or dark scheme of ``viz/page.css``."""
+    """Render a figure without background as an ``svg`` element.
+
+    Its colours follow the light or dark scheme of ``viz/page.css``.
+    """
+    for background in (figure.patch, *(axes.patch for axes in figure.axes)):
+        background.set_visible(False)
     return Markup(_COLOUR.sub(lambda found: _page_colour(found[0]), to_svg(figure, label)))
 
 

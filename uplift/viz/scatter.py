@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -28,6 +28,8 @@ LEGEND: dict[str, Any] = {
     "title_fontsize": 9,
     "labelspacing": 0.7,
 }
+# Inches of a panel of a page, where it is about as wide on a desk as on a phone.
+PAGE_PANEL_SIZE = (4.1, 3.0)
 
 # Number of decades below which an axis has ticks at these multiples of powers of ten.
 TICKS = (
@@ -84,6 +86,13 @@ def set_log_ticks(axis: Any) -> None:
     decades = np.log10(high / low)
     subs = next(subs for limit, subs in TICKS if decades < limit)
     axis.set_major_locator(LogLocator(subs=subs, numticks=MAX_TICKS))
+
+
+def legend_handles(styles: Iterable[dict[str, Any]]) -> list[Any]:
+    """Make the artists of a legend from the styles of their lines."""
+    from matplotlib.lines import Line2D
+
+    return [Line2D([], [], **(MARKER | style)) for style in styles]
 
 
 def style_title(axes: Any, title: str) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.wavelengths import CHANNELS, allocation_error, printed_rows, run_trials
+from benchmarks import read_reference
+from benchmarks.wavelengths import CHANNELS, allocation_error, run_trials
 from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
@@ -28,7 +29,7 @@ from uplift.scene.wavelengths.sampling import RenderSetup, balanced, evaluate
 
 
 def _matrix(space: str) -> Array:
-    own = [row for row in printed_rows("matrices") if row["space"] == space]
+    own = [row for row in read_reference("meyer1988_matrices.csv") if row["space"] == space]
     return np.array([[float(row[key]) for key in "XYZ"] for row in own])
 
 
@@ -53,13 +54,13 @@ def test_matrices_equal_the_printed_ones(cmfs: Array, opponent: OpponentSpace) -
 
 
 def test_eigenvalues_equal_the_printed_ones(opponent: OpponentSpace) -> None:
-    printed = [float(row["eigenvalue"]) for row in printed_rows("matrices") if row["eigenvalue"]]
+    printed = [float(row["eigenvalue"]) for row in read_reference("meyer1988_matrices.csv") if row["eigenvalue"]]
     np.testing.assert_allclose(opponent.eigenvalues, printed, rtol=3e-3)
 
 
 def test_rules_equal_tables_1a_and_1b(cmfs: Array, opponent: OpponentSpace) -> None:
     rules = quadrature_rules(opponent.space, grid(), cmfs)
-    printed = printed_rows("table1")
+    printed = read_reference("meyer1988_table1.csv")
     pairs, undefined = [], []
     for channel, orders in zip(CHANNELS, rules, strict=True):
         for order, rule in orders.items():
@@ -80,7 +81,7 @@ def test_rules_equal_tables_1a_and_1b(cmfs: Array, opponent: OpponentSpace) -> N
 def test_four_wavelength_rule_equals_table_2(cmfs: Array, opponent: OpponentSpace, setting_c: RenderSetup) -> None:
     rules = quadrature_rules(opponent.space, grid(), cmfs)
     shared = four_wavelength_rule(rules, channel_functions(opponent.space, grid(), cmfs))
-    table = [row for row in printed_rows("table2") if row["row"] == "2"]
+    table = [row for row in read_reference("meyer1988_table2.csv") if row["row"] == "2"]
     nodes = np.concatenate([rule.nodes for rule in shared])
     weights = np.concatenate([rule.weights for rule in shared])
     np.testing.assert_allclose(nodes, [float(row["wavelength"]) for row in table], atol=0.101)
@@ -88,7 +89,7 @@ def test_four_wavelength_rule_equals_table_2(cmfs: Array, opponent: OpponentSpac
     np.testing.assert_allclose(weights * (printed[0] / weights[0]), printed, atol=2e-4)
     # Our ColorChecker is another measurement than the paper's.
     for allocation, row in ((shared, "2"), ((rules[0][3], rules[1][2], rules[2][1]), "1")):
-        expected = next(float(r["error"]) for r in printed_rows("table2") if r["row"] == row)
+        expected = next(float(r["error"]) for r in read_reference("meyer1988_table2.csv") if r["row"] == row)
         assert allocation_error(setting_c, opponent.space, allocation) == pytest.approx(expected, rel=0.03)
 
 

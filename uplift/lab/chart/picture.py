@@ -33,9 +33,10 @@ from uplift.viz.html import Tooltip
 from uplift.viz.scatter import (
     FRONT_LINE,
     LEGEND,
-    MARKER,
+    PAGE_PANEL_SIZE,
     Label,
     draw_labels,
+    legend_handles,
     new_panels,
     pareto_front,
     pareto_steps,
@@ -94,9 +95,7 @@ def draw_shapes(axes: Any, chart: Chart, corner: tuple[float, float]) -> None:
 def _draw_key(
     axes: Any, corner: tuple[float, float], title: str | None, entries: Sequence[tuple[str, dict[str, Any]]]
 ) -> None:
-    from matplotlib.lines import Line2D
-
-    handles = [Line2D([], [], **(MARKER | style)) for _, style in entries]
+    handles = legend_handles(style for _, style in entries)
     names = [figure_text(name) for name, _ in entries]
     key = axes.legend(handles, names, title=title, loc="upper left", bbox_to_anchor=corner, **LEGEND)
     axes.legend_ = None
@@ -191,8 +190,6 @@ SHOWN = 3
 PANEL_SIZE = (5.6, 4.0)
 """Inches of each."""
 MARGINS = {"left": 0.045, "right": 0.99, "bottom": 0.03, "top": 0.975, "wspace": 0.13, "hspace": 0.28}
-PAGE_PANEL_SIZE = (4.1, 3.0)
-"""Inches of a panel of a page, where it is about as wide on a desk as on a phone."""
 PAGE_MARGINS = {"left": 0.115, "right": 0.955, "bottom": 0.165, "top": 0.99}
 KEY_SIZE = (4.1, 2.15)
 """Inches of the legend of a page."""
@@ -226,8 +223,12 @@ def page_panels(chart: Chart) -> list[tuple[Panel, Markup]]:
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        panels = enumerate(all_panels(chart))
-        return [(panel, _page_panel(panel, chart, number)) for number, panel in panels]
+        pages = []
+        for number, panel in enumerate(all_panels(chart)):
+            figure, _ = _one_panel(panel, chart, number, PAGE_MARGINS)
+            label = f"{_title(panel)}, {panel.colours}, over {panel.axis}"
+            pages.append((panel, to_page_svg(figure, label)))
+        return pages
 
 
 def page_key(chart: Chart) -> Markup:
@@ -236,7 +237,6 @@ def page_key(chart: Chart) -> Markup:
 
     with matplotlib.rc_context(STYLE):
         figure, cells = new_panels(1, 1, KEY_SIZE, {"left": 0, "right": 1, "bottom": 0, "top": 1})
-        figure.patch.set_visible(False)
         cells[0, 0].set_axis_off()
         draw_shapes(cells[0, 0], chart, (0.0, 1.0))
         return to_page_svg(figure, "Meanings of shapes and lines")
@@ -267,13 +267,6 @@ def _one_panel(panel: Panel, chart: Chart, number: int, margins: dict[str, float
     draw_panel(cells[0, 0], panel, chart, number)
     label_panel(cells[0, 0], panel, chart, number)
     return figure, cells[0, 0]
-
-
-def _page_panel(panel: Panel, chart: Chart, number: int) -> Markup:
-    figure, axes = _one_panel(panel, chart, number, PAGE_MARGINS)
-    for background in (figure.patch, axes.patch):
-        background.set_visible(False)
-    return to_page_svg(figure, f"{_title(panel)}, {panel.colours}, over {panel.axis}")
 
 
 TITLE = "Spectral upsampling: speed against accuracy"

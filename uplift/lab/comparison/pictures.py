@@ -21,8 +21,10 @@ from uplift.viz.scatter import (
     FRONT_LINE,
     LEGEND,
     MARKER,
+    PAGE_PANEL_SIZE,
     Label,
     draw_labels,
+    legend_handles,
     new_panels,
     pareto_front,
     pareto_steps,
@@ -59,8 +61,6 @@ def family_colours(families: Iterable[str]) -> dict[str, str]:
 
 PANEL_SIZE, LEGEND_HEIGHT = (6.0, 4.0), 0.55
 """Inches."""
-PAGE_PANEL_SIZE = (4.1, 3.0)
-"""Inches of a panel of a page, where it is about as wide on a desk as on a phone."""
 PAGE_MARGINS = {"left": 0.1, "right": 0.97, "bottom": 0.14, "top": 0.99}
 FAMILY_LINE = {"linewidth": 0.8, "alpha": 0.45, "zorder": 1}
 """Style of the lines from each size of a family to the next."""
@@ -131,11 +131,8 @@ def page_panels(comparison: Comparison) -> list[tuple[str, Markup]]:
 
 def _page_panel(panel: _Panel) -> Markup:
     figure, cells = new_panels(1, 1, PAGE_PANEL_SIZE, PAGE_MARGINS)
-    axes = cells[0, 0]
-    for background in (figure.patch, axes.patch):
-        background.set_visible(False)
-    _draw_panel(axes, panel)
-    _draw_labels(axes, panel)
+    _draw_panel(cells[0, 0], panel)
+    _draw_labels(cells[0, 0], panel)
     return to_page_svg(figure, f"{panel.title}, over {panel.cost.title}")
 
 
@@ -224,13 +221,9 @@ def _draw_labels(axes: Any, panel: _Panel) -> None:
 
 
 def _draw_legend(figure: Any, comparison: Comparison) -> None:
-    from matplotlib.lines import Line2D
-
     colours = family_colours(result.family for result in comparison.results)
-    styles = {name: MARKER | {"color": colour} for name, colour in colours.items()}
-    styles["Pareto front"] = MARKER | FRONT_LINE
-    handles = [Line2D([], [], **style) for style in styles.values()]
-    figure.legend(handles, list(styles), loc="lower center", ncols=6, **LEGEND)
+    styles = {name: {"color": colour} for name, colour in colours.items()} | {"Pareto front": FRONT_LINE}
+    figure.legend(legend_handles(styles.values()), list(styles), loc="lower center", ncols=6, **LEGEND)
 
 
 WIDTH, PANEL_HEIGHT = 13.2, 4.0
@@ -243,12 +236,16 @@ VISIBLE = 1.0
 """ΔE00 that is just visible side by side; the thesis prints smaller ones in bold."""
 
 
-def draw_boxes(comparison: Comparison) -> Any:
-    """Return the matplotlib figure."""
-    figure = new_figure(WIDTH, PANEL_HEIGHT * len(comparison.sets))
-    panels = figure.subplots(len(comparison.sets), 1, squeeze=False)[:, 0]
+def draw_boxes(comparison: Comparison, *, upright: bool = True) -> Any:
+    """Return the matplotlib figure, of upright boxes for a desk or of lying ones for a phone."""
+    counts = [len(comparison.of(name)) for name in comparison.sets]
+    if upright:
+        figure, heights = new_figure(WIDTH, PANEL_HEIGHT * len(counts)), None
+    else:
+        figure, heights = new_figure(NARROW_WIDTH, ROW_HEIGHT * sum(counts) + 0.6 * len(counts)), counts
+    panels = figure.subplots(len(counts), 1, squeeze=False, height_ratios=heights)[:, 0]
     for axes, (name, title) in zip(panels, comparison.sets.items(), strict=True):
-        _draw_box_panel(axes, capitalise(title), comparison.of(name))
+        _draw_box_panel(axes, capitalise(title), comparison.of(name), upright=upright)
     return figure
 
 
@@ -257,28 +254,11 @@ def page_figures(comparison: Comparison) -> tuple[Markup, Markup]:
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        upright, lying = _transparent(draw_boxes(comparison)), _transparent(_draw_narrow(comparison))
+        upright, lying = draw_boxes(comparison), draw_boxes(comparison, upright=False)
         return to_page_svg(upright, LABEL), to_page_svg(lying, LABEL)
 
 
-def _draw_narrow(comparison: Comparison) -> Any:
-    rows = sum(len(comparison.of(name)) for name in comparison.sets)
-    figure = new_figure(NARROW_WIDTH, ROW_HEIGHT * rows + 0.6 * len(comparison.sets))
-    heights = [len(comparison.of(name)) for name in comparison.sets]
-    panels = figure.subplots(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
-    for axes, (name, title) in zip(panels, comparison.sets.items(), strict=True):
-        _draw_box_panel(axes, capitalise(title), comparison.of(name), upright=False)
-        axes.invert_yaxis()
-    return figure
-
-
-def _transparent(figure: Any) -> Any:
-    for background in (figure.patch, *(axes.patch for axes in figure.axes)):
-        background.set_visible(False)
-    return figure
-
-
-def _draw_box_panel(axes: Any, title: str, results: Sequence[RepresentationResult], *, upright: bool = True) -> None:
+def _draw_box_panel(axes: Any, title: str, results: Sequence[RepresentationResult], *, upright: bool) -> None:
     boxes = [_box(result) for result in results]
     orientation = "vertical" if upright else "horizontal"
     artists = axes.bxp(boxes, showfliers=False, patch_artist=True, widths=0.62, orientation=orientation)
@@ -300,6 +280,7 @@ def _draw_box_panel(axes: Any, title: str, results: Sequence[RepresentationResul
         axes.axvline(VISIBLE, **line)
         axes.set(xscale="log", xlabel="ΔE00")
         axes.set_xlim(left=lowest)
+        axes.invert_yaxis()
     set_log_ticks(values)
     values.set_major_formatter("{x:g}")
     axes.minorticks_off()
