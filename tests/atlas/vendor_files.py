@@ -188,55 +188,48 @@ def spd(atlas: Atlas) -> Files:
     return {f"{atlas[0].name}.spd": ("# wavelength reflectance\n" + "\n".join(lines) + "\n").encode()}
 
 
+def _jcamp(atlas: Atlas, units: str, data: str) -> bytes:
+    head = f"##TITLE={atlas[0].name}\n##JCAMP-DX=4.24\n##DATA TYPE=UV-VIS SPECTRUM\n"
+    return f"{head}{units}##NPOINTS={len(atlas[0].values)}\n{data}\n##END=\n".encode()
+
+
 def jcamp_points(atlas: Atlas) -> Files:
     entry = atlas[0]
     pairs = "\n".join(f"{nm:g}, {100 * value:.8f}" for nm, value in zip(entry.wavelengths, entry.values, strict=True))
-    text = (
-        f"##TITLE={entry.name}\n##JCAMP-DX=4.24\n##DATA TYPE=UV-VIS SPECTRUM\n##XUNITS=NANOMETERS\n"
-        f"##YUNITS=% REFLECTANCE\n##NPOINTS={len(entry.values)}\n##XYPOINTS=(XY..XY)\n{pairs}\n##END=\n"
-    )
-    return {"one.jdx": text.encode()}
+    units = "##XUNITS=NANOMETERS\n##YUNITS=% REFLECTANCE\n"
+    return {"one.jdx": _jcamp(atlas, units, f"##XYPOINTS=(XY..XY)\n{pairs}")}
 
 
 def jcamp_table(atlas: Atlas) -> Files:
     """Equal steps, descending, in micrometres, with factors."""
-    entry = atlas[0]
-    nm, values = entry.wavelengths[::-1], entry.values[::-1]
-    lines = [
-        f"{1e-3 * nm[first]:.4f} " + " ".join(f"{round(1e8 * value):d}" for value in values[first : first + 6])
-        for first in range(0, len(nm), 6)
-    ]
-    text = (
-        f"##TITLE={entry.name}\n##JCAMP-DX=4.24\n##DATA TYPE=UV-VIS SPECTRUM\n##XUNITS=MICROMETERS\n"
-        f"##YUNITS=REFLECTANCE\n##XFACTOR=1.0\n##YFACTOR=0.00000001\n##FIRSTX={1e-3 * nm[0]}\n##LASTX={1e-3 * nm[-1]}\n"
-        f"##NPOINTS={len(nm)}\n##XYDATA=(X++(Y..Y))\n" + "\n".join(lines) + "\n##END=\n"
-    )
-    return {"table.dx": text.encode()}
+    um, values = 1e-3 * atlas[0].wavelengths[::-1], np.rint(1e8 * atlas[0].values[::-1]).astype(int)
+    rows = (" ".join([f"{um[first]:.4f}", *map(str, values[first : first + 6])]) for first in range(0, len(um), 6))
+    units = "##XUNITS=MICROMETERS\n##YUNITS=REFLECTANCE\n##XFACTOR=1.0\n##YFACTOR=0.00000001\n"
+    units += f"##FIRSTX={um[0]}\n##LASTX={um[-1]}\n"
+    return {"table.dx": _jcamp(atlas, units, "##XYDATA=(X++(Y..Y))\n" + "\n".join(rows))}
+
+
+def _envi_header(atlas: Atlas, fields: str, unit: str, length: float) -> bytes:
+    nm = atlas[0].wavelengths
+    return (
+        f"ENVI\nsamples = {len(nm)}\nlines = {len(atlas)}\nbands = 1\nheader offset = 0\n"
+        f"file type = ENVI Spectral Library\ninterleave = bsq\n{fields}wavelength units = {unit}\n"
+        f"spectra names = {{{', '.join(atlas.names)}}}\n"
+        f"wavelength = {{{', '.join(f'{length * each:.5f}' for each in nm)}}}\n"
+    ).encode()
 
 
 def envi(atlas: Atlas) -> Files:
     """A spectral library in micrometres, with integers and a factor."""
-    nm = atlas[0].wavelengths
     values = np.round(1e8 * np.array([entry.values for entry in atlas])).astype("<i4")
-    header = (
-        f"ENVI\ndescription = {{ paints }}\nsamples = {len(nm)}\nlines = {len(atlas)}\nbands = 1\nheader offset = 0\n"
-        "file type = ENVI Spectral Library\ndata type = 3\ninterleave = bsq\nbyte order = 0\n"
-        "wavelength units = Micrometers\nreflectance scale factor = 100000000\n"
-        f"spectra names = {{{', '.join(atlas.names)}}}\n"
-        f"wavelength = {{{', '.join(f'{1e-3 * each:.5f}' for each in nm)}}}\n"
-    )
-    return {"library.sli": values.tobytes(), "library.hdr": header.encode()}
+    fields = "description = { paints }\ndata type = 3\nbyte order = 0\nreflectance scale factor = 100000000\n"
+    return {"library.sli": values.tobytes(), "library.hdr": _envi_header(atlas, fields, "Micrometers", 1e-3)}
 
 
 def envi_floats(atlas: Atlas) -> Files:
-    nm = atlas[0].wavelengths
-    header = (
-        f"ENVI\nsamples = {len(nm)}\nlines = {len(atlas)}\nbands = 1\nheader offset = 0\n"
-        "file type = ENVI Spectral Library\n"
-        f"data type = 5\ninterleave = bsq\nbyte order = 1\nspectra names = {{{', '.join(atlas.names)}}}\n"
-        f"wavelength units = Nanometers\nwavelength = {{{', '.join(f'{each:g}' for each in nm)}}}\n"
-    )
-    return {"floats.hdr": header.encode(), "floats.sli": np.array([e.values for e in atlas]).astype(">f8").tobytes()}
+    values = np.array([entry.values for entry in atlas]).astype(">f8")
+    header = _envi_header(atlas, "data type = 5\nbyte order = 1\n", "Nanometers", 1.0)
+    return {"floats.hdr": header, "floats.sli": values.tobytes()}
 
 
 def _cells(atlas: Atlas) -> list[list[str | float]]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -61,27 +62,30 @@ def ocio_names() -> Iterable[str]:
 def _configuration(place: str) -> Any:
     import PyOpenColorIO
 
-    try:
+    with _usable(place):
         return PyOpenColorIO.Config.CreateFromFile(place)
-    except PyOpenColorIO.Exception as error:
-        raise _invalid(place, error) from error
 
 
 def _space(config: Any, space: Any, place: str) -> OcioSpace:
     import PyOpenColorIO
 
-    try:
+    with _usable(place):
         processor = PyOpenColorIO.Config.GetProcessorToBuiltinColorSpace(config, space.getName(), REFERENCE)
         cpu = processor.getOptimizedCPUProcessor(PyOpenColorIO.OPTIMIZATION_LOSSLESS)
-    except PyOpenColorIO.Exception as error:
-        raise _invalid(place, error) from error
     return OcioSpace(space.getName(), space.getEncoding() == "scene-linear", cpu)
 
 
-def _invalid(place: str, error: Exception) -> OptionError:
-    reason = " ".join(str(error).split())
-    return OptionError(
-        f"the configuration of OpenColorIO cannot be used: {reason}",
-        path=place,
-        hint="correct the environment variable OCIO, or unset it to use the built-in configuration",
-    )
+@contextlib.contextmanager
+def _usable(place: str) -> Iterator[None]:
+    """Translate the exceptions of OpenColorIO to `OptionError`."""
+    import PyOpenColorIO
+
+    try:
+        yield
+    except PyOpenColorIO.Exception as error:
+        reason = " ".join(str(error).split())
+        raise OptionError(
+            f"the configuration of OpenColorIO cannot be used: {reason}",
+            path=place,
+            hint="correct the environment variable OCIO, or unset it to use the built-in configuration",
+        ) from error

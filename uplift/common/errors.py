@@ -11,24 +11,6 @@ from uplift.common.text import printable
 if TYPE_CHECKING:
     from uplift.common.arrays import StrPath
 
-__all__ = [
-    "AtlasError",
-    "ChartFileError",
-    "ColourError",
-    "CubeFileError",
-    "LookError",
-    "OptionError",
-    "OutputError",
-    "PaletteError",
-    "PlanFileError",
-    "TextureError",
-    "UnknownNameError",
-    "UpliftError",
-    "UpliftWarning",
-    "needs_extra",
-    "unknown_name",
-]
-
 
 class Diagnostic(Exception):  # noqa: N818
     """Fields that errors and warnings share.
