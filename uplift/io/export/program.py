@@ -33,6 +33,8 @@ LOOP = re.compile(
     re.MULTILINE,
 )
 """A loop to be written out: its statement is on the same line, or in braces."""
+EXAMPLE = re.compile(r"\n\n(?P<lines>(?: {7}.+\n)+)")
+"""The example in the comment of a public function."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,7 @@ class Language:
     """Suffix of programs, files of macros, suffix of the file of public functions, and wavelengths of one call.
 
     The table is, by ``forms``, the default first: in the program, a ``"header"``, or in a ``"file"`` of numbers.
+    ``vector`` is what types such as ``vec3`` begin with.
     """
 
     suffix: str
@@ -47,13 +50,14 @@ class Language:
     calls: str
     width: int = 4
     forms: tuple[str, ...] = ("file",)
+    vector: str = ""
 
 
 LANGUAGES = {
     "c": Language(".h", ("c.h",), ".c", 16, ("header", "file")),
     "cuda": Language(".cuh", ("cuda.cuh",), ".cuh"),
-    "glsl": Language(".glsl", ("glsl.glsl", "shader.glsl"), ".glsl"),
-    "hlsl": Language(".hlsl", ("hlsl.hlsl", "shader.glsl"), ".glsl"),
+    "glsl": Language(".glsl", ("glsl.glsl", "shader.glsl"), ".glsl", vector="vec"),
+    "hlsl": Language(".hlsl", ("hlsl.hlsl", "shader.glsl"), ".glsl", vector="float"),
 }
 """Languages of `write_program`."""
 
@@ -124,7 +128,9 @@ def compose(kind: str, table: Table, style: str, stem: str, form: str, words: di
     language, name, image = LANGUAGES[style], identifier(stem), table.image()
     text = _read(f"{kind}.c")
     text = text.replace("${macros}", "".join(_read(each) for each in language.macros))
-    text = text.replace("${calls}", _read(f"{kind}_calls{language.calls}"))
+    calls = _read(f"{kind}_calls{language.calls}")
+    text = text.replace("${calls}", calls)
+    text = text.replace("${example}", _example(calls, language.vector))
     text = text.replace("${table}", _read(f"table_{form}.c"))
     text = _unroll(text, {f"UP_{key}": value for key, value in table.constants.items()})
     text = re.sub(r"\bup_", f"{name}_", text)
@@ -173,6 +179,13 @@ def comment(text: str) -> str:
 
 def _read(name: str) -> str:
     return (files("uplift.io.export") / "source" / name).read_text(encoding="ascii")
+
+
+def _example(calls: str, vector: str) -> str:
+    """Return the first example of the public functions, for the beginning of the program."""
+    found = EXAMPLE.search(calls)
+    assert found is not None
+    return found["lines"].replace("UP_VEC", vector).removesuffix("*/\n").rstrip()
 
 
 def _unroll(text: str, constants: dict[str, Any]) -> str:

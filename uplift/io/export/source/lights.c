@@ -1,7 +1,9 @@
 /* A spectral uplifting table of lights: linear RGB of any brightness in, spectral power out, in single precision.
 
    Written by uplift ${version} from the table ${digest}.
-   RGB is linear ${space} for the ${observer}; ${lamps} lamps. Power 1 at all wavelengths has luminance 1, as has RGB (1, 1, 1). */
+   RGB is linear ${space} for the ${observer}; ${lamps} lamps. Power 1 at all wavelengths has luminance 1, as has RGB (1, 1, 1).
+
+${example} */
 ${macros}
 /* Direction from white in u'v', from 0 to 4 counterclockwise from the first knot: 1 per quarter turn, by |u| + |v|. */
 UP_FUNCTION float up_angle(float u, float v)

@@ -1,7 +1,7 @@
 /* Power of linear RGB at four wavelengths in nm; its colour is exactly this RGB. Colours that no light has move towards
    white of the same luminance.
 
-       vec4 power = up_power(vec3(8000.0, 5000.0, 900.0), vec4(450.0, 500.0, 550.0, 600.0)); */
+       UP_VEC4 power = up_power(UP_VEC3(8000.0, 5000.0, 900.0), UP_VEC4(450.0, 500.0, 550.0, 600.0)); */
 UP_VEC4 up_power(UP_VEC3 rgb, UP_VEC4 wavelengths)
 {
     UP_ARRAY(colour, 3);
