@@ -26,8 +26,7 @@ from uplift import models
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.scene.plan import SearchGrid
-from uplift.scene.plan.context import ColourSet
+from uplift.scene.plan.context import ColourSet, SearchGrid
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")  # about optional dependencies

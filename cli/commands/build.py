@@ -221,8 +221,7 @@ def command(
     if plan_path is not None:
         if others := [each.opts[-1] for each in context.command.params if each.name in given - ALLOWED_WITH_PLAN]:
             raise click.UsageError(f"The plan already sets these options: leave out {', '.join(others)}.")
-        from uplift.scene.plan import read_plan
-        from uplift.scene.plan.plan_file import cube_name
+        from uplift.scene.plan.plan_file import cube_name, read_plan
 
         plan = read_plan(plan_path)
         build = partial(plan.build, debug=options["debug"])

@@ -51,8 +51,9 @@ def command(scene: str, output: str | None, style: str, force: bool) -> None:
     """
     enable_jit_cache()
     from uplift.common.files import check_outputs, write_text
-    from uplift.scene.plan import plan, read_scene_file, to_json
+    from uplift.scene.plan import plan, read_scene_file
     from uplift.scene.plan.page import page
+    from uplift.scene.plan.plan_file import to_json
 
     path = Path(f"{Path(scene).stem}.plan.json" if output is None else output)
     html = path.with_suffix(".html")

@@ -29,8 +29,8 @@ from uplift.io.scene_colours import file_digest
 from uplift.lab.chart.table import Requirement, all_panels, read_chart, recommend_cube
 from uplift.lookup import Cube, load
 from uplift.pipeline.options import Options, check_memory
-from uplift.scene.plan import read_plan, read_scene_file
-from uplift.scene.plan.plan_file import FORMAT
+from uplift.scene.plan import read_scene_file
+from uplift.scene.plan.plan_file import FORMAT, read_plan
 
 SAMPLES = ROOT / "uplift" / "samples" / "files"
 GRID = np.arange(380.0, 781.0, 5.0)

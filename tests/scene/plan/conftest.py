@@ -12,9 +12,10 @@ import uplift
 from tests.conftest import MACBETH
 from tests.io.texture.conftest import planes, write_exr
 from uplift.scene import plan
+from uplift.scene.plan.context import SearchGrid
 from uplift.scene.representations.samples import point_samples, riemann_sums
 
-SMALL = plan.SearchGrid(coefficients=(5, 9), dims=(3, 5), reference=7, predicting=60, confirming=90)
+SMALL = SearchGrid(coefficients=(5, 9), dims=(3, 5), reference=7, predicting=60, confirming=90)
 LIGHTS = ("D65", "FL11")
 
 

@@ -18,6 +18,7 @@ from uplift.colorimetry import observer
 from uplift.common.errors import PlanFileError
 from uplift.io.scene_colours import Images
 from uplift.scene import plan
+from uplift.scene.plan.plan_file import read_plan, to_json
 
 
 def test_every_decision_selects_the_cheapest_candidate_within_its_limit(planned):
@@ -90,10 +91,10 @@ def test_the_plan_file_builds_the_same_cube(planned, kitchen, tmp_path):
     found, _ = planned
     shutil.copytree(kitchen.parent, tmp_path / "moved")
     path = tmp_path / "moved" / "kitchen.plan.json"
-    write(path, plan.to_json(found, kitchen.parent / "kitchen.plan.json"))
+    write(path, to_json(found, kitchen.parent / "kitchen.plan.json"))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
-        cube = plan.read_plan(path).build()
+        cube = read_plan(path).build()
     np.testing.assert_array_equal(cube.data.points.coefficients, found.final_build.cube.data.points.coefficients)
     assert (cube.data.complete_cells is not None) == found.final_build.is_sparse
 
@@ -108,22 +109,22 @@ def write(path, values):
 def plan_file(planned, kitchen, tmp_path):
     """Path of a plan file in a copy of the scene's folder, and its values."""
     shutil.copytree(kitchen.parent, tmp_path / "copy")
-    values = plan.to_json(planned[0], kitchen.parent / "kitchen.plan.json")
+    values = to_json(planned[0], kitchen.parent / "kitchen.plan.json")
     return tmp_path / "copy" / "kitchen.plan.json", values
 
 
 def test_changed_and_missing_sources_are_refused(plan_file):
     path, values = plan_file
     write(path, values)
-    assert plan.read_plan(path).textures == (path.parent / "wood.exr",)
+    assert read_plan(path).textures == (path.parent / "wood.exr",)
     with (path.parent / "macbeth.txt").open("a", encoding="utf-8") as file:
         file.write("\n")
     with raises(PlanFileError, "source-changed") as caught:
-        plan.read_plan(path)
+        read_plan(path)
     assert "scene.atlases[0].path: 'macbeth.txt'" in caught.value.problem
     (path.parent / "wood.exr").unlink()
     with raises(PlanFileError, "file-not-found") as caught:
-        plan.read_plan(path)
+        read_plan(path)
     assert "scene.textures[0].path" in caught.value.problem
     assert "wood.exr" in caught.value.problem
 
@@ -147,6 +148,6 @@ def test_an_invalid_plan_is_refused_with_its_key(plan_file, spoil, code, start):
     spoil(values)
     write(path, values)
     with raises(PlanFileError, code) as caught:
-        plan.read_plan(path)
+        read_plan(path)
     assert caught.value.problem.startswith(start)
     assert caught.value.hint

@@ -10,9 +10,7 @@ Each decision is measured on colours of the scene's own textures; docs/plan.md d
 
 from __future__ import annotations
 
-from uplift.scene.plan.context import SearchGrid
-from uplift.scene.plan.plan_file import PlanFile, read_plan, to_json
 from uplift.scene.plan.planning import Plan, plan
 from uplift.scene.plan.scene_file import SceneFile, read_scene_file
 
-__all__ = ["Plan", "PlanFile", "SceneFile", "SearchGrid", "plan", "read_plan", "read_scene_file", "to_json"]
+__all__ = ["Plan", "SceneFile", "plan", "read_scene_file"]

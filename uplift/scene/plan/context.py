@@ -123,18 +123,10 @@ def occupied_cells(lattice: Lattice, rgb: Array) -> Mask:
 
 @dataclass(frozen=True)
 class SearchGrid:
-    """Candidates of the cube, and sizes of the pixel samples.
+    """Candidates of the cube, in ascending order, and sizes of the pixel samples.
 
-    Parameters
-    ----------
-    coefficients : tuple of int
-        Numbers of coefficients to try, ascending.
-    dims : tuple of int
-        Dims to try.
-    reference : int
-        Dim of the reference cube, which has the last of the ``coefficients``.
-    predicting, confirming : int
-        Pixels to choose candidates by, and to verify the result on.
+    The ``reference`` is the dim of the reference cube, which has the last of the ``coefficients``. Candidates are
+    chosen by ``predicting`` pixels and verified on ``confirming`` ones.
     """
 
     coefficients: tuple[int, ...] = (3, 5, 7, 9, 11, 13, 15, 17)

@@ -36,19 +36,9 @@ SUFFIX = ".plan.json"
 
 
 def to_json(plan: Plan, path: Path) -> dict[str, Any]:
-    """Convert a plan to JSON values.
+    """All decisions of a plan with their measurements, its wavelengths and its command lines, as JSON values.
 
-    Parameters
-    ----------
-    plan : Plan
-        The plan.
-    path : Path
-        The file to write it to. Paths of textures and atlases are relative to its folder.
-
-    Returns
-    -------
-    dict
-        All decisions with their measurements, the wavelengths with their weights, and the command lines.
+    ``path`` is the file to write them to: paths of textures and atlases are relative to its folder.
     """
     scene, final = plan.scene, plan.final_build
     # All options in JSON values, so that later defaults do not change the build.
@@ -168,21 +158,7 @@ def _join(command: str, words: Iterable[object]) -> str:
 
 @dataclass(frozen=True)
 class PlanFile:
-    """Contents of a plan file that a build needs.
-
-    Parameters
-    ----------
-    path : Path
-        The plan file.
-    textures, atlases : tuple of Path
-        Source files, unchanged since the plan was made.
-    encoding : str
-        Encoding of the textures.
-    sparse : bool
-        Whether the cube has only the cells of the textures.
-    options : dict
-        Options of `uplift.build`.
-    """
+    """What a build needs of a plan: its unchanged sources, the ``options`` of the build, and whether it is sparse."""
 
     path: Path
     textures: tuple[Path, ...]
@@ -192,20 +168,7 @@ class PlanFile:
     options: dict[str, Any]
 
     def build(self, *, debug: bool = False, progress: ProgressCallback = ignore_progress) -> Cube:
-        """Build the planned cube.
-
-        Parameters
-        ----------
-        debug : bool
-            Store the round of every node.
-        progress : ProgressCallback, optional
-            Called with each step.
-
-        Returns
-        -------
-        Cube
-            The cube, with the warnings and errors of `uplift.build`.
-        """
+        """Build the planned cube, with the warnings and errors of `uplift.build`."""
         scene = Images(self.textures, self.encoding) if self.sparse else None
         options = {**self.options, "debug": debug}
         return build(self.atlases or None, scene=scene, progress=progress, **options)
@@ -252,22 +215,9 @@ class _PlanTable(SpecModel):
 
 
 def read_plan(path: StrPath) -> PlanFile:
-    """Read a plan file.
+    """Read a plan file that was written from `to_json`.
 
-    Parameters
-    ----------
-    path : path-like
-        A JSON file written from `to_json`.
-
-    Returns
-    -------
-    PlanFile
-        What a build needs.
-
-    Raises
-    ------
-    PlanFileError
-        If the file is not a valid plan, or a texture or an atlas is missing or has changed.
+    Raises `PlanFileError` if it is not a valid plan, or a texture or an atlas is missing or has changed.
     """
     file = read_json(path, PlanFileError)
     table = file.validate(_PlanTable, hint=HINT)
