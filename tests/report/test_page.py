@@ -84,8 +84,6 @@ def test_names_are_escaped(small_cube, hostile):
 def test_points_over_the_threshold_are_listed(spoilt, macbeth):
     read = Page(render_report(assess(spoilt, "spoilt.uplift", 1, macbeth, ("D65",)), worst=0))
     assert "2 nodes of 512 over the threshold of 0.0001." in read.text
-    assert "2 over the threshold" in read.text
-    assert "No failures" not in read.text
     for point in (100, 300):
         assert ", ".join(f"{value:.4f}" for value in spoilt.data.lattice.points[point]) in read.text
 
@@ -111,8 +109,6 @@ def test_close_entries_are_listed(crowded_cube, macbeth, hostile):
         html = render_report(found, worst=0)
         section = html[html.index("<h2>Crowding") : html.index("<h2>Entries")]
         assert f"relative to the {wanted} spectrum" in section
-        assert "uplift build --dim auto" in section
-        assert "Lost" not in section
         rows = Page(html).table("entry", "box", "nearest other")
         shown = found.crowding.entries
         assert [row[0].parts[0] for row in rows] == list(shown.names)
@@ -156,7 +152,6 @@ def test_missing_standard_errors_are_explained(plain_cube, lossy_cube, macbeth):
     for cube, why in ((plain_cube, "built without an atlas, so no data"), (few, "its 2 entries are too few")):
         found = assess(cube, "none.uplift", 1, macbeth, ("D65",))
         text = Page(render_report(found, worst=0)).text
-        assert "The cube has none: " in text
         assert why in text
         assert to_json(found)["standard_error"]["delta_e_2000"] is None
         assert {entry["standard_error"] for entry in to_json(found)["entries"]} <= {None}

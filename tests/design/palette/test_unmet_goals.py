@@ -79,8 +79,6 @@ DAY, GIVEN, NEW = (
     "text",
     [
         DAY + GIVEN,
-        DAY + GIVEN + 'colours.grey.day = "#808080"',
-        "smoothness = 0\nmodel-error = 0\n" + DAY + NEW,
         "smoothness = 0\nmodel-error = 0\n" + DAY + "materials.new = { design = true, bounds = false }",
         "lights.odd.design = true\n" + NEW,
         DAY + NEW + 'colours.new.day = { free = "alone" }',

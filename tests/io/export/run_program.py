@@ -74,16 +74,8 @@ def ptx(path):
     """Compile to PTX, the assembly language of graphics processors. Returns it."""
     need(NVCC)
     path.with_suffix(".cu").write_text(KERNEL.format(header=path.name))
-    command = [
-        "nvcc",
-        "-ptx",
-        "-Werror",
-        "all-warnings",
-        path.with_suffix(".cu"),
-        "-o",
-        path.with_suffix(".ptx"),
-    ]
-    subprocess.run(command, check=True)
+    options = ("-ptx", "-Werror", "all-warnings")
+    subprocess.run(["nvcc", *options, path.with_suffix(".cu"), "-o", path.with_suffix(".ptx")], check=True)
     return path.with_suffix(".ptx").read_text()
 
 
