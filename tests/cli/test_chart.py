@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import re
 from dataclasses import replace
@@ -49,57 +48,31 @@ def test_all_files_are_written_and_fronts_printed(quick, numbers):
     assert sorted(path.name for path in folder.iterdir()) == FILES
     assert matplotlib.image.imread(folder / "chart.png").std() > 0.05
     assert (folder / "chart.svg").read_text(encoding="utf-8").startswith("<svg")
-    text = (folder / "chart.html").read_text(encoding="utf-8")
-    assert re.search(r"marker-0-\d", text)
-    assert "Round trip, judged at 1 nm" in result.stdout
-    assert "with set-up: 65,536 colours per call" in " ".join(result.stdout.split())
+    assert re.search(r"marker-0-\d", (folder / "chart.html").read_text(encoding="utf-8"))
     assert sum(name in result.stdout for name in numbers) >= 2
     assert result.stderr == "out: chart.csv, chart.png, chart.svg, chart.html\n"
+    assert all(found["time_ns"] > 0 and found["bytes"] > 0 for found in numbers.values())
+    assert {row.method for row in read_chart(folder / "chart.csv").results} - set(numbers) <= FOREIGN
 
 
-def test_table_records_the_environment(quick):
-    with (quick[0] / "chart.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    reasons = {row["method"]: row["why"] for row in rows if row["state"] != "measured"}
-    assert all("it needs " in why or why.startswith("needs ") for why in reasons.values())
-    assert reasons.keys() <= FOREIGN
-    rows = [row for row in rows if row["method"] not in reasons]
-    for fact in ("machine", "versions", "commit"):
-        assert len({row[fact] for row in rows}) == 1
-        assert rows[0][fact]
-    assert all(float(row["time_ns"]) > 0 and float(row["bytes"]) > 0 for row in rows)
+@pytest.mark.parametrize("kind", ["mean", "p99", "max"])
+def test_round_trips_are_as_the_methods_predict(numbers, kind):
+    """Fine lattices are more accurate, and interpolated spectra at least as accurate as interpolated moments."""
 
+    def error(name):
+        return numbers[name][f"coarse_round_trip_{kind}"]
 
-def test_round_trip_of_mallett2019_is_exact_in_srgb(numbers):
-    """Up to the rounding of its table."""
-    assert numbers["mallett2019"]["coarse_round_trip_max"] < 0.02
-    assert numbers["mallett2019"]["round_trip_mean"] < 0.05 * numbers["smits1999"]["round_trip_mean"]
-
-
-def test_fine_lattices_are_more_accurate(numbers):
-    for kind in ("mean", "p99", "max"):
-        fine, coarse = (numbers[f"moments9-{dim}-moments"][f"coarse_round_trip_{kind}"] for dim in (64, 16))
-        assert fine < coarse / 2
-
-
-def test_interpolated_spectra_are_at_least_as_accurate_as_moments(numbers):
+    assert error("moments9-64-moments") < error("moments9-16-moments") / 2
+    assert error("mallett2019") < 0.02  # exact in sRGB up to the rounding of its table
     for cube in ("moments9-16", "moments9-64", "moments9-16-atlas"):
-        for kind in ("mean", "p99", "max"):
-            spectra, moments = (
-                numbers[f"{cube}-{mode}"][f"coarse_round_trip_{kind}"] for mode in ("spectra", "moments")
-            )
-            assert spectra <= moments
+        assert error(f"{cube}-spectra") <= error(f"{cube}-moments")
 
 
-def test_atlas_improves_its_own_materials(numbers):
+def test_errors_under_other_lights_are_as_the_methods_predict(numbers):
+    """An atlas improves its own materials, and box spectra are the worst."""
     own = {name: numbers[f"moments9-16{name}-spectra"]["own_lights_mean"] for name in ("", "-atlas")}
     assert own["-atlas"] < own[""] / 2
-
-
-def test_box_spectra_have_the_largest_errors_under_other_lights(numbers):
-    for name, found in numbers.items():
-        if name != "macadam1935":
-            assert found["FL11_mean"] < numbers["macadam1935"]["FL11_mean"]
+    assert max(numbers, key=lambda name: numbers[name]["FL11_mean"]) == "macadam1935"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
@@ -137,16 +110,11 @@ def test_chart_can_be_redrawn_from_its_table(quick, run, refuse):
     assert (error.code, error.path.name) == ("file-exists", "chart.csv")
 
 
-def test_recommendation_from_a_table(quick, run, refuse):
+def test_recommendations(quick, run, refuse, repository):
     table = quick[0] / "chart.csv"
     result = run("chart", "--recommend", "--from", table, "--tolerance", 0.05, "--light", "D65")
     assert re.search(r"\n  uplift build (--atlas FILE )?--dim \d+ ", result.stdout)
-    error = refuse("chart", "--recommend", "--from", table, "--time-ns", 0.5)
-    assert error.code == "requirements-not-met"
-    assert "0.5" in error.problem
-
-
-def test_recommendation_from_the_packaged_chart(run, repository):
+    assert refuse("chart", "--recommend", "--from", table, "--time-ns", 0.5).code == "requirements-not-met"
     result = run("chart", "--recommend", "--tolerance", 1, "--light", "FL11", "--atlas-materials")
     assert "--atlas FILE" in result.stdout
     stored = (repository / "uplift" / "lab" / "chart" / MEASURED).read_text(encoding="utf-8")
@@ -167,7 +135,7 @@ def test_recommendation_from_the_packaged_chart(run, repository):
 def test_invalid_input_is_an_error(refuse, home, macbeth, arguments, code):
     (home / "file").write_text("mine")
     assert refuse("chart", "--atlas", macbeth, *arguments).code == code
-    assert [path.name for path in home.iterdir()] in (["file"], ["chart", "file"], ["file", "chart"])
+    assert {path.name for path in home.iterdir()} <= {"chart", "file"}
 
 
 def test_requirements_need_recommend(misuse):

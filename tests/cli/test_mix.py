@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import colorsys
 import json
 
 import matplotlib.image
@@ -34,10 +33,6 @@ def test_blue_and_yellow_are_green(mixed):
     assert (found["ramp"][0]["hex"], found["ramp"][-1]["hex"]) == (BLUE, YELLOW)
     assert found["ramp"][4]["hex"] == found["hex"]
     assert mixed(BLUE, YELLOW) == found
-    assert 490 < found["dominant_wavelength"] < 560
-    assert not found["complementary"]
-    codes = [int(found["hex"][i : i + 2], 16) / 255 for i in (1, 3, 5)]
-    assert found["hsv"] == pytest.approx(colorsys.rgb_to_hsv(*codes), abs=0.01)
 
 
 @pytest.mark.parametrize("kind", ["--pigment", "--dye"])
@@ -58,13 +53,10 @@ def test_a_colour_mixed_with_itself_is_unchanged(mixed, kind, options):
 def test_table_has_mixture_ramp_and_spectrum(run):
     lines = run("mix", f"2:{BLUE}", YELLOW, "--wavelengths", "450,550", "--steps", 3).stdout.splitlines()
     assert lines[0] == f"pigment     2 of {BLUE}, 1 of {YELLOW}"
-    assert lines[1].startswith("linear RGB  0.")
-    assert lines[2].startswith("hue         550 nm, purity 0.")
-    assert lines[3].startswith("encoded     HSV 0.3")
+    starts = ("linear RGB  0.", "hue         550 nm, purity 0.", "encoded     HSV 0.3")
+    assert all(line.startswith(start) for line, start in zip(lines[1:4], starts, strict=True))
     assert lines[4].endswith(YELLOW)
-    assert lines[5].endswith("450–550 nm")
     assert lines[7].startswith("   450 nm")
-    assert "ramp" not in run("mix", BLUE).stdout
 
 
 def test_entries_by_name_have_their_measured_spectra(mixed, cubes, macbeth):
@@ -83,10 +75,7 @@ def test_thin_coats_show_the_ground(mixed):
     thin, thick = (mixed("#803020", "--thickness", x, "--ground", "#f0e8d8")["rgb"] for x in (0.1, 1000))
     assert min(np.subtract(thin, thick)) > 0.05
     assert mixed("#803020", "--thickness", 0, "--ground", "#f0e8d8")["hex"] == "#f0e8d8"
-
-
-def test_paints_by_their_colours_on_white_and_black(mixed):
-    paint = "#c8342a/#601810"
+    paint = "#c8342a/#601810"  # its colours on white and black
     assert mixed(paint, "--thickness", 1)["hex"] == "#c8342a"
     assert mixed(paint, "--thickness", 1, "--ground", "black")["hex"] == "#601810"
 
@@ -95,7 +84,6 @@ def test_lights_and_filters(run, mixed):
     assert mixed("--additive", "#ff0000", "#00ff00")["hex"] == "#ffff00"
     bright = run("mix", "--additive", "3:#804020", "3:#804020", "--format", "json")
     (warning,) = warning_lines(bright)
-    assert "[0, 1]" in warning
     assert "(scale)" in warning
     one = mixed("--additive", "#804020")["rgb"]
     np.testing.assert_allclose(json.loads(bright.stdout)["rgb"], np.divide(one, one[0]))
@@ -129,14 +117,12 @@ def test_paint_over_an_image(run, refuse, home, cubes):
     ("words", "code"),
     [
         (("teal",), "colour"),
-        (("0:#ffffff",), "option"),
         (("-1:#ffffff",), "option"),
         (("1:1.5,0,0",), "rgb-out-of-gamut"),
         (("#802020/#c03030",), "colour"),
         (("#802020", "--thickness", "-1"), "invalid-thickness"),
         (("#802020", "--refractive-index", "0.5"), "option"),
         (("--filter", "#802020", "--thickness", "2"), "option"),
-        (("#802020", "--cube", "none.uplift"), "cube-not-found"),
         (("#802020", "--atlas", "none.txt"), "file-not-found"),
     ],
 )
@@ -153,6 +139,7 @@ def test_invalid_input_is_an_error(refuse, words, code):
         (BLUE, "--additive", "--ground", "white"),
         (BLUE, "--steps", "1"),
         (BLUE, "--over", "in.exr", "-o", "out.exr", "--plot", "a.png"),
+        ("--theories", BLUE, YELLOW, "--thickness", 2),
     ],
 )
 def test_wrong_usage(misuse, words):
@@ -167,7 +154,3 @@ def test_theories_are_those_of_the_library(mixed, run):
     assert by_title["Kubelka–Munk"] == mixed(f"2:{BLUE}", YELLOW)["hex"]
     table = run("mix", "--theories", f"2:{BLUE}", YELLOW).stdout
     assert all(title in table and code in table for title, code in by_title.items())
-
-
-def test_theories_take_opaque_colours_only(run):
-    assert run("mix", "--theories", BLUE, YELLOW, "--thickness", 2, code=2).stdout == ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import matplotlib.image
 import numpy as np
 import pytest
 
@@ -15,16 +16,32 @@ materials.grey.rgb = "#808080"
 materials.new.design = true
 colours.new.day = "{}"
 """
+PAIR = """
+lights.day.illuminant = "D65"
+lights.lamp.illuminant = "FL11"
+materials.leaf.rgb = "#306020"
+materials."old brick".rgb = "#c05040"
+"""
 
 
 @pytest.fixture
 def spec(home):
+    """A material to design, by the colour that it is to have."""
+
     def spec(colour="#a06040"):
-        path = home / "spec.toml"
-        path.write_text(SPEC.format(colour), encoding="utf-8")
-        return path
+        (home / "spec.toml").write_text(SPEC.format(colour), encoding="utf-8")
+        return "spec.toml"
 
     return spec
+
+
+@pytest.fixture
+def pair(home):
+    """Two given materials, and an image of labels."""
+    (home / "two.toml").write_text(PAIR, encoding="utf-8")
+    labels = np.array([[(255, 0, 0), (0, 0, 255), (0, 0, 0)]], np.uint8)
+    matplotlib.image.imsave(home / "labels.png", labels)
+    return "two.toml"
 
 
 def test_matrix_is_printed(run, spec):
@@ -34,15 +51,12 @@ def test_matrix_is_printed(run, spec):
     assert "not met" not in text
 
 
-def test_goals_that_cannot_be_met_are_printed(run, spec):
+def test_goals_that_cannot_be_met_are_printed(run, spec, home):
     """A material cannot be brighter than the perfect reflector."""
-    path = spec()
+    path = home / spec()
     path.write_text(path.read_text().replace('"#a06040"', "[1.2, 1.2, 1.2]"), encoding="utf-8")
-    text = run("palette", path).stdout
-    (line,) = [line for line in text.splitlines() if line.startswith("not met: ")]
-    assert "new" in line
-    assert "day" in line
-    assert "ΔE00" in line
+    (line,) = [line for line in run("palette", path).stdout.splitlines() if line.startswith("not met: ")]
+    assert all(word in line for word in ("new", "day", "ΔE00"))
 
 
 def test_json_reproduces_the_matrix(run, spec):
@@ -56,18 +70,23 @@ def test_json_reproduces_the_matrix(run, spec):
     assert found["missed"] == []
 
 
-def test_files_are_written(run, spec, home):
+def test_files_are_written(run, refuse, spec, home):
     files = ("-o", "new.txt", "--plot", "m.png", "--plot-spectra", "s.png")
-    text = run("palette", spec(), *files).stderr
-    assert "new.txt: 1 designed materials" in text
+    assert "new.txt: 1 designed materials" in run("palette", spec(), *files).stderr
     assert uplift.read_atlas("new.txt").names == ("new",)
     assert all((home / name).read_bytes()[1:4] == b"PNG" for name in ("m.png", "s.png"))
-
-
-def test_files_are_replaced_only_with_force(refuse, run, spec, home):
-    (home / "m.png").write_text("mine")
     assert refuse("palette", spec(), "--plot", "m.png").code == "file-exists"
     run("palette", spec(), "--plot", "m.png", "--force")
+
+
+def test_pages(run, pair, home):
+    assert run("palette", pair, "--html", "two.html").stderr.startswith("two.html: ")
+    text = (home / "two.html").read_text(encoding="utf-8")
+    assert 'width="512" height="512"' in text
+    assert ">old brick</button>" in text
+    labels = ("--label", "leaf=#ff0000", "--label", "old brick=#0000ff")
+    run("palette", pair, "--html", "three.html", "--image", "labels.png", *labels)
+    assert 'width="3" height="1"' in (home / "three.html").read_text(encoding="utf-8")
 
 
 def test_invalid_specs_are_errors(refuse, spec):
@@ -75,3 +94,23 @@ def test_invalid_specs_are_errors(refuse, spec):
     assert error.code == "invalid-colour"
     assert "reddish" in error.problem
     assert refuse("palette", "none.toml").code == "file-not-found"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        (("--html", "a.html", "--image", "labels.png", "--label", "leaf"), "option"),
+        (("--html", "a.html", "--image", "labels.png"), "texture"),
+        (("--html", "a.html", "--image", "labels.png", "--label", "leaf=#1", "--label", "leaf=#2"), "option"),
+        (("--html", "two.toml"), "output-is-input"),
+    ],
+)
+def test_invalid_input_is_reported_before_any_work(refuse, pair, home, monkeypatch, arguments, code):
+    monkeypatch.setattr("uplift.design.palette.design", lambda *_: pytest.fail("designed"))
+    assert refuse("palette", pair, *arguments).code == code
+    assert not (home / "a.html").exists()
+
+
+@pytest.mark.parametrize("arguments", [("--image", "labels.png"), ("--html", "a.html", "--label", "leaf=#ff0000")])
+def test_options_that_need_others(misuse, pair, arguments):
+    misuse("palette", pair, *arguments)
