@@ -10,13 +10,7 @@ import click
 
 from uplift.common.text import format_value, parse_float, parse_whole
 
-from .completion import (
-    complete_atlas,
-    complete_cube,
-    complete_illuminant,
-    complete_observer,
-    complete_space,
-)
+from .completion import complete_atlas, complete_cube, complete_illuminant, complete_observer, complete_space
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 OUTPUT_FORMAT = "uplift.output-format"
@@ -205,16 +199,10 @@ input_option = click.option(
 )
 encoded_option = click.option("--encoded", is_flag=True, help="Numbers are encoded 8-bit codes from 0 to 255.")
 fill_option = click.option(
-    "--fill-missing",
-    is_flag=True,
-    help="Take colours that a cube built with --scene lacks from the packaged cube.",
+    "--fill-missing", is_flag=True, help="Take colours that a cube built with --scene lacks from the packaged cube."
 )
 atlas_folders_option = click.option(
-    "--atlas-dir",
-    "folders",
-    multiple=True,
-    metavar="DIR",
-    help=_repeatable("Folder to search for atlases", ""),
+    "--atlas-dir", "folders", multiple=True, metavar="DIR", help=_repeatable("Folder to search for atlases", "")
 )
 output_folder_option = click.option("-o", "--output", metavar="DIR", help="Folder for tables and plots.")
 force_option = click.option("--force", is_flag=True, help="Replace existing files.")

@@ -215,8 +215,4 @@ def _count(names: Sequence[str], label: str) -> str:
     return f"{len(names)} {label}" + (f" ({', '.join(names)})" if names else "")
 
 
-PRINTERS: dict[str, Callable[[Listing], None]] = {
-    "table": _print_table,
-    "json": _print_json,
-    "csv": _print_csv,
-}
+PRINTERS: dict[str, Callable[[Listing], None]] = {"table": _print_table, "json": _print_json, "csv": _print_csv}

@@ -10,7 +10,7 @@ import click
 
 from ..options import force_option, format_option, light_option, plot_option
 from ..output.answers import format_rgb, hex_code, patch, print_fields
-from ..output.console import csv_writer, emit, make_table, print_json, print_json_stream, say, show
+from ..output.console import csv_writer, emit, make_table, print_json_answers, say, show
 from .query import ColourCommand, QueryStream, ask, colour_options, result_object
 
 if TYPE_CHECKING:
@@ -88,12 +88,7 @@ def _bounds(stream: QueryStream, block: Sequence[QueryResult], *, single: bool) 
 
 
 def _print_json(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
-    """Print one object for a colour given on the command line, else an array."""
-    objects = chain.from_iterable(_objects(cube, *block) for block in blocks)
-    if single:
-        print_json(next(objects), indent=None)
-    else:
-        print_json_stream(objects)
+    print_json_answers(chain.from_iterable(_objects(cube, *block) for block in blocks), single=single)
 
 
 def _objects(cube: Cube, results: Sequence[QueryResult], found: Sequence[Bounds]) -> Iterable[dict[str, Any]]:
@@ -130,10 +125,7 @@ def _print_csv(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
         for row, result in enumerate(results):
             for each in found:
                 light = each.light.name
-                errors = (
-                    result.standard_errors.get(light, ""),
-                    result.error_bounds.get(light, ""),
-                )
+                errors = (result.standard_errors.get(light, ""), result.error_bounds.get(light, ""))
                 largest = each.largest
                 differences = [float(values[row]) for values in (largest.delta_e_2000, largest.outer)]
                 lab_range = each.box[row].ravel().tolist()

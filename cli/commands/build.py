@@ -63,10 +63,7 @@ class LatticeDim(click.ParamType):  # type: ignore[type-arg]
 @atlas_option("Measured spectra")
 @scale_option
 @click.option(
-    "-o",
-    "--output",
-    metavar="FILE",
-    help="Cube to write. [default: named after atlas and dim, in the current folder]",
+    "-o", "--output", metavar="FILE", help="Cube to write. [default: named after atlas and dim, in the current folder]"
 )
 @click.option(
     "--dim",
@@ -118,10 +115,7 @@ class LatticeDim(click.ParamType):  # type: ignore[type-arg]
     help="Measured spectra that shape the learnt prior without being constraints; repeatable.",
 )
 @click.option(
-    "--look",
-    "looks",
-    metavar="LOOKS.toml",
-    help="File of looks: colours, and what they are to be under other lights.",
+    "--look", "looks", metavar="LOOKS.toml", help="File of looks: colours, and what they are to be under other lights."
 )
 @click.option(
     "--exclude-family",
@@ -131,11 +125,7 @@ class LatticeDim(click.ParamType):  # type: ignore[type-arg]
     help="Family of the shipped library that the learnt prior must not know, for tests on it; repeatable.",
 )
 @click.option(
-    "--threshold",
-    type=NUMBER,
-    default=1e-4,
-    show_default=True,
-    help="Largest residual of a node, |linear RGB|.",
+    "--threshold", type=NUMBER, default=1e-4, show_default=True, help="Largest residual of a node, |linear RGB|."
 )
 @click.option(
     "--scene",

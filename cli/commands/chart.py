@@ -48,9 +48,7 @@ FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
     "--light", help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: mean of five]"
 )
 @click.option(
-    "--atlas-materials",
-    is_flag=True,
-    help="With --recommend: ΔE00 of the atlas entries instead of unseen materials.",
+    "--atlas-materials", is_flag=True, help="With --recommend: ΔE00 of the atlas entries instead of unseen materials."
 )
 @force_option
 def command(
@@ -96,19 +94,20 @@ def command(
     if atlas_materials or any(value is not None for value in (time_ns, delta_e, light)):
         raise click.UsageError("--time-ns, --tolerance, --light and --atlas-materials require --recommend.")
     from uplift.common.files import check_folder
+    from uplift.lab.chart.table import read_chart
 
     folder = check_folder(output, FILES, inputs=files, force=force)
-    chart = _read(source) if source is not None else _measure(files, patterns, colours, quick=quick)
+    chart = read_chart(source) if source is not None else _measure(files, patterns, colours, quick=quick)
     _write(chart, folder, force=force)
     _print_fronts(chart)
     say(f"{folder}: {', '.join(FILES)}", err=True)
 
 
 def _recommend(source: str | None, requirement: Requirement) -> None:
-    from uplift.lab.chart.table import recommend_cube, shipped_chart
+    from uplift.lab.chart.table import read_chart, recommend_cube, shipped_chart
     from uplift.viz.format import format_error, format_size, format_time
 
-    row = recommend_cube(_read(source) if source is not None else shipped_chart(), requirement)
+    row = recommend_cube(read_chart(source) if source is not None else shipped_chart(), requirement)
     numbers = row.numbers
     say(
         f"{row.title}: {format_time(numbers['time_ns'])} per RGB, mean ΔE00 {format_error(numbers[requirement.error])} "
@@ -116,12 +115,6 @@ def _recommend(source: str | None, requirement: Requirement) -> None:
     )
     say(f"  {row.build}")
     say(f"  {row.ask}")
-
-
-def _read(source: str) -> Chart:
-    from uplift.lab.chart.table import read_chart
-
-    return read_chart(source)
 
 
 def _measure(files: tuple[str, ...], patterns: tuple[str, ...], colours: int, *, quick: bool) -> Chart:

@@ -32,9 +32,7 @@ FILTERS = "compare-filters.csv"
     help="Print the cheapest representation with 97.5 % of errors below this value.",
 )
 @click.option(
-    "--filters",
-    is_flag=True,
-    help="Also search the best low-pass filters for point sampling, which takes minutes.",
+    "--filters", is_flag=True, help="Also search the best low-pass filters for point sampling, which takes minutes."
 )
 @click.option("--quick", is_flag=True, help="At most forty surfaces, few repeats and a coarse search: seconds.")
 @output_folder_option
@@ -177,11 +175,7 @@ def _records(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> dict[str
     from uplift.lab.comparison.compare import records
     from uplift.lab.comparison.filters import filter_records
 
-    return {
-        "facts": dict(comparison.facts),
-        "representations": records(comparison),
-        "filters": filter_records(tuned),
-    }
+    return {"facts": dict(comparison.facts), "representations": records(comparison), "filters": filter_records(tuned)}
 
 
 def _print_json(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:

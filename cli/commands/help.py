@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 import click
 
@@ -79,7 +79,7 @@ def _print_illuminants() -> None:
     from uplift.colorimetry.observer import illuminant_names
 
     _print_documentation(inspect.getdoc(lights) or "")
-    _print_names(illuminant_names())
+    paragraph(", ".join(illuminant_names()))
 
 
 def _print_spaces() -> None:
@@ -87,7 +87,7 @@ def _print_spaces() -> None:
 
     say("RGB spaces of colour-science:")
     say()
-    _print_names(space_names())
+    paragraph(", ".join(space_names()))
 
 
 def _print_observers() -> None:
@@ -95,7 +95,7 @@ def _print_observers() -> None:
 
     say("Standard observers of colour-science:")
     say()
-    _print_names(observer_names())
+    paragraph(", ".join(observer_names()))
 
 
 def _print_atlases() -> None:
@@ -126,10 +126,6 @@ def _print_documentation(text: str) -> None:
     for part in text.split("\n\n"):
         paragraph(" ".join(part.replace("``", "").replace("`", "").split()))
         say()
-
-
-def _print_names(names: Iterable[str]) -> None:
-    paragraph(", ".join(names))
 
 
 def _parameter(function: Callable[..., object], name: str) -> str:

@@ -28,7 +28,7 @@ from ..options import (
     xyz_options,
 )
 from ..output.answers import format_rgb, print_columns, print_fields, sparkline
-from ..output.console import csv_writer, emit, print_json, print_json_stream, say
+from ..output.console import csv_writer, emit, print_json_answers, say
 from .info import print_facts
 from .query import ColourCommand
 from .texture import as_tuple, convert, image_options
@@ -290,7 +290,7 @@ def query(
         plot_lights([(each.rgb, each.wavelengths, each.power) for each in found], table, plot_path, force=force)
         results = iter(found)
     if style == "json":
-        _print_json(results, single=single)
+        print_json_answers((result.to_json() for result in results), single=single)
     elif style == "csv":
         _print_csv(results)
     elif single:
@@ -330,13 +330,6 @@ def _answers(table: EmissionTable, blocks: Iterable[Array], at: Array, outside: 
         requested = table.rgb_of_xyz(xyz)
         for rgb, answer, row, error in zip(requested, answers, power, errors, strict=True):
             yield LightAnswer(rgb, answer, at, row, float(error))
-
-
-def _print_json(results: Iterator[LightAnswer], *, single: bool) -> None:
-    if single:
-        print_json(next(results).to_json(), indent=None)
-    else:
-        print_json_stream(result.to_json() for result in results)
 
 
 def _print_csv(results: Iterable[LightAnswer]) -> None:

@@ -57,11 +57,7 @@ SCATTERINGS = ("dispersive", "root", "constant")
 @click.command("mix", cls=ColourCommand)
 @click.argument("words", metavar="[PARTS:]COLOUR...", nargs=-1, required=True)
 @click.option(
-    "--pigment",
-    "kind",
-    flag_value="pigment",
-    default="pigment",
-    help="Mix paints, which absorb and scatter. [default]",
+    "--pigment", "kind", flag_value="pigment", default="pigment", help="Mix paints, which absorb and scatter. [default]"
 )
 @click.option("--dye", "kind", flag_value="dye", help="Mix dyes, which absorb.")
 @click.option("--filter", "kind", flag_value="filter", help="Stack filters; PARTS is the thickness.")
@@ -101,13 +97,7 @@ SCATTERINGS = ("dispersive", "root", "constant")
 @out_of_gamut_option("scale", "mixtures and pixels")
 @format_option("table", "json")
 @plot_option("Plot the ramp from the first ingredient to the last")
-@click.option(
-    "--steps",
-    type=Whole(2, 1000),
-    default=9,
-    show_default=True,
-    help="Number of swatches on the ramp.",
-)
+@click.option("--steps", type=Whole(2, 1000), default=9, show_default=True, help="Number of swatches on the ramp.")
 @click.option("--over", metavar="IMAGE", help="Image to paint over (EXR, PNG, JPEG, TIFF).")
 @click.option("-o", "--output", metavar="EXR", help="With --over: image to write.")
 @encoding_option("the image of --over")

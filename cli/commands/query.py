@@ -43,7 +43,7 @@ from ..output.answers import (
     print_fields,
     sparkline,
 )
-from ..output.console import csv_writer, emit, has_colours, make_table, print_json, print_json_stream, show
+from ..output.console import csv_writer, emit, has_colours, make_table, print_json_answers, show
 from ..startup import hide_drawing_notes
 
 if TYPE_CHECKING:
@@ -218,12 +218,8 @@ class QueryStream:
 
 
 def _print_json(cube: Cube, blocks: Iterable[Sequence[QueryResult]], single: bool) -> None:
-    """Print one object for a colour given on the command line, else an array."""
     objects = (result_object(cube, result) for result in chain.from_iterable(blocks))
-    if single:
-        print_json(next(objects), indent=None)
-    else:
-        print_json_stream(objects)
+    print_json_answers(objects, single=single)
 
 
 def result_object(cube: Cube, result: QueryResult) -> dict[str, Any]:

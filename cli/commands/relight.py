@@ -137,12 +137,7 @@ def _cubes(path: str | None, atlases: tuple[str, ...]) -> dict[str, Cube]:
 
 
 def _relight(
-    path: str,
-    cubes: dict[str, Cube],
-    lights: tuple[str, ...],
-    encoding: str,
-    method: str,
-    space: ImageSpace | None,
+    path: str, cubes: dict[str, Cube], lights: tuple[str, ...], encoding: str, method: str, space: ImageSpace | None
 ) -> Relit:
     from uplift.io.texture.picture import read_picture
     from uplift.report.relight import relight

@@ -8,19 +8,11 @@ from typing import TYPE_CHECKING
 import click
 
 from ..completion import complete_cube
-from ..options import (
-    Whole,
-    atlas_folders_option,
-    atlas_option,
-    force_option,
-    format_option,
-    light_option,
-)
+from ..options import Whole, atlas_folders_option, atlas_option, force_option, format_option, light_option
 from ..output.console import emit, json_text, say
+from ..output.progress import spinner
 
 if TYPE_CHECKING:
-    from uplift.atlas import Atlas
-    from uplift.lookup import Cube
     from uplift.report.assessment import Assessment
 
 
@@ -30,10 +22,7 @@ if TYPE_CHECKING:
 @atlas_folders_option
 @light_option("Illuminant to evaluate", "D65 A FL2 FL7 FL11 LED-B3")
 @click.option(
-    "-o",
-    "--output",
-    metavar="FILE",
-    help="File to write. [default: CUBE's name with .html, in the current folder]",
+    "-o", "--output", metavar="FILE", help="File to write. [default: CUBE's name with .html, in the current folder]"
 )
 @format_option("html", "json")
 @click.option(
@@ -71,57 +60,30 @@ def command(
     --atlas evaluates entries of other atlases at their own colours. This shows how well the cube predicts unseen
     materials, and whether its standard errors are calibrated.
     """
+    from uplift.atlas import read_atlas
+    from uplift.colorimetry.lights import REPORT_LIGHTS
     from uplift.common.files import check_output, write_text
     from uplift.lookup import load
+    from uplift.pipeline.rebuild import recorded_atlas
+    from uplift.report.assessment import assess
+    from uplift.report.page import render_report, to_json
 
-    from ..output.progress import spinner
-
-    path = _path(output, cube_path, style)
+    path = None if output is None else Path(output)
+    if path is None and style == "html":
+        path = Path(f"{Path(cube_path).stem}.html")
     if path is not None:
         check_output(path, inputs=(cube_path, *files), force=force)
     cube = load(cube_path)
     with spinner("evaluating the cube"):
-        assessment = _assess(cube, cube_path, files, folders, lights)
-        text = _text(assessment, style, worst)
+        atlas = read_atlas(*files) if files else recorded_atlas(cube.data, cube_path, folders)
+        size = Path(cube_path).stat().st_size
+        assessment = assess(cube, Path(cube_path).name, size, atlas, lights or REPORT_LIGHTS)
+        text = json_text(to_json(assessment)) + "\n" if style == "json" else render_report(assessment, worst)
     if path is None:
         emit(text, nl=False)
     else:
         write_text(text, path, force=force)
         say(f"{path}: {_summary(assessment)}")
-
-
-def _path(output: str | None, cube: str, style: str) -> Path | None:
-    """Return the file to write; None for standard output."""
-    if output is not None:
-        return Path(output)
-    return Path(f"{Path(cube).stem}.html") if style == "html" else None
-
-
-def _assess(
-    cube: Cube, path: str, atlases: tuple[str, ...], folders: tuple[str, ...], lights: tuple[str, ...]
-) -> Assessment:
-    from uplift.colorimetry.lights import REPORT_LIGHTS
-    from uplift.report.assessment import assess
-
-    atlas = _measured(cube, path, atlases, folders)
-    return assess(cube, Path(path).name, Path(path).stat().st_size, atlas, lights or REPORT_LIGHTS)
-
-
-def _measured(cube: Cube, path: str, atlases: tuple[str, ...], folders: tuple[str, ...]) -> Atlas | None:
-    from uplift.atlas import read_atlas
-    from uplift.pipeline.rebuild import recorded_atlas
-
-    return read_atlas(*atlases) if atlases else recorded_atlas(cube.data, path, folders)
-
-
-def _text(assessment: Assessment, style: str, worst: int) -> str:
-    if style == "json":
-        from uplift.report.page import to_json
-
-        return json_text(to_json(assessment)) + "\n"
-    from uplift.report.page import render_report
-
-    return render_report(assessment, worst)
 
 
 def _summary(assessment: Assessment) -> str:

@@ -224,10 +224,7 @@ def _list_of(kind: Callable[[str], Any]) -> Callable[..., tuple[Any, ...] | None
 @click.option("--quick", is_flag=True, help="Small lattices and few values: some seconds per model.")
 @click.option("--dims", callback=_list_of(parse_whole), metavar="N,…", help="Lattice nodes along each axis.")
 @click.option(
-    "--coefficients",
-    callback=_list_of(parse_whole),
-    metavar="N,…",
-    help="Coefficients per spectrum, 3 to 17.",
+    "--coefficients", callback=_list_of(parse_whole), metavar="N,…", help="Coefficients per spectrum, 3 to 17."
 )
 @click.option("--spaces", callback=_list_of(str), metavar="NAME,…", help="RGB spaces of colour-science.")
 @click.option("--models", callback=_list_of(str), metavar="NAME,…", help="moments, sigmoid.")
@@ -323,11 +320,7 @@ def _print_stability(runs: Sequence[RunResult]) -> None:
 @click.argument("cube", metavar="[CUBE]", required=False)
 @atlas_folders_option
 @click.option(
-    "--entries",
-    type=Whole(0),
-    default=24,
-    show_default=True,
-    help="Number of atlas entries to change, one at a time.",
+    "--entries", type=Whole(0), default=24, show_default=True, help="Number of atlas entries to change, one at a time."
 )
 @output_folder_option
 @format_option("table", "json")

@@ -50,9 +50,7 @@ def image_options(function: Callable[..., Any]) -> Callable[..., Any]:
             "-o", "--output", "target", metavar="FILE", required=True, help="Texture to write, or folder of textures."
         ),
         click.option(
-            "--processes",
-            type=Whole(1, 1024),
-            help="Number of processes for several images. [default: one per core]",
+            "--processes", type=Whole(1, 1024), help="Number of processes for several images. [default: one per core]"
         ),
         click.option(
             "--scheduler",

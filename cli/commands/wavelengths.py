@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -31,10 +31,7 @@ if TYPE_CHECKING:
 @click.command("wavelengths")
 @click.option("--count", metavar="N", type=Whole(), help="Number of wavelengths, 1 to 40.")
 @click.option(
-    "--tolerance",
-    metavar="ΔE00",
-    type=NUMBER,
-    help="Choose the fewest wavelengths with an error below this ΔE00.",
+    "--tolerance", metavar="ΔE00", type=NUMBER, help="Choose the fewest wavelengths with an error below this ΔE00."
 )
 @click.option(
     "--wavelengths",
@@ -171,13 +168,12 @@ def _print_json(result: Result) -> None:
         "to_xyz": sampling.to_xyz.tolist(),
         "to_rgb": sampling.to_rgb(sensor).tolist(),
         "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
-        "errors": {name: _statistics(result, errors) for name, errors in result.errors()},
+        "errors": {
+            name: {"mean": errors.mean, "p95": errors.p95, "max": errors.max, "worst": result.worst(errors)}
+            for name, errors in result.errors()
+        },
     }
     print_json(fields)
-
-
-def _statistics(result: Result, errors: ColourErrors) -> dict[str, Any]:
-    return {"mean": errors.mean, "p95": errors.p95, "max": errors.max, "worst": result.worst(errors)}
 
 
 def _print_csv(result: Result) -> None:
@@ -189,12 +185,7 @@ def _print_csv(result: Result) -> None:
 def _rows(result: Result) -> Iterator[list[float]]:
     """Yield wavelength, weights to XYZ, weights to RGB and powers, per wavelength."""
     sampling = result.choice.sampling
-    parts = (
-        sampling.wavelengths[:, None],
-        sampling.to_xyz,
-        sampling.to_rgb(result.sensor),
-        sampling.powers.T,
-    )
+    parts = (sampling.wavelengths[:, None], sampling.to_xyz, sampling.to_rgb(result.sensor), sampling.powers.T)
     for row in zip(*(part.tolist() for part in parts), strict=True):
         yield [number for numbers in row for number in numbers]
 
@@ -215,8 +206,4 @@ def _print_table(result: Result) -> None:
     show(weights, powers, errors_table)
 
 
-PRINTERS: dict[str, Callable[[Result], None]] = {
-    "table": _print_table,
-    "json": _print_json,
-    "csv": _print_csv,
-}
+PRINTERS: dict[str, Callable[[Result], None]] = {"table": _print_table, "json": _print_json, "csv": _print_csv}

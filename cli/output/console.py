@@ -70,8 +70,11 @@ def print_json(values: Any, indent: int | None = 2) -> None:
     emit(terminal_json(values, indent))
 
 
-def print_json_stream(objects: Iterable[Any]) -> None:
-    """Print a JSON array, each object before the next one is computed."""
+def print_json_answers(objects: Iterable[Any], *, single: bool) -> None:
+    """Print one object on a line, or else an array, each object before the next one is computed."""
+    if single:
+        print_json(next(iter(objects)), indent=None)
+        return
     for number, values in enumerate(objects):
         emit(("[\n" if number == 0 else ",\n") + terminal_json(values), nl=False)
     emit("\n]")
