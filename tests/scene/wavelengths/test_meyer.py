@@ -58,6 +58,13 @@ def test_eigenvalues_equal_the_printed_ones(opponent: OpponentSpace) -> None:
     np.testing.assert_allclose(opponent.eigenvalues, printed, rtol=3e-3)
 
 
+def test_opponent_channels_are_uncorrelated(cmfs: Array, opponent: OpponentSpace) -> None:
+    """Karhunen–Loève channels are orthogonal, and scaling each channel keeps them so."""
+    channels = cmfs @ opponent.space.matrix.T
+    gram = channels.T @ channels
+    assert np.abs(gram - np.diag(np.diag(gram))).max() < 1e-9 * gram.max()
+
+
 def test_rules_equal_tables_1a_and_1b(cmfs: Array, opponent: OpponentSpace) -> None:
     rules = quadrature_rules(opponent.space, grid(), cmfs)
     printed = read_reference("meyer1988_table1.csv")
