@@ -85,7 +85,7 @@ def to_atlas(document: Document, measurements: Measurements, format_name: str, m
     entries, notes, descending = list[Entry](), list(measurements.notes), 0
     for spectrum in spectra:
         wavelengths, values = (np.asarray(each, dtype=float) for each in (spectrum.wavelengths, spectrum.values))
-        if len(wavelengths) > 1 and (np.diff(wavelengths) < 0).all():
+        if len(wavelengths) > 1 and (wavelengths[1:] < wavelengths[:-1]).all():
             wavelengths, values = wavelengths[::-1], values[::-1]
             descending += 1
         stated = {key: getattr(spectrum, key) for key in ("description", "device", "date", "line")}
