@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import sys
 import warnings
@@ -78,6 +79,8 @@ class LazyGroup(click.Group):
         except OSError as error:
             CommandFailure(error).show()
             code = BAD_INPUT
+        with contextlib.suppress(OSError):  # what cannot be written is dropped: it is reported above
+            flush_stdout()
         if options.get("standalone_mode", True):
             sys.exit(code if isinstance(code, int) else 0)
         return code

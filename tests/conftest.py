@@ -24,6 +24,7 @@ settings.load_profile("uplift")
 
 # The command line must not hide internal errors.
 os.environ["UPLIFT_TRACEBACK"] = "1"
+os.environ.pop("PYTHONUNBUFFERED", None)  # with it, commands hold nothing back that could be lost at their end
 
 # Compiled JAX code of this worker and the processes that it starts, kept between runs. JAX does not write entries at
 # once, so workers that share a folder may read half of one.
