@@ -25,7 +25,7 @@ from uplift.models.minimum_norm import residual
 
 MODEL = Moments(9)
 LATTICE = Lattice(observer.axis_nodes("srgb", 7))
-NOBODY = np.zeros((0, 3))
+NO_COLOURS = np.zeros((0, 3))
 NO_SEEDS = np.zeros(0, dtype=np.int64)
 
 
@@ -35,7 +35,7 @@ def all_nodes(lattice, active=None):
     return Nodes(lattice, np.arange(lattice.size) if active is None else active, none, np.zeros((0, 3)))
 
 
-def fitted(model, sensor, lattice, rgb=NOBODY):
+def fitted(model, sensor, lattice, rgb=NO_COLOURS):
     """Fit a lattice with entries of grey spectra at linear RGB (E, 3): table of nodes, improvements."""
     problem, nodes, seeds = Problem(sensor, model), all_nodes(lattice), seed(lattice, rgb)
     prior = Prior(model, sensor, smooth(model, problem.forward))

@@ -19,7 +19,7 @@ from uplift.models.minimum_norm import residual
 
 DIM = 9
 LATTICE = Lattice(observer.axis_nodes("srgb", DIM))
-NOBODY = seed(LATTICE, np.zeros((0, 3)))
+NO_SEEDS = seed(LATTICE, np.zeros((0, 3)))
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +50,7 @@ def grown(problem, multipliers, progress=ignore_progress):
 def test_single_precision_is_used_where_it_is_accurate(problem):
     multipliers = greys(problem, np.linspace(0.001, 0.999, DIM**3))
     here = distance(problem, problem.model.to_storage(multipliers))
-    stored = store(grown(problem, multipliers), NOBODY, None)
+    stored = store(grown(problem, multipliers), NO_SEEDS, None)
     assert stored.coefficients.dtype == np.float32
     np.testing.assert_allclose(stored.distance, distance(problem, stored.coefficients), atol=1e-6)
     assert (stored.distance <= here + MAX_LOSS * problem.threshold).all()
@@ -63,7 +63,7 @@ def test_double_precision_is_used_where_single_is_inaccurate(problem, monkeypatc
     multipliers = greys(problem, np.concatenate([np.full(DIM**3 - 9, 0.5), np.linspace(0.99, 0.9999, 9)]))
     coefficients = problem.model.to_storage(multipliers)
     here = distance(problem, coefficients)
-    stored = store(grown(strict, multipliers), NOBODY, None)
+    stored = store(grown(strict, multipliers), NO_SEEDS, None)
     assert stored.coefficients.dtype == np.float64
     np.testing.assert_allclose(stored.coefficients, coefficients, atol=1e-12)
     np.testing.assert_allclose(stored.distance, here, atol=1e-7)
