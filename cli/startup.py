@@ -31,10 +31,16 @@ def prepare_process() -> None:
 
 
 def _open_closed_streams() -> None:
-    """Open the null device in place of streams that the caller closed: another file would take their descriptors."""
-    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
-        if getattr(sys, name) is None:
-            setattr(sys, name, open(os.devnull, mode))  # noqa: SIM115
+    """Open the null device in place of streams that the caller closed: another file would take their descriptors.
+
+    It is opened such that each use of standard input and output is an error: nothing is lost without notice.
+    """
+    if sys.stdin is None:
+        sys.stdin = open(os.open(os.devnull, os.O_WRONLY))  # noqa: SIM115
+    if sys.stdout is None:
+        sys.stdout = open(os.open(os.devnull, os.O_RDONLY), "w", encoding="utf-8")  # noqa: SIM115
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
 
 
 def _end(number: int, frame: object) -> None:

@@ -67,13 +67,29 @@ def test_output_that_cannot_be_written_is_json_for_json_output():
     assert json.loads(done.stderr)["error"]["code"] == "output"
 
 
-@pytest.mark.parametrize("streams", ["2>&-", "2>/dev/full", "<&-", ">&-", "<&- >&- 2>&-"])
-def test_closed_streams_do_no_harm(tmp_path, streams):
-    done = shell(f"cd {tmp_path} && {UPLIFT} query 0 0 0 --plot x.png --format json {streams}")
-    assert (done.returncode, done.stderr) == (0, b"")
+def test_answers_are_not_lost_where_standard_output_is_closed():
+    done = shell(f"{UPLIFT} query 0 0 0 --format json >&-")
+    assert done.returncode == 2
+    assert json.loads(done.stderr)["error"]["code"] == "output"
+
+
+def test_closed_standard_input_is_one_line():
+    done = shell(f"{UPLIFT} query - --format json <&-")
+    assert done.returncode == 2
+    assert "error" in json.loads(done.stderr)
+
+
+def test_files_do_not_take_the_place_of_closed_streams(tmp_path):
+    done = shell(f"cd {tmp_path} && {UPLIFT} query 0 0 0 --plot x.png <&- >&- 2>&-")
+    assert done.returncode == 2  # the answer could not be printed
     assert (tmp_path / "x.png").read_bytes().startswith(b"\x89PNG")
-    if ">&-" not in streams.split():
-        assert json.loads(done.stdout)["rgb"] == [0, 0, 0]
+
+
+@pytest.mark.parametrize("streams", ["2>&-", "2>/dev/full", "<&-"])
+def test_closed_streams_that_are_not_needed_do_no_harm(streams):
+    done = shell(f"{UPLIFT} query 0 0 0 --format json {streams}")
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert json.loads(done.stdout)["rgb"] == [0, 0, 0]
 
 
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp437", "utf-16"])
