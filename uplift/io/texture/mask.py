@@ -22,7 +22,6 @@ from uplift.io.texture.image import Image, Part, Values, open_image
 
 MIN_WHITE = 0.5
 """Share of white that the largest weight of an integer mask has; smaller ones may be numbers of too many cubes."""
-SUM = "weights of a pixel must not all be 0"
 HINT = "paint a grey mask with the numbers of the cubes, or with weights of the second of two cubes up to white"
 
 ToWeights = Callable[[Values], Floats]
