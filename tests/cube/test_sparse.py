@@ -44,43 +44,25 @@ def test_corner_points_and_complete_cells_are_inverse():
     assert lattice.complete_cells(np.ones(64, dtype=bool)).sum() == 27
 
 
-def unsorted(tensors, metadata):
-    tensors["points"] = tensors["points"][::-1].copy()
+def points(change):
+    """A change of the numbers of the present points."""
+
+    def apply(tensors, metadata):
+        tensors["points"] = np.ascontiguousarray(change(tensors["points"].copy()))
+
+    return apply
 
 
-def twice(tensors, metadata):
-    tensors["points"] = tensors["points"].copy()
-    tensors["points"][1] = tensors["points"][0]
+def with_last(value):
+    def change(numbers):
+        numbers[-1] = value
+        return numbers
 
-
-def beyond(tensors, metadata):
-    tensors["points"] = tensors["points"].copy()
-    tensors["points"][-1] = 6**3
-
-
-def signed(tensors, metadata):
-    tensors["points"] = tensors["points"].astype(np.int32)
-
-
-def shorter(tensors, metadata):
-    tensors["rgb"] = tensors["rgb"][:-1]
-
-
-def without_points(tensors, metadata):
-    del tensors["points"]
-
-
-def stored_as_absent(tensors, metadata):
-    tensors["status"] = np.full_like(tensors["status"], Status.ABSENT)
-
-
-def without_the_feature(tensors, metadata):
-    metadata["features"].remove("sparse")
+    return points(change)
 
 
 def without_a_cell(tensors, metadata):
-    for name in (*POINTS, "points"):
-        tensors[name] = tensors[name][:-1]
+    tensors.update({name: tensors[name][:-1] for name in (*POINTS, "points")})
 
 
 def huge(tensors, metadata):
@@ -88,21 +70,21 @@ def huge(tensors, metadata):
     metadata["dim"] = 600
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        unsorted,
-        twice,
-        beyond,
-        signed,
-        huge,
-        shorter,
-        without_points,
-        stored_as_absent,
-        without_the_feature,
-        without_a_cell,
-    ],
-)
+CHANGES = {
+    "unsorted": points(lambda numbers: numbers[::-1]),
+    "twice": with_last(0),
+    "beyond": with_last(6**3),
+    "signed": points(lambda numbers: numbers.astype(np.int32)),
+    "missing": lambda tensors, metadata: tensors.pop("points"),
+    "shorter": lambda tensors, metadata: tensors.update(rgb=tensors["rgb"][:-1]),
+    "absent": lambda tensors, metadata: tensors.update(status=np.full_like(tensors["status"], Status.ABSENT)),
+    "no feature": lambda tensors, metadata: metadata["features"].remove("sparse"),
+    "no cell": without_a_cell,
+    "huge": huge,
+}
+
+
+@pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES)
 def test_forged_files_are_refused(data, tmp_path, change):
     with raises(CubeFileError, "cube-invalid"):
         read(forge(data, tmp_path / "forged.uplift", change))

@@ -5,14 +5,12 @@ Equal contents have equal bytes.
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import json
 import os
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +18,7 @@ from numpy.typing import NDArray
 from uplift.common.errors import CubeFileError, OutputError, UpliftError
 from uplift.common.files import atomic_write, check_regular
 from uplift.common.json_text import parse_json
-from uplift.common.text import format_value, printable
+from uplift.common.text import format_value
 
 KEY = "uplift"
 """The only metadata entry: safetensors does not keep the order of several."""
@@ -28,12 +26,14 @@ STORED_TYPES = ("F64", "F32", "U8", "I32", "I16", "U32")
 """Types of arrays, by their names in safetensors."""
 MAX_VALUE = 1e30
 """Limit of all numbers: far above those of any cube, and their squares do not overflow."""
+MAX_TEXT = 1000
+"""Characters of a text."""
 
 Tensors = dict[str, NDArray[Any]]
+Content = TypeVar("Content")
 
 
-@dataclass(frozen=True)
-class Kind:
+class Kind(NamedTuple):
     """A kind of file: the text that names it in the metadata, versions that are read, the noun of messages.
 
     ``foreign`` is the code of the error for files of another kind.
@@ -45,9 +45,8 @@ class Kind:
     foreign: str
 
 
-@dataclass(frozen=True)
-class Stored:
-    """How an array is stored: its shape in the letters of docs/cube-file.md, its types, its least value.
+class Stored(NamedTuple):
+    """How an array is stored: its shape in the letters of docs/cube-file.md, its types, its least and largest value.
 
     With a ``feature``, the array is in the files only that announce the feature.
     """
@@ -55,6 +54,7 @@ class Stored:
     shape: str
     types: tuple[str, ...] = ("float64",)
     low: float = -MAX_VALUE
+    high: float = MAX_VALUE
     feature: str = ""
 
 
@@ -89,25 +89,14 @@ def replace_file(
             ) from error
 
 
-def load(path: Path, kind: Kind) -> tuple[Tensors, dict[str, Any]]:
-    """Read arrays, and metadata without the digest, of a kind; check format, version and digest."""
-    tensors, metadata = _load(path, kind)
-    if metadata.get("version") not in kind.readable:
-        versions, version = " or ".join(map(str, kind.readable)), format_value(metadata.get("version"))
-        raise CubeFileError(
-            f"must have format version {versions}, got {version}",
-            code="cube-version",
-            path=path,
-            hint=f"build the {kind.noun} again, or use the version of uplift that wrote it",
-        )
-    if metadata.pop("digest", None) != content_digest(tensors, metadata):
-        raise _invalid(path, kind, "is damaged: the content does not match its digest", "cube-damaged")
-    return tensors, metadata
+def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Content]) -> Content:
+    """Read a file: check its kind, version and digest, then ``decode`` its arrays and metadata.
 
-
-def _load(path: Path, kind: Kind) -> tuple[Tensors, dict[str, Any]]:
+    Every error that the content causes is a `CubeFileError` about the file.
+    """
     from safetensors import SafetensorError, safe_open
 
+    again = f"build the {kind.noun} again"
     try:
         check_regular(path, CubeFileError, hint=f"name a {kind.noun} file")
     except CubeFileError as error:
@@ -118,19 +107,34 @@ def _load(path: Path, kind: Kind) -> tuple[Tensors, dict[str, Any]]:
     try:
         with safe_open(path, framework="numpy") as file:
             metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
-            found = metadata.get("format") if isinstance(metadata, dict) else None
-            if found != kind.format:
-                got = "" if found is None else f", got {format_value(found)}"
-                raise _invalid(path, kind, f"must be an {kind.format}{got}", kind.foreign)
-            for name in file.keys():  # noqa: SIM118  not a dictionary
-                if file.get_slice(name).get_dtype() not in STORED_TYPES:
-                    raise _invalid(path, kind, f"has an array of an unknown type, {format_value(name)}")
-            return {name: file.get_tensor(name) for name in sorted(file.keys())}, metadata
-    except CubeFileError:
-        raise
+            if any(file.get_slice(name).get_dtype() not in STORED_TYPES for name in file.keys()):  # noqa: SIM118
+                raise ValueError("an array of an unknown type")
+            tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
     except (SafetensorError, ValueError, TypeError, OSError, MemoryError) as error:
-        problem = f"is not a {kind.noun} file, or is truncated ({_reason(error)})"
-        raise _invalid(path, kind, problem, kind.foreign) from error
+        problem = f"is not a {kind.noun} file, or is truncated ({str(error)[:200]})"
+        raise CubeFileError(problem, code=kind.foreign, path=path, hint=again) from error
+    found = metadata.get("format") if isinstance(metadata, dict) else None
+    if found != kind.format:
+        got = "" if found is None else f", got {format_value(found)}"
+        raise CubeFileError(f"must be an {kind.format}{got}", code=kind.foreign, path=path, hint=again)
+    if metadata.get("version") not in kind.readable:
+        versions, version = " or ".join(map(str, kind.readable)), format_value(metadata.get("version"))
+        raise CubeFileError(
+            f"must have format version {versions}, got {version}",
+            code="cube-version",
+            path=path,
+            hint=f"{again}, or use the version of uplift that wrote it",
+        )
+    if metadata.pop("digest", None) != content_digest(tensors, metadata):
+        problem = "is damaged: the content does not match its digest"
+        raise CubeFileError(problem, code="cube-damaged", path=path, hint=again)
+    # What follows is for files whose digest was forged.
+    try:
+        return decode(tensors, metadata)
+    except (AttributeError, KeyError, MemoryError, OverflowError, TypeError, ValueError, UpliftError) as error:
+        reason = error.problem if isinstance(error, CubeFileError) else f"{type(error).__name__}: {str(error)[:200]}"
+        problem = f"is not a valid {kind.noun}: {reason}"
+        raise CubeFileError(problem, code="cube-invalid", path=path, hint=again) from error
 
 
 def content_digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:
@@ -150,15 +154,10 @@ def _json(metadata: Mapping[str, Any]) -> str:
         raise CubeFileError(f"the metadata are not JSON values ({error})", code="cube-invalid") from error
 
 
-@contextlib.contextmanager
-def validation(path: Path, kind: Kind) -> Iterator[None]:
-    """Turn every error that the content of a file causes in the block into one `CubeFileError` about the file."""
-    try:
-        yield
-    except CubeFileError as error:
-        raise _invalid(path, kind, f"is not a valid {kind.noun}: {error.problem}") from error
-    except (AttributeError, KeyError, MemoryError, OverflowError, TypeError, ValueError, UpliftError) as error:
-        raise _invalid(path, kind, f"is not a valid {kind.noun} ({type(error).__name__}: {_reason(error)})") from error
+def require(condition: bool, problem: str) -> None:
+    """Raise `CubeFileError` unless the condition is met."""
+    if not condition:
+        raise CubeFileError(problem, code="cube-invalid")
 
 
 def check_arrays(tensors: Tensors, schema: Mapping[str, Stored], sizes: Mapping[str, int]) -> None:
@@ -166,31 +165,44 @@ def check_arrays(tensors: Tensors, schema: Mapping[str, Stored], sizes: Mapping[
 
     ``sizes`` has the lengths that the letters of shapes stand for; other letters are numbers.
     """
-    missing = [name for name in schema if name not in tensors]
-    require(not missing, f"has no array {', '.join(missing)}")
     for name, stored in schema.items():
-        array = tensors[name]
+        require(name in tensors, f"has no array {name}")
+        array, low, high = tensors[name], stored.low, stored.high
         shape = tuple(sizes[axis] if axis in sizes else int(axis) for axis in stored.shape.split())
         fits = array.shape == shape and array.dtype.name in stored.types
         require(fits, f"{name} must be {' or '.join(stored.types)} of shape {shape}")
-        require(in_range(array, stored.low, MAX_VALUE), f"{name} must have numbers in [{stored.low:g}, {MAX_VALUE:g}]")
+        in_range = bool(((array >= low) & (array <= high)).all())  # False for NaN
+        require(in_range, f"{name} must have numbers in [{low:g}, {high:g}]")
 
 
-def require(condition: bool, problem: str) -> None:
-    """Raise `CubeFileError` unless the condition is met."""
-    if not condition:
-        raise CubeFileError(problem, code="cube-invalid")
+def check_metadata(value: Any, schema: Any, path: str = "metadata") -> None:
+    """Raise `CubeFileError` for the first JSON value that does not fit a schema, with its key path.
 
-
-def in_range(array: NDArray[Any], low: float, high: float) -> bool:
-    """Whether all numbers are in [low, high]; False for NaN."""
-    return bool(((array >= low) & (array <= high)).all())
-
-
-def _invalid(path: Path, kind: Kind, problem: str, code: str = "cube-invalid") -> CubeFileError:
-    return CubeFileError(problem, code=code, path=path, hint=f"build the {kind.noun} again")
-
-
-def _reason(error: Exception) -> str:
-    """Text of an error of another library, which may quote the file."""
-    return printable(str(error)[:200])
+    A schema is `str` for text, `int` for a whole number from 0, a range (low, high) of numbers, a list [schema, limit]
+    of at most so many items, or a table of schemas by key, with ``?`` after optional keys and ``*`` for all others.
+    None is for any value. Every query reads metadata: pydantic would add a tenth to the start of a query.
+    """
+    items: list[tuple[Any, Any, str]] = []
+    if schema is None:
+        return
+    if schema is str:
+        fits, expected = isinstance(value, str) and len(value) <= MAX_TEXT, f"text of at most {MAX_TEXT} characters"
+    elif schema is int:
+        fits, expected = type(value) is int and 0 <= value <= MAX_VALUE, "a whole number from 0"
+    elif isinstance(schema, tuple):
+        low, high = schema
+        fits, expected = type(value) in (int, float) and low <= value <= high, f"a number in [{low:g}, {high:g}]"
+    elif isinstance(schema, list):
+        item, limit = schema
+        fits, expected = isinstance(value, list) and len(value) <= limit, f"a list of at most {limit:,} items"
+        items = [(each, item, f"{path}[{number}]") for number, each in enumerate(value)] if fits else []
+    else:
+        known = {key.removesuffix("?"): each for key, each in schema.items() if key != "*"}
+        required = {key for key in known if key in schema}
+        fits = isinstance(value, dict) and required <= value.keys() and ("*" in schema or value.keys() <= known.keys())
+        expected = f"a table of {', '.join(schema)}"
+        items = [(value[key], known[key], f"{path}.{key}") for key in known if key in value] if fits else []
+    if not fits:
+        raise CubeFileError(f"{path} must be {expected}, got {format_value(value)}", code="cube-invalid")
+    for each, item, place in items:
+        check_metadata(each, item, place)

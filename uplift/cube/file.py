@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Indices
@@ -18,17 +16,15 @@ from uplift.cube.container import (
     Stored,
     Tensors,
     check_arrays,
+    check_metadata,
     content_digest,
-    in_range,
     load,
     replace_file,
     require,
-    validation,
 )
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
-from uplift.cube.metadata import METADATA, check_metadata
 from uplift.lattice import ABSENT_VALUES, CORNERS, Lattice, PointTable, Status
-from uplift.models import Model, from_description
+from uplift.models import from_description
 
 FORMAT = "uplift cube"
 VERSION = 4
@@ -40,16 +36,20 @@ MAX_POINTS = 1 << 27
 """Points of the largest lattice of a sparse file, as a small file must not claim all memory."""
 MAX_CONDITION = 1e6
 """Limit of the condition number of the matrix from XYZ to RGB."""
+MIN_THRESHOLD, MAX_THRESHOLD = 1e-12, 0.1
+"""Linear RGB. Smaller distances are lost in the rounding of double precision."""
+MAX_LIGHTS = 64
+MAX_FILES = 10_000
 
 SINGLE = ("float32",)
 POINTS = {
     "coefficients": Stored("n C", ("float32", "float64")),
     "rgb": Stored("n 3", SINGLE),
-    "distance": Stored("n", SINGLE, low=0),
-    "status": Stored("n", ("uint8",)),
-    "entry": Stored("n", ("int32",)),
+    "distance": Stored("n", SINGLE, 0),
+    "status": Stored("n", ("uint8",), 0, Status.UNREALISABLE),
+    "entry": Stored("n", ("int32",), -1),
     "round": Stored("n", ("int16",), feature="debug"),
-    "standard_error": Stored("n", SINGLE, low=0, feature="errors"),
+    "standard_error": Stored("n", SINGLE, 0, feature="errors"),
 }
 """Arrays of the `PointTable`. Sparse files have rows of the present points only."""
 SENSOR = {
@@ -62,19 +62,63 @@ SENSOR = {
 }
 ENTRY_COEFFICIENTS = "atlas.entry_coefficients"
 ARRAYS = {
-    "nodes": Stored("D"),
+    "nodes": Stored("D", low=0, high=1),
     "points": Stored("n", ("uint32",), feature="sparse"),
     **POINTS,
     **{f"sensor.{name}": stored for name, stored in SENSOR.items()},
-    "atlas.rgb": Stored("E 3"),
+    "atlas.rgb": Stored("E 3", low=0, high=1),
     "atlas.coefficients": Stored("E C"),
-    "atlas.reach": Stored("E"),
+    "atlas.reach": Stored("E", low=0, high=1),
     "atlas.error": Stored("E", low=0),
     ENTRY_COEFFICIENTS: Stored("E K"),
-    "atlas.measured": Stored("M N", SINGLE, feature="left-out"),
-    "atlas.left_out": Stored("M N", SINGLE, feature="left-out"),
+    "atlas.measured": Stored("M N", SINGLE, 0, 1, feature="left-out"),
+    "atlas.left_out": Stored("M N", SINGLE, 0, 1, feature="left-out"),
 }
 """All arrays of a file by name. Letters as in docs/cube-file.md, and D for the number of nodes along an axis."""
+
+NUMBER, POSITIVE = (-1e30, 1e30), (0, 1e30)
+ENTRIES = [str, 1_000_000]
+RGB = [NUMBER, 3]
+FILE = {"name": str, "digest": str}
+LIGHT = {"light": str, "wish": RGB, "answer": RGB, "delta_e": POSITIVE, "possible": POSITIVE}
+PROVENANCE = {
+    "uplift?": str,
+    "options?": {"*": None},  # which are checked where a build is repeated
+    "atlases?": [{**FILE, "measured?": str}, MAX_FILES],
+    "libraries?": [FILE, MAX_FILES],
+    "families?": [{"name": str, "relevance": NUMBER}, MAX_FILES],
+    "looks?": [{"name": str, "rgb": RGB, "weight": (0, 1), "lights": [LIGHT, MAX_LIGHTS]}, MAX_FILES],
+    "left_out?": ENTRIES,
+    "skipped?": ENTRIES,
+    "prior?": {"length?": POSITIVE, "nugget?": POSITIVE, "error_bound?": POSITIVE, "*": None},
+    "improvements?": [{"step": str, "tried": int, "mended": int}, MAX_FILES],
+    "scene?": [{"*": None}, MAX_FILES],
+    "filled?": {"points": int, "cube": str},
+    "*": None,
+}
+MODEL = {
+    "name": str,
+    "count?": int,
+    "phase?": {"start": NUMBER, "end": NUMBER, "warp": str},
+    "start?": NUMBER,
+    "end?": NUMBER,
+}
+METADATA = {
+    "format": str,
+    "version": int,
+    "features": [str, 100],
+    "model": MODEL,
+    "entry_model": MODEL,
+    "dim": int,
+    "space": str,
+    "illuminant": str,
+    "observer": str,
+    "threshold": (MIN_THRESHOLD, MAX_THRESHOLD),
+    "reference": str,
+    "entries": ENTRIES,
+    "provenance": PROVENANCE,
+}
+"""The schema of the metadata, by `check_metadata`."""
 
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
@@ -84,21 +128,7 @@ def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) 
 
 def read(path: str | os.PathLike[str]) -> CubeData:
     """Read a cube file. A file that is missing, damaged, of another kind or invalid is a `CubeFileError`."""
-    path = Path(path)
-    # Format, version and digest. All that follows is for files whose digest was forged.
-    tensors, metadata = load(path, KIND)
-    with validation(path, KIND):
-        if metadata["version"] < VERSION:
-            metadata["entry_model"] = metadata.get("model")
-        # Types and ranges of metadata, then of arrays, before anything is computed from them.
-        check_metadata(metadata, METADATA)
-        data = _data(tensors, metadata)
-        _check(data)
-        if "sparse" in metadata["features"]:
-            data = replace(data, points=_expand(data.points, tensors["points"], data.lattice))
-        size = data.lattice.size
-        require(len(data.points) == size, f"there must be {size} points, got {len(data.points)}")
-    return data
+    return load(Path(path), KIND, _decode)
 
 
 def digest(data: CubeData) -> str:
@@ -123,7 +153,11 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
         "atlas.left_out": answered,
         **{name: getattr(data.points, name) for name in POINTS},
     }
-    tensors = {name: _as_stored(name, array) for name, array in arrays.items() if array is not None}
+    tensors = {}
+    for name, array in arrays.items():
+        if array is not None:  # in a type that its file may have: its own, or else the most precise one
+            types = ARRAYS[name].types
+            tensors[name] = np.ascontiguousarray(array, array.dtype if array.dtype.name in types else types[-1])
     if data.complete_cells is not None:
         present = data.points.present
         tensors |= {name: np.ascontiguousarray(tensors[name][present]) for name in POINTS if name in tensors}
@@ -147,14 +181,11 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
     return tensors, metadata
 
 
-def _as_stored(name: str, array: NDArray[Any]) -> NDArray[Any]:
-    """Return an array of a type that its file may have: its own, or else the most precise one."""
-    types = ARRAYS[name].types
-    return np.ascontiguousarray(array, dtype=array.dtype if array.dtype.name in types else types[-1])
-
-
-def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
-    """Content of a file; the points of a sparse cube are not expanded."""
+def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
+    """Make the cube of a file after a check of types and ranges, of metadata first, then of arrays."""
+    if metadata["version"] < VERSION:
+        metadata["entry_model"] = metadata.get("model")
+    check_metadata(metadata, METADATA)
     model, entry_model = (from_description(metadata[key]) for key in ("model", "entry_model"))
     names, looks = tuple(metadata["entries"]), len(metadata["provenance"].get("looks", ()))
     schema = {name: stored for name, stored in ARRAYS.items() if stored.feature in ("", *metadata["features"])}
@@ -166,11 +197,9 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
     check_arrays(tensors, schema, sizes)
     arrays: dict[str, Any] = {name: tensors[name] for name in schema}
     has_left_out = "atlas.measured" in arrays
-    lattice = Lattice(tensors["nodes"])
-    require(metadata["dim"] == lattice.dim, f"dim must be {lattice.dim}, the number of nodes")
-    return CubeData(
+    data = CubeData(
         model=model,
-        lattice=lattice,
+        lattice=Lattice(tensors["nodes"]),
         sensor=Sensor(
             metadata["space"],
             metadata["illuminant"],
@@ -192,54 +221,51 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> CubeData:
         provenance=metadata["provenance"],
         points=PointTable(**{name: arrays[name] for name in POINTS if name in arrays}),
     )
+    require(metadata["dim"] == data.lattice.dim, f"dim must be {data.lattice.dim}, the number of nodes")
+    _check(data)
+    if "points" in arrays:
+        data = replace(data, points=_expand(data.points, arrays["points"].astype(np.int64), data.lattice))
+    size = data.lattice.size
+    require(len(data.points) == size, f"there must be {size} points, got {len(data.points)}")
+    return data
 
 
 def _check(data: CubeData) -> None:
     """Check what a lookup relies on beyond types and ranges. The points of a sparse cube are those in its file."""
-    _check_sensor(data)
-    _check_models(data.model, data.entry_spectra.model)
-    atlas, points = data.atlas, data.points
-    recorded = tuple(look["name"] for look in data.provenance.get("looks", ()))
-    is_last = atlas.measured_count >= 0 and atlas.names[atlas.measured_count :] == recorded
-    require(is_last, "the looks must be the last entries, by their names")
-    require(tuple(data.lattice.nodes[[0, -1]]) == (0, 1), "the nodes must run from 0 to 1")
-    require(in_range(points.status, 0, len(Status) - 1), "every status must be known")
-    require(bool(points.present.all()), "absent points must not be stored")
-    require(in_range(points.entry, -1, len(atlas.names) - 1), "every entry must be in the atlas table")
-    require(in_range(atlas.half_width, 0, 1), "half widths must be in [0, 1]")
-    require(in_range(atlas.rgb, 0, 1), "the RGB of every entry must be in [0, 1]")
-    if atlas.left_out is not None:
-        require(atlas.measured_count > 0, "left-out spectra need entries")
-        valid = in_range(atlas.left_out.measured, 0, 1) and in_range(atlas.left_out.answered, 0, 1)
-        require(valid, "left-out entries must have reflectances in [0, 1]")
-
-
-def _check_models(model: Model, entry_model: Model) -> None:
-    one, other = ({**each.describe(), "count": None} for each in (model, entry_model))
-    extends = one == other and entry_model.count >= model.count
-    require(extends, "the model of the entries must extend that of the nodes")
-
-
-def _check_sensor(data: CubeData) -> None:
-    sensor = data.sensor
+    atlas, sensor, nodes = data.atlas, data.sensor, data.lattice.nodes
+    looks = tuple(look["name"] for look in data.provenance.get("looks", ()))
+    node_model, entry_model = ({**each.describe(), "count": None} for each in (data.model, data.entry_spectra.model))
+    extends = node_model == entry_model and data.entry_spectra.model.count >= data.model.count
     with np.errstate(all="ignore"):
         basis = data.model.basis(sensor.wavelengths)
         white, condition = sensor.matrix.sum(axis=1), np.linalg.cond(sensor.xyz_to_rgb)
-    valid = basis.shape == (len(sensor.wavelengths), data.model.count) and bool(np.isfinite(basis).all())
-    require(valid, "the model must have a range of wavelengths")
-    require(in_range(white, 1 - 1e-6, 1 + 1e-6), "the perfect reflector must have RGB (1, 1, 1)")
-    require(bool(condition < MAX_CONDITION), "the RGB space must have three primaries")
-    require(bool((np.diff(sensor.wavelengths) > 0).all()), "the wavelengths of the sensor must ascend")
-    require(bool((np.diff(sensor.decoding) >= 0).all()), "the decoding of 8-bit codes must not decrease")
+    has_basis = basis.shape == (len(sensor.wavelengths), data.model.count) and bool(np.isfinite(basis).all())
+    for condition_met, problem in (
+        (len(set(atlas.names)) == len(atlas.names), "the names of entries must be unique"),
+        (looks == atlas.names[len(atlas.names) - atlas.looks :], "the looks must be the last entries, by their names"),
+        (atlas.left_out is None or atlas.measured_count > 0, "left-out spectra need entries"),
+        (extends, "the model of the entries must extend that of the nodes"),
+        (has_basis, "the model must have a range of wavelengths"),
+        ((nodes[0], nodes[-1]) == (0, 1), "the nodes must run from 0 to 1"),
+        (data.points.entry.max(initial=-1) < len(atlas.names), "every entry must be in the atlas table"),
+        ((np.abs(white - 1) <= 1e-6).all(), "the perfect reflector must have RGB (1, 1, 1)"),
+        (condition < MAX_CONDITION, "the RGB space must have three primaries"),
+        ((np.diff(sensor.wavelengths) > 0).all(), "the wavelengths of the sensor must ascend"),
+        ((np.diff(sensor.decoding) >= 0).all(), "the decoding of 8-bit codes must not decrease"),
+    ):
+        require(bool(condition_met), problem)
 
 
-def _expand(points: PointTable, numbers: NDArray[Any], lattice: Lattice) -> PointTable:
+def _expand(points: PointTable, numbers: Indices, lattice: Lattice) -> PointTable:
     """Expand the rows (m, …) of the points ``numbers`` (m,) to those of the lattice, (n, …)."""
     size = lattice.size
-    ascending = 0 < len(numbers) < size <= MAX_POINTS and bool((np.diff(numbers.astype(np.int64)) > 0).all())
-    valid = ascending and bool(numbers[-1] < size)
+    valid = 0 < len(numbers) < size <= MAX_POINTS and bool((np.diff(numbers) > 0).all()) and bool(numbers[-1] < size)
     require(valid, "point numbers must ascend within the lattice, with some missing")
-    require(_has_complete_cell(numbers.astype(np.int64), lattice), "one cell must have all its corners")
+    # A query needs all corners of a cell.
+    low = numbers[(lattice.position(numbers) < lattice.dim - 1).all(axis=-1)]
+    for corner in CORNERS:
+        low = low[np.isin(low + lattice.index(corner), numbers, assume_unique=True)]
+    require(low.size > 0, "one cell must have all its corners")
     arrays: dict[str, Any] = {}
     for name in POINTS:
         rows = getattr(points, name)
@@ -250,10 +276,3 @@ def _expand(points: PointTable, numbers: NDArray[Any], lattice: Lattice) -> Poin
             arrays[name] = np.zeros(shape, rows.dtype) if absent is None else np.full(shape, absent, rows.dtype)
             arrays[name][numbers] = rows
     return PointTable(**arrays)
-
-
-def _has_complete_cell(numbers: Indices, lattice: Lattice) -> bool:
-    low = numbers[(lattice.position(numbers) < lattice.dim - 1).all(axis=-1)]
-    for corner in CORNERS:
-        low = low[np.isin(low + lattice.index(corner), numbers, assume_unique=True)]
-    return bool(low.size)

@@ -18,14 +18,13 @@ from uplift.cube.container import (
     Stored,
     Tensors,
     check_arrays,
+    check_metadata,
     content_digest,
     load,
     replace_file,
     require,
-    validation,
 )
-from uplift.cube.file import MAX_CONDITION
-from uplift.cube.metadata import ENTRIES, PROVENANCE, check_metadata, count, text
+from uplift.cube.file import ENTRIES, MAX_CONDITION, PROVENANCE
 from uplift.lights.discs import LampEntries
 from uplift.lights.lattice import ChromaticityLattice, chromaticity
 
@@ -49,10 +48,10 @@ ARRAYS = {
     "entries.radius": Stored("E", low=0),
 }
 METADATA = {
-    "format": text,
-    "version": count,
-    "space": text,
-    "observer": text,
+    "format": str,
+    "version": int,
+    "space": str,
+    "observer": str,
     "entries": ENTRIES,
     "provenance": PROVENANCE,
 }
@@ -109,16 +108,7 @@ def read_emission(path: str | os.PathLike[str]) -> EmissionData:
 
     `CubeFileError` if the file is missing, damaged, or not an emission table of this version.
     """
-    path = Path(path)
-    tensors, metadata = load(path, KIND)
-    with validation(path, KIND):
-        check_metadata(metadata, METADATA)
-        require(set(tensors) == set(ARRAYS), f"the arrays must be {', '.join(ARRAYS)}")
-        sizes = {"K": len(tensors["knots"]), "R": tensors["rings"].size, "N": tensors["wavelengths"].size}
-        check_arrays(tensors, ARRAYS, {**sizes, "E": len(metadata["entries"])})
-        data = _data(tensors, metadata)
-        _check(data)
-    return data
+    return load(Path(path), KIND, _decode)
 
 
 def emission_digest(data: EmissionData) -> str:
@@ -154,8 +144,14 @@ def _metadata(data: EmissionData) -> dict[str, Any]:
     }
 
 
-def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> EmissionData:
-    return EmissionData(
+def _decode(tensors: Tensors, metadata: Mapping[str, Any]) -> EmissionData:
+    check_metadata(metadata, METADATA)
+    names = tuple(metadata["entries"])
+    require(len(set(names)) == len(names), "the names of entries must be unique")
+    require(set(tensors) == set(ARRAYS), f"the arrays must be {', '.join(ARRAYS)}")
+    sizes = {"K": len(tensors["knots"]), "R": tensors["rings"].size, "N": tensors["wavelengths"].size}
+    check_arrays(tensors, ARRAYS, {**sizes, "E": len(names)})
+    data = EmissionData(
         space=metadata["space"],
         observer=metadata["observer"],
         rgb_to_xyz=tensors["rgb_to_xyz"],
@@ -164,11 +160,11 @@ def _data(tensors: Tensors, metadata: Mapping[str, Any]) -> EmissionData:
         lattice=ChromaticityLattice(tensors["white"], tensors["knots"], tensors["rings"]),
         spectra=tensors["spectra"],
         error=tensors["error"],
-        entries=LampEntries(
-            tuple(metadata["entries"]), *(tensors[f"entries.{name}"] for name in ("uv", "spectra", "radius"))
-        ),
+        entries=LampEntries(names, *(tensors[f"entries.{name}"] for name in ("uv", "spectra", "radius"))),
         provenance=metadata["provenance"],
     )
+    _check(data)
+    return data
 
 
 def _check(data: EmissionData) -> None:

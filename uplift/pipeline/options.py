@@ -14,7 +14,7 @@ from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP
 from uplift.common.errors import OptionError, unknown_name
 from uplift.common.text import format_value
-from uplift.cube.metadata import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
+from uplift.cube.file import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
 from uplift.models import Model, Moments, Phase, Sigmoid
 from uplift.models.moments import MAX_COUNT
 
