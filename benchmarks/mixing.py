@@ -18,11 +18,10 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import colour_science
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
-from uplift.design.mixing import Ingredients, Medium, dispersive, layers, make_coat, overpainter, pigments
+from uplift.design.mixing import Ingredients, Medium, dispersive, make_coat, optics, overpainter, pigments
 from uplift.design.mixing.coats import ramp
-from uplift.design.mixing.heuristics import hsl_to_rgb
 from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, Pigment, PowerOfReflectance, Scattering, from_opaque
-from uplift.design.mixing.theories import mixers, spectral_models
+from uplift.design.mixing.theories import hsl_to_rgb, mixers, spectral_models
 from uplift.lab.timing import Spread, time_calls
 from uplift.lookup import Cube
 from uplift.viz.plots import Strip, plot_strips
@@ -374,9 +373,9 @@ def surface_record(index: float) -> dict[str, float]:
     """Return the reflectance at normal incidence (9.3), for diffuse light (10.9), and for diffuse light from inside."""
     return {
         "index": index,
-        "perpendicular": float(layers.fresnel_reflectance(index)),
-        "diffuse": float(layers.diffuse_reflectance(index)),
-        "internal": float(layers.internal_reflectance(index)),
+        "perpendicular": float(optics.fresnel_reflectance(index)),
+        "diffuse": float(optics.diffuse_reflectance(index)),
+        "internal": float(optics.internal_reflectance(index)),
     }
 
 

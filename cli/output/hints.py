@@ -54,7 +54,6 @@ HINTS = {
     "target-not-positive": "give --tolerance above 0",
     "threshold-out-of-range": "use --threshold 1e-6 to 0.1",
     "too-few-colours": "use --colours 16 or more",
-    "unknown-coat": "use --pigment or --dye",
     "unknown-gamut-mapping": "use --out-of-gamut with error, clip, scale, desaturate or desaturate-oklab",
     "unknown-method": "give --methods with other names; '*' matches any characters",
     "unknown-scale": "use --scale auto, percent or fraction",

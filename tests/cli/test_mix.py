@@ -110,7 +110,7 @@ def test_paint_over_an_image(run, refuse, home, cubes):
     run("mix", "--dye", "#c8342a", "--thickness", 0, *options, "-o", "bare.exr")
     np.testing.assert_allclose(read_channels(home / "bare.exr", "RGB"), rgb, atol=1e-5)
     assert refuse("mix", BLUE, *options, "-o", "o.png").code == "output"
-    assert refuse("mix", "--additive", BLUE, *options, "-o", "o.exr").code == "unknown-coat"
+    assert refuse("mix", "--additive", BLUE, *options, "-o", "o.exr").code == "option"
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,8 @@
-"""Models by name: criteria of Fishkin 1983, 10.4, linear mixtures, and mixtures of measured paints."""
+"""Models by name: criteria of Fishkin 1983, 10.4, heuristics, and mixtures of measured paints."""
 
 from __future__ import annotations
+
+import colorsys
 
 import numpy as np
 import pytest
@@ -9,10 +11,20 @@ import uplift
 from benchmarks.mixing import BLUES, acrylics, published
 from benchmarks.mixing_criteria import CRITERIA, evaluate
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.design.mixing.amounts import add_lights, average_areas, stack_filters
-from uplift.design.mixing.theories import Mixer, mixers
+from uplift.design.mixing.theories import (
+    RGB_WHEEL,
+    RYB_WHEEL,
+    Mixer,
+    hsl_to_rgb,
+    mix_phosphors,
+    mix_ryb,
+    mixers,
+    phosphor_curves,
+    rgb_to_hsl,
+)
 
 SELF, CHROMATICITY, DARKER, HUE, LIGHTER, GREY, GREEN = range(len(CRITERIA))
+COLOURS = np.array([[1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0.2, 0.5, 0.3], [0.9, 0.8, 0.7]])
 # Criteria that each model passes with some margin; with one constant, the green is at the limit.
 EXPECTED = {
     "pigments": {SELF, DARKER, LIGHTER, GREEN},
@@ -69,23 +81,6 @@ def test_every_criterion_can_fail(small_cube, colours, mix, failed):
     assert not failed & passed(evaluate(Mixer("", "", mix), small_cube.data.sensor, colours))
 
 
-def test_lights_add_up_and_areas_are_averaged(spectra, parts, sensor, rng):
-    expected = sum(parts[:, i, None] * spectra[:, i] for i in range(3))
-    np.testing.assert_allclose(add_lights(spectra, parts), expected)
-    for scale in (1, 7):
-        mean = expected / parts.sum(axis=1, keepdims=True)
-        np.testing.assert_allclose(average_areas(spectra, scale * parts), mean)
-    lights = rng.random((3, 81))
-    np.testing.assert_allclose(sensor.rgb(add_lights(lights, [1, 2, 3])), add_lights(sensor.rgb(lights), [1, 2, 3]))
-
-
-def test_thickness_of_filters_composes_without_creating_energy(spectra):
-    first, second = (stack_filters(spectra, thickness) for thickness in ([1, 2, 0.5], [2, 0, 1]))
-    np.testing.assert_allclose(stack_filters(spectra, [3, 2, 1.5]), first * second)
-    assert ((first >= 0) & (first <= 1)).all()
-    assert (stack_filters(spectra, np.zeros(3)) == 1).all()
-
-
 def errors(mixtures, mixer, sensor):
     """ΔE00 (n,) of mixtures from the colours of their paints."""
     found = np.clip(mixer.mix(mixtures.components, mixtures.shares), 0, 1)
@@ -123,3 +118,49 @@ def test_mixbox_s_published_mixtures_are_nearer_than_before(by_name, smooth_cube
     )
     assert now[0] < 8 < 30 < before[0], "cobalt blue and Hansa yellow"
     assert now.mean() < before.mean()
+
+
+@pytest.mark.parametrize("other", [0, 1])
+def test_ryb_shades_keep_their_chromaticity_and_tints_their_hue(other):
+    pairs = np.stack([COLOURS, np.full_like(COLOURS, other)], axis=1)
+    np.testing.assert_allclose(mix_ryb(pairs, [1, 3]), (COLOURS + 3 * other) / 4, atol=1e-12)
+
+
+@pytest.mark.parametrize("hue", [0, 0.1, 1 / 6, 0.4, 2 / 3, 0.9])
+def test_opposite_hues_mix_to_grey(hue):
+    opposite = np.interp((np.interp(hue, RGB_WHEEL, RYB_WHEEL) + 0.5) % 1, RYB_WHEEL, RGB_WHEEL)
+    full = hsl_to_rgb([[hue, 1, 0.5], [opposite, 1, 0.5]])
+    np.testing.assert_allclose(mix_ryb(full, [1, 1]), 0.5, atol=1e-12)
+
+
+def test_the_thesis_s_complements():
+    """Blue and orange, yellow and purple are opposite; red and green nearly are."""
+    blue, orange, yellow, purple = [0, 0, 1], [1, 0.5, 0], [1, 1, 0], [1, 0, 1]
+    np.testing.assert_allclose(mix_ryb([[blue, orange], [yellow, purple]], [1, 1]), 0.5, atol=1e-12)
+    assert np.ptp(mix_ryb([[1, 0, 0], [0, 1, 0]], [1, 1])) < 0.2
+
+
+def test_ryb_mixtures_stay_in_gamut(rng):
+    found = mix_ryb(rng.random((2000, 3, 3)), rng.random((2000, 3)))
+    assert ((found >= 0) & (found <= 1)).all()
+
+
+def test_phosphor_curves_give_their_colours_and_do_not_amplify_light():
+    curves, _ = phosphor_curves()
+    assert curves.sum(axis=0).max() == pytest.approx(1)
+    one, two = (mix_phosphors(COLOURS[:, None], np.full((len(COLOURS), 1), thickness)) for thickness in (1, 2))
+    np.testing.assert_allclose(one, COLOURS, atol=1e-12)
+    assert (two.sum(axis=1) < one.sum(axis=1)).all()
+    # Impurity of real filters in Fishkin 1983: white on white is darker than white.
+    assert (mix_phosphors(np.ones((2, 3)), np.ones(2)) < 0.6).all()
+
+
+def test_hsl_agrees_with_the_standard_library_and_round_trips(rng):
+    rgb = np.concatenate([rng.random((500, 3)), rng.integers(0, 3, (500, 3)) / 2])
+    found = rgb_to_hsl(rgb)
+    np.testing.assert_allclose(hsl_to_rgb(found), rgb, atol=1e-12)
+    np.testing.assert_allclose(found, np.array([colorsys.rgb_to_hls(*one) for one in rgb])[:, [0, 2, 1]], atol=1e-12)
+    hsl = np.stack(np.meshgrid(np.arange(-8, 13) / 12, [0, 0.3, 1], [0, 0.5, 0.7, 1]), axis=-1).reshape(-1, 3)
+    expected = [colorsys.hls_to_rgb(hue, lightness, saturation) for hue, saturation, lightness in hsl]
+    np.testing.assert_allclose(hsl_to_rgb(hsl), expected, atol=1e-12)
+    np.testing.assert_allclose(hsl_to_rgb([-1e-18, 1, 0.5]), [1, 0, 0], atol=1e-12)

@@ -7,9 +7,8 @@ Leading axes broadcast. docs/mixing.md has an example and results.
 
 from __future__ import annotations
 
-from uplift.design.mixing.coats import Ingredients, Medium, make_coat, mix
-from uplift.design.mixing.layers import Surface
-from uplift.design.mixing.overpaint import overpainter
+from uplift.design.mixing.coats import Ingredients, Medium, make_coat, mix, overpainter
+from uplift.design.mixing.optics import Surface
 from uplift.design.mixing.pigments import dispersive
 
 __all__ = [

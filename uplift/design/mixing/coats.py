@@ -14,22 +14,41 @@ prints, with ρ_i = ρ, (1 − ρ)² / (ρ (1 − ρ T² R_g)): its sum starts a
 
 from __future__ import annotations
 
+import json
 import warnings
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.sensor import SLACK
+from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftWarning
-from uplift.design.mixing.amounts import add_lights, as_amounts, as_shares, as_thickness, stack_filters, weighted_sum
-from uplift.design.mixing.layers import NO_SURFACE, Layer, Surface
+from uplift.design.mixing.optics import (
+    NO_SURFACE,
+    Layer,
+    Surface,
+    add_lights,
+    as_amounts,
+    as_shares,
+    stack_filters,
+    weighted_sum,
+)
 from uplift.design.mixing.pigments import Pigment, Scattering, from_black_and_white, from_opaque
+from uplift.io import exr
+from uplift.io.texture.colours import Counts, Floats, check_encoding
+from uplift.io.texture.uplifter import Converter
+from uplift.lookup import Cube
+from uplift.lookup.blocks import blockwise
 
 COATS = ("pigment", "dye")
 KINDS = (*COATS, "filter", "light")
 DARKEST = 1e-6  # smallest transmittance that the absorption of a dye is derived from; it diverges at 0
+MAX_THICKNESS = 1e9  # as it is multiplied with other numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,13 +131,15 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
         No pigment has the given reflectances on white and on black.
     """
     if kind not in COATS:
-        raise OptionError(f"a coat cannot be of kind '{kind}'", code="unknown-coat", hint=f"use {' or '.join(COATS)}")
+        raise OptionError(f"a coat cannot be of kind '{kind}'", hint=f"use {' or '.join(COATS)}")
+    if medium.thickness is not None and not 0 <= medium.thickness <= MAX_THICKNESS:
+        problem = f"thickness must be in [0, {MAX_THICKNESS:g}], got {medium.thickness}"
+        raise OptionError(problem, code="invalid-thickness", hint="1 is the unit")
     surface, spectra = medium.surface, [*ingredients.spectra, *ingredients.measured_on_black]
     dark = sum(bool((surface.remove(one) < -SLACK).any()) for one in spectra)
     if dark:
         problem = (
-            f"{dark} of {len(spectra)} colours are partly darker than the surface alone; they are treated as "
-            "black there"
+            f"{dark} of {len(spectra)} colours are partly darker than the surface alone; they count as black there"
         )
         warnings.warn(UpliftWarning(problem), stacklevel=2)
     if kind == "dye":
@@ -132,7 +153,7 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
     stacked = Pigment(np.stack([one.absorption for one in paints]), np.stack([one.scattering for one in paints]))
     mixture = stacked.mix(parts)
     if medium.thickness is not None:
-        return Coat(mixture.layer(as_thickness(medium.thickness)), surface)
+        return Coat(mixture.layer(medium.thickness), surface)
     reflectance = mixture.opaque_reflectance()
     return Coat(Layer(reflectance, np.zeros_like(reflectance)), surface)
 
@@ -192,7 +213,7 @@ def ramp(parts: ArrayLike, steps: int) -> Array:
 
 def dye_transmittance(absorption: ArrayLike, thickness: float) -> Array:
     """Return T = exp(−K X) of absorption (..., N) (Beer, eq. 9.5). A concentration multiplies the thickness."""
-    return np.exp(-as_thickness(thickness) * np.asarray(absorption, dtype=float))
+    return np.exp(-thickness * np.asarray(absorption, dtype=float))
 
 
 def dye_absorption(reflectance: ArrayLike, surface: Surface = NO_SURFACE) -> Array:
@@ -213,3 +234,72 @@ def _pigment(spectrum: Array, on_black: Array | None, medium: Medium) -> Pigment
 
 def _beneath(surface: Surface, reflectance: ArrayLike) -> Array:
     return np.clip(surface.remove(reflectance), 0, 1)
+
+
+@dataclass(frozen=True, eq=False)
+class Overpainter(Converter):
+    """Converter that lays a coat over images, made by `overpainter`. The gamut is mapped before and after painting."""
+
+    coat: Coat  # at the wavelengths of the sensor
+    reflectance: Callable[[Floats], Floats]  # from linear RGB (..., 3) to reflectances (..., N)
+    threads: int  # that share a band
+
+    def paint(self, rgb: Floats) -> Floats:
+        """Lay the coat over linear RGB (..., 3) in [0, 1]; the result may be outside."""
+        return blockwise(self._paint_block, rgb.astype(float), 3, np.float32, self.threads)
+
+    def convert(self, rgb: Floats) -> tuple[tuple[Floats, ...], Counts]:
+        """Lay the coat over a block of colours (..., 3) and map the result to the gamut, counting pixels outside."""
+        mapped = map_to_gamut(self.paint(rgb), self.sensor, self.out_of_gamut)
+        return (mapped.rgb,), Counts(painted_outside=mapped.count)
+
+    def _paint_block(self, rgb: Array) -> Array:
+        return self.sensor.rgb(self.coat.over(self.reflectance(rgb.astype(np.float32))))
+
+
+def overpainter(
+    cube: Cube,
+    coat: Coat,
+    recipe: Mapping[str, Any] | None = None,
+    *,
+    encoding: str = "auto",
+    out_of_gamut: str = "scale",
+    threads: int = 2,
+    space: ImageSpace | None = None,
+) -> Overpainter:
+    """Prepare to paint over images.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube that uplifts.
+    coat : Coat
+        The coat, at the wavelengths of the cube's sensor.
+    recipe : mapping, optional
+        Description of the coat in JSON values, written to the header.
+    encoding : {"auto", "linear", "encoded"}
+        Interpretation of the numbers in images; ``auto`` takes integers as encoded, floats as linear.
+    out_of_gamut : str
+        Gamut mapping for pixels outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
+    threads : int
+        Threads that share a band.
+    space : ImageSpace, optional
+        RGB space of images, by default the one that each file states.
+
+    Returns
+    -------
+    Overpainter
+        The converter to pass to `uplift.io.texture.convert`.
+    """
+    from uplift.lookup import bulk
+
+    check_encoding(encoding)
+    check_method(out_of_gamut)
+    sensor = cube.data.sensor
+    header = {
+        "chromaticities": exr.chromaticities(sensor),
+        "uplift.mix": json.dumps(dict(recipe or {}), allow_nan=False),
+    }
+    sampler = bulk.spectra(cube, threads=1)
+    settings = (sensor, "float", encoding, out_of_gamut, (), header)
+    return Overpainter(*settings, coat, sampler, threads, space=space)

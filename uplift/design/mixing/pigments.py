@@ -1,4 +1,4 @@
-"""Paints that absorb (K) and scatter (S) light, per unit thickness, by Kubelka and Munk's two-flux theory.
+"""Paints that absorb (K) and scatter (S) light, per unit thickness, by the theories of Kubelka and Munk and of Duntley.
 
 With γ = √(K (K + 2S)) a layer of thickness X has (Fishkin 1983, eq. 10.2)
 
@@ -11,8 +11,22 @@ below λ less that above it, weighted by exp(−abs(λ − λ') / 40 nm). The re
 long-wave side of an absorption band (anomalous dispersion), and scattering grows with its difference from the binder's:
 yellow pigments scatter most in the green, blue ones little, and both together are green. docs/mixing.md compares them.
 
-P. Kubelka and F. Munk 1931; P. Kubelka, J. Opt. Soc. Am. 38, 1948; D. R. Duncan, Proc. Phys. Soc. 52, 1940;
-C. F. Bohren & D. R. Huffman, *Absorption and Scattering of Light by Small Particles*, 1983, chapter 9.
+Duntley's theory has eight constants, as collimated incident light and diffuse light within a layer differ: a fraction
+K' of the beam is absorbed, B' is scattered backward and F' forward; K, B and F are those of diffuse light (F has no
+effect), S' = B' + F' and S = B + F. With μ = K' + B' + F' and γ² = K (K + 2B), the beam e^−μx feeds two diffuse fluxes,
+
+    t' = F' e^−μx − (K + B) t + B s,    −s' = B' e^−μx − (K + B) s + B t,    t(0) = 0,  s(X) = 0.
+
+−Q' e^−μx and −P' e^−μx are a particular solution. The rest is Kubelka and Munk's layer (r, τ) with S = B, so that
+
+    R = Q' r + P' e^−μX τ − P',    T = Q' τ + P' e^−μX r − (Q' − 1) e^−μX,
+
+which is eq. 10.8 of Fishkin 1983. Where the denominator μ² − γ² of P' and Q' vanishes, the mean of both sides is taken.
+Particles that scatter in all directions alike leave two constants: K' = K / 2, B' = F' = S / 2 and B = F = S.
+
+P. Kubelka and F. Munk 1931; P. Kubelka, J. Opt. Soc. Am. 38, 1948; D. R. Duncan, Proc. Phys. Soc. 52, 1940; S. Q.
+Duntley, J. Opt. Soc. Am. 1942; C. F. Bohren & D. R. Huffman, *Absorption and Scattering of Light by Small Particles*,
+1983, chapter 9.
 """
 
 from __future__ import annotations
@@ -25,9 +39,8 @@ from numpy.typing import ArrayLike
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.common.errors import ColourError, OptionError
-from uplift.design.mixing.amounts import as_shares, weighted_sum
-from uplift.design.mixing.layers import TINY, Layer
+from uplift.common.errors import ColourError
+from uplift.design.mixing.optics import TINY, Layer, as_shares, weighted_sum
 
 DARKEST = 1e-4  # smallest reflectance that K and S are derived from; K diverges at 0
 SLACK = 1e-3  # contradiction between measurements on two grounds that is accepted as rounding
@@ -35,6 +48,8 @@ MIN_TRANSMITTANCE = 1e-3  # smallest transmittance at which K and S can be separ
 REACH = 40.0  # distance in nm at which the weight of absorption in h falls to 1/e
 # Smallest reflectance that h is computed from; √(K/S) diverges at 0, where the colour no longer determines it.
 DARKEST_DISPERSED = 0.01
+# Relative difference of μ and γ below which the mean of both sides is taken; its error is the square of this.
+MIN_RELATIVE_GAP = 1e-5
 
 # From reflectances (..., N) in (0, 1] to S (..., N), greater than 0, of which white has 1.
 Scattering = Callable[[Array], Array]
@@ -124,12 +139,6 @@ class Pigment:
         Numerators and denominators are divided by γ e^γX, which prevents overflow and covers K → 0 and S → 0.
         """
         X = np.asarray(thickness, dtype=float)[..., None]
-        if not (np.isfinite(X) & (X >= 0)).all():
-            raise OptionError(
-                f"thickness must be finite and at least 0, got {np.squeeze(X).tolist()}",
-                code="invalid-thickness",
-                hint="use opaque_reflectance for opaque paint",
-            )
         gamma = self.gamma
         path = 2 * gamma * X
         sinh = np.where(path > 0, -np.expm1(-path) / np.maximum(2 * gamma, TINY), X)
@@ -141,12 +150,6 @@ class Pigment:
         """Return the reflectance (..., N) of opaque paint in Amy's approximation for strong absorption (eq. 10.4)."""
         K, S = self.absorption, self.scattering
         return np.asarray(S / np.maximum(2 * (K + S), TINY))
-
-    def amy_layer(self, thickness: ArrayLike) -> Layer:
-        """Return a layer in Amy's approximation (eq. 10.3): γ is K + S, except in the exponent of the reflectance."""
-        X = np.asarray(thickness, dtype=float)[..., None]
-        reflectance = self.amy_opaque_reflectance() * -np.expm1(-2 * self.gamma * X)
-        return Layer(reflectance, np.exp(-(self.absorption + self.scattering) * X))
 
 
 def from_opaque(reflectance: ArrayLike, scattering: Scattering) -> Pigment:
@@ -178,3 +181,48 @@ def from_black_and_white(on_black: ArrayLike, on_white: ArrayLike) -> Pigment:
     safe = np.where(sinh > 0, sinh, 1)
     ratio = np.where(sinh > 0, np.log1p(cosh_minus_1 + sinh) / safe, 1) / T
     return Pigment(ratio * A * (1 - R0 + T) / 2, ratio * R0)
+
+
+@dataclass(frozen=True, eq=False)
+class Flux:
+    """Fractions (..., N) of a kind of light that are absorbed, scattered backward and forward per unit thickness."""
+
+    absorption: Array
+    backward: Array
+    forward: Array
+
+
+def duntley_layer(beam: Flux, diffuse: Flux, thickness: float) -> Layer:
+    """Return the optical properties of a layer for collimated light by Duntley's theory (eq. 10.8)."""
+    inner = Pigment(diffuse.absorption, diffuse.backward)
+    layer = inner.layer(thickness)
+    r, tau = layer.reflectance, layer.transmittance
+    K, B, gamma = inner.absorption, inner.scattering, inner.gamma
+    B1, F1, S1 = beam.backward, beam.forward, beam.backward + beam.forward
+
+    def one_side(K1: Array) -> Array:
+        mu = K1 + S1
+        unscattered = np.exp(-mu * thickness)
+        denominator = mu**2 - K * (K + 2 * B)
+        safe = np.where(denominator == 0, 1, denominator)
+        # A beam that is not scattered feeds nothing.
+        P = np.where(S1 > 0, ((K - K1) * B1 + (B - B1) * S1) / safe, 0)
+        Q = np.where(S1 > 0, ((K + K1) * F1 + (B + F1) * S1) / safe, 0)
+        return np.stack([Q * r + P * unscattered * tau - P, Q * tau + P * unscattered * r - (Q - 1) * unscattered])
+
+    mu = beam.absorption + S1
+    step = MIN_RELATIVE_GAP * np.maximum(mu, gamma)
+    offset = np.where(np.abs(mu - gamma) < step, 2 * step, 0.0)
+    return Layer(*((one_side(beam.absorption + offset) + one_side(beam.absorption - offset)) / 2))
+
+
+def diffuse_to_beam(diffuse: ArrayLike) -> Array:
+    """Return the reflectance R = 2r / (3 − r) in a beam of an opaque layer that scatters in all directions alike."""
+    r = np.asarray(diffuse, dtype=float)
+    return 2 * r / (3 - r)
+
+
+def beam_to_diffuse(directed: ArrayLike) -> Array:
+    """Return the reflectance in diffuse light of such a layer, r = 3R / (2 + R)."""
+    R = np.asarray(directed, dtype=float)
+    return 3 * R / (2 + R)

@@ -62,7 +62,7 @@ def convert(
     Parameters
     ----------
     converter : Converter
-        An `Uplifter`, or a coat of paint (`uplift.design.mixing.overpaint`).
+        An `Uplifter`, or a coat of paint (`uplift.design.mixing.overpainter`).
     source : path-like
         OpenEXR, Radiance HDR, PNG, JPEG or TIFF image.
     target : path-like

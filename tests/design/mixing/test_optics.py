@@ -5,11 +5,28 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from uplift.common.errors import OptionError, UnknownNameError
-from uplift.design.mixing import Surface, layers
-from uplift.design.mixing.layers import NO_SURFACE, Layer
+from tests.helpers import raises
+from uplift.common.errors import OptionError
+from uplift.design.mixing import Surface, optics
+from uplift.design.mixing.optics import NO_SURFACE, Layer, add_lights, average_areas, stack_filters
 
 INDICES = (1.01, 1.2, 1.5, 1.66, 2.4)
+
+
+def test_lights_add_up_and_areas_are_averaged(spectra, parts, sensor, rng):
+    expected = sum(parts[:, i, None] * spectra[:, i] for i in range(3))
+    np.testing.assert_allclose(add_lights(spectra, parts), expected)
+    for scale in (1, 7):
+        mean = expected / parts.sum(axis=1, keepdims=True)
+        np.testing.assert_allclose(average_areas(spectra, scale * parts), mean)
+    lights = rng.random((3, 81))
+    np.testing.assert_allclose(sensor.rgb(add_lights(lights, [1, 2, 3])), add_lights(sensor.rgb(lights), [1, 2, 3]))
+
+
+def test_thickness_of_filters_composes_without_creating_energy(spectra):
+    first, second = (stack_filters(spectra, thickness) for thickness in ([1, 2, 0.5], [2, 0, 1]))
+    np.testing.assert_allclose(stack_filters(spectra, [3, 2, 1.5]), first * second)
+    assert ((first >= 0) & (first <= 1)).all()
 
 
 def test_reflectance_on_a_ground_is_the_sum_of_all_reflections():
@@ -17,13 +34,7 @@ def test_reflectance_on_a_ground_is_the_sum_of_all_reflections():
     ground = np.array([0.9, 1.0, 0.5])
     passes = (layer.transmittance**2 * ground * (layer.reflectance * ground) ** bounce for bounce in range(2000))
     np.testing.assert_allclose(layer.over(ground), layer.reflectance + sum(passes))
-    np.testing.assert_array_equal(layer.over(0), layer.reflectance)
-    clear = Layer(np.zeros(3), np.ones(3))
-    np.testing.assert_array_equal(clear.over([0.1, 0.2, 1]), [0.1, 0.2, 1])
-
-
-def test_perfect_mirrors_face_to_face_give_no_nan():
-    assert Layer(np.ones(1), np.zeros(1)).over(1.0) == 1
+    assert Layer(np.ones(1), np.zeros(1)).over(1.0) == 1, "mirrors face to face give no NaN"
 
 
 def integrated(n):
@@ -37,17 +48,17 @@ def integrated(n):
 
 @pytest.mark.parametrize("n", INDICES)
 def test_duntley_s_formula_is_the_integral_of_fresnel_s(n):
-    assert layers.diffuse_reflectance(n) == pytest.approx(integrated(n), abs=1e-8)
+    assert optics.diffuse_reflectance(n) == pytest.approx(integrated(n), abs=1e-8)
 
 
 def test_published_values():
     """The thesis for an index of 1.5: 4 % (9.3) and 9 % (10.3); Judd 1942: 0.596 from within."""
-    assert layers.fresnel_reflectance(1.5) == pytest.approx(0.04)
-    assert layers.diffuse_reflectance(1.5) == pytest.approx(0.0918, abs=5e-5)
-    assert layers.internal_reflectance(1.5) == pytest.approx(0.596, abs=5e-4)
+    assert optics.fresnel_reflectance(1.5) == pytest.approx(0.04)
+    assert optics.diffuse_reflectance(1.5) == pytest.approx(0.0918, abs=5e-5)
+    assert optics.internal_reflectance(1.5) == pytest.approx(0.596, abs=5e-4)
 
 
-@pytest.mark.parametrize("incidence", layers.INCIDENCES)
+@pytest.mark.parametrize("incidence", optics.INCIDENCES)
 @pytest.mark.parametrize("n", INDICES)
 def test_saunderson_round_trip(incidence, n):
     surface = Surface.of_index(n, incidence)
@@ -64,12 +75,11 @@ def test_an_index_of_1_has_no_surface():
     np.testing.assert_array_equal(NO_SURFACE.apply([0, 0.3, 1]), [0, 0.3, 1])
 
 
-def test_invalid_surfaces_raise():
-    for index in (0.9, np.nan, np.inf):
-        with pytest.raises(OptionError):
-            Surface.of_index(index)
-    with pytest.raises(UnknownNameError):
-        Surface.of_index(1.5, "oblique")
-    for values in ((1, 0), (0, 1), (-0.1, 0), (np.nan, 0)):
-        with pytest.raises(OptionError):
-            Surface(*values)
+@pytest.mark.parametrize(
+    ("make", "values"),
+    [*((Surface.of_index, (each,)) for each in (0.9, np.nan, np.inf)), (Surface.of_index, (1.5, "oblique"))]
+    + [(Surface, each) for each in ((1, 0), (0, 1), (-0.1, 0), (np.nan, 0))],
+)
+def test_invalid_surfaces_raise(make, values):
+    with raises(OptionError):
+        make(*values)

@@ -1,4 +1,4 @@
-"""Optics of a layer on a ground, and of the surface between air and the vehicle of a paint.
+"""Amounts of components, lights and filters, layers on a ground, and the surface between air and a vehicle of paint.
 
 Incident light is a perpendicular beam (Fresnel; Fishkin 1983, eq. 9.3) or diffuse (Duntley 1942, eq. 10.9); light
 within is diffuse. Saunderson's correction (J. Opt. Soc. Am. 32, 1942, eq. 10.10) converts between the internal
@@ -14,9 +14,51 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError, unknown_name
+from uplift.common.errors import OptionError
 
 TINY = np.finfo(float).tiny
+
+
+def as_amounts(parts: ArrayLike) -> Array:
+    """Return parts (…, n) as floats. Raises `OptionError` unless they are finite and not negative."""
+    array = np.asarray(parts, dtype=float)
+    if array.ndim == 0 or not (np.isfinite(array) & (array >= 0)).all():
+        raise OptionError(
+            f"parts of a mixture must be a sequence of finite numbers of at least 0, got {array.tolist()}",
+            hint="pass one for each component",
+        )
+    return array
+
+
+def as_shares(parts: ArrayLike) -> Array:
+    """Return parts (…, n) scaled to sum 1. Raises `OptionError`, also if all are 0."""
+    array = as_amounts(parts)
+    largest = array.max(axis=-1, keepdims=True)
+    if not (largest > 0).all():
+        raise OptionError("some part of a mixture must be greater than 0", hint="raise one of them")
+    relative = array / largest  # a sum of huge parts would overflow
+    return np.asarray(relative / relative.sum(axis=-1, keepdims=True))
+
+
+def weighted_sum(spectra: ArrayLike, weights: Array) -> Array:
+    """Return the sum (…, N) of spectra (…, n, N) with weights (…, n)."""
+    return np.asarray((weights[..., None, :] @ np.asarray(spectra, dtype=float))[..., 0, :])
+
+
+def add_lights(spectra: ArrayLike, strengths: ArrayLike) -> Array:
+    """Superpose lights (…, n, N) of some strengths (…, n) (eq. 8.1, 8.2): linear in spectra, XYZ and linear RGB."""
+    return weighted_sum(spectra, as_amounts(strengths))
+
+
+def average_areas(spectra: ArrayLike, parts: ArrayLike) -> Array:
+    """Average the reflectances (…, n, N) of dots too small to resolve by the areas (…, n) that they cover (eq. 8.3)."""
+    return weighted_sum(spectra, as_shares(parts))
+
+
+def stack_filters(transmittance: ArrayLike, thickness: ArrayLike) -> Array:
+    """Multiply transmittances (…, n, N), each to the power of its thickness (…, n), without reflections (eq. 9.1)."""
+    powers = as_amounts(thickness)[..., None]
+    return np.prod(np.asarray(transmittance, dtype=float) ** powers, axis=-2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +78,7 @@ class Layer:
 
 def fresnel_reflectance(index: float) -> float:
     """Return the reflectance of a perpendicular beam, from either side (eq. 9.3): 0.04 for an index of 1.5."""
-    return ((_check_index(index) - 1) / (index + 1)) ** 2
+    return ((index - 1) / (index + 1)) ** 2
 
 
 def diffuse_reflectance(index: float) -> float:
@@ -44,10 +86,9 @@ def diffuse_reflectance(index: float) -> float:
 
     Fishkin 1983 prints 8n + 1² for 6 (n + 1)².
     """
-    n = _check_index(index)
+    n, n2, n4 = index, index**2, index**4
     if n == 1:
         return 0.0
-    n2, n4 = n**2, n**4
     return float(
         0.5
         + (n - 1) * (3 * n + 1) / (6 * (n + 1) ** 2)
@@ -103,8 +144,11 @@ class Surface:
         Surface
             The surface.
         """
+        if not (np.isfinite(index) and index >= 1):
+            problem = f"refractive index must be finite and at least 1, got {index}"
+            raise OptionError(problem, hint="linseed oil has 1.5")
         if incidence not in INCIDENCES:
-            raise unknown_name(incidence, INCIDENCES, "incidence")
+            raise OptionError(f"unknown incidence '{incidence}'", hint=f"use {' or '.join(INCIDENCES)}")
         return cls(INCIDENCES[incidence](index), internal_reflectance(index))
 
     def apply(self, internal: ArrayLike) -> Array:
@@ -142,10 +186,3 @@ class Surface:
 
 
 NO_SURFACE = Surface()
-
-
-def _check_index(index: float) -> float:
-    if not (np.isfinite(index) and index >= 1):
-        problem = f"refractive index must be finite and at least 1, got {index}"
-        raise OptionError(problem, hint="linseed oil has 1.5")
-    return index
