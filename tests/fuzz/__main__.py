@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
+from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
-from pathlib import Path
 
 import click
 
-from tests.fuzz.campaign import Tally
-from tests.fuzz.targets import COMMANDS, KEPT, READERS, fuzz_target
+from tests.fuzz.commands import COMMANDS, KEPT, run_target
+from tests.fuzz.readers import READERS
 from uplift.lab.timing import environment
 
 BLOCK = 5000
@@ -18,35 +17,29 @@ BLOCK = 5000
 
 
 @click.command()
+@click.argument("names", nargs=-1, type=click.Choice([*READERS, *COMMANDS]))
 @click.option("--inputs", default=10_000, show_default=True, help="Inputs of each reader; a tenth of commands.")
-@click.option("--target", "chosen", multiple=True, type=click.Choice([*READERS, *COMMANDS]), help="All by default.")
 @click.option("--seed", default=0, show_default=True)
-@click.option("--processes", default=os.cpu_count(), show_default=True)
-@click.option("-o", "--output", default=KEPT / "nightly.json", show_default=True, type=click.Path(path_type=Path))
-def main(inputs: int, chosen: tuple[str, ...], seed: int, processes: int, output: Path) -> None:
-    """Fuzz readers and commands, print what happened, and end with 1 after a failure."""
+def main(names: tuple[str, ...], inputs: int, seed: int) -> None:
+    """Fuzz readers and commands, all by default, print what happened, and end with 1 after a failure."""
     KEPT.mkdir(parents=True, exist_ok=True)
-    counts = dict.fromkeys(READERS, inputs) | dict.fromkeys(COMMANDS, inputs // 10)
-    counts = {name: counts[name] for name in chosen or counts}
-    blocks = [
-        (name, range(first, min(first + BLOCK, count)))
-        for name, count in counts.items()
-        for first in range(0, count, BLOCK)
-    ]
-    tallies = {name: Tally(name) for name in counts}
-    with ProcessPoolExecutor(processes, max_tasks_per_child=1) as pool:
-        for tally in pool.map(fuzz_target, [seed] * len(blocks), *zip(*blocks, strict=True)):
-            tallies[tally.target].add(tally)
-    rows = [
-        {"target": tally.target, "tried": tally.inputs, "taken": tally.accepted, "refused": tally.rejected}
-        | {"failures": ", ".join(f"{count} {kind}" for kind, count in tally.failures.items()) or "none"}
-        for tally in tallies.values()
-    ]
+    rows = []
+    with ProcessPoolExecutor(max_tasks_per_child=1) as pool:
+        for name in names or (*READERS, *COMMANDS):
+            count = inputs if name in READERS else inputs // 10
+            blocks = [range(first, min(first + BLOCK, count)) for first in range(0, count, BLOCK)]
+            tally = sum(pool.map(run_target, [name] * len(blocks), [seed] * len(blocks), blocks), Counter())
+            row = {
+                "target": name,
+                "tried": count,
+                "taken": tally.pop("accepted", 0),
+                "refused": tally.pop("rejected", 0),
+            }
+            rows.append(row | {"failures": ", ".join(f"{times} {kind}" for kind, times in tally.items()) or "none"})
+            click.echo("{target}: {tried:,} inputs, {taken:,} accepted, failures: {failures}".format(**rows[-1]))
     figures = {"command": "make nightly", "environment": environment(), "seed": seed, "targets": rows}
-    output.write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    for row in rows:
-        click.echo("{target}: {tried:,} inputs, {taken:,} accepted, failures: {failures}".format(**row))
-    raise SystemExit(any(tally.failures for tally in tallies.values()))
+    (KEPT / "nightly.json").write_text(json.dumps(figures, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    raise SystemExit(any(row["failures"] != "none" for row in rows))
 
 
 if __name__ == "__main__":

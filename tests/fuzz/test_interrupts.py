@@ -1,4 +1,4 @@
-"""Writers that are killed, interrupted, run at once or have no space: the old or a complete new file remains."""
+"""Writers that are killed, interrupted, run or at once: the old or a complete new file remains."""
 
 from __future__ import annotations
 
@@ -14,14 +14,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from threadpoolctl import threadpool_info
 
 import uplift
-from tests.fuzz.campaign import ROOT
+from tests.fuzz.fuzzing import ROOT
 from uplift.cube import digest
 from uplift.io.texture import exr_file
 
-pytestmark = pytest.mark.skipif(os.name == "nt", reason="needs SIGKILL")
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="needs SIGKILL and /proc")
 
 OLD, NEW = (ROOT / "cubes" / f"{name}.uplift" for name in ("moments-16-macbeth", "sigmoid-16-macbeth"))
 SAVE_IN_TURN = """
@@ -31,21 +30,8 @@ print(flush=True)
 for cube in itertools.cycle(cubes):
     cube.save(sys.argv[1], force=True)
 """
-SAVE_ON_A_SMALL_DISK = """
-import resource, sys, uplift
-cube = uplift.load(sys.argv[2])
-resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
-try:
-    cube.save(sys.argv[1], force=True)
-except uplift.OutputError:
-    sys.exit(2)
-"""
 SECONDS = 10.0
 """Limit of the time from a signal to the end of all processes."""
-
-
-def blas_threads() -> list[int]:
-    return sorted(each["num_threads"] for each in threadpool_info() if each["user_api"] == "blas")
 
 
 def start(words: list[str], folder: Path) -> subprocess.Popen[str]:
@@ -59,15 +45,9 @@ def start(words: list[str], folder: Path) -> subprocess.Popen[str]:
         signal.signal(signal.SIGINT, previous)
 
 
-def workers(process: int) -> list[Path]:
-    """Workers of a process, as their folders in /proc."""
-    children = Path(f"/proc/{process}/task/{process}/children")
-    return [Path(f"/proc/{number}") for number in children.read_text().split()] if children.exists() else []
-
-
-def is_running(process: Path) -> bool:
+def is_running(process: str) -> bool:
     try:
-        return " Z " not in (process / "stat").read_text()
+        return " Z " not in Path(f"/proc/{process}/stat").read_text()
     except OSError:
         return False
 
@@ -90,24 +70,14 @@ def test_a_killed_writer_leaves_a_complete_file_or_none(tmp_path, exists):
         assert os.listdir(tmp_path) == [path.name]
 
 
-def test_a_full_disk_is_an_error_and_the_old_file_remains(tmp_path):
-    path = tmp_path / "cube.uplift"
-    path.write_bytes(b"old")
-    done = subprocess.run([sys.executable, "-c", SAVE_ON_A_SMALL_DISK, path, OLD], check=False)
-    assert done.returncode == 2
-    assert path.read_bytes() == b"old"
-    assert os.listdir(tmp_path) == [path.name]
-
-
 def test_builds_in_threads_give_equal_cubes():
     def built(dim: int) -> str:
         return digest(uplift.build(dim=dim, coefficients=5).data)
 
-    alone, threads = {dim: built(dim) for dim in (3, 4, 5)}, blas_threads()
+    alone = {dim: built(dim) for dim in (3, 4, 5)}
     dims = [3, 4, 5, 5, 4, 3]
     with ThreadPoolExecutor(len(dims)) as pool:
         assert list(pool.map(built, dims)) == [alone[dim] for dim in dims]
-    assert blas_threads() == threads
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
@@ -120,7 +90,7 @@ def test_signals_end_textures_and_their_workers(tmp_path, number):
     while not list(tmp_path.glob("out/.*.part")):
         assert process.poll() is None, process.stderr.read()
         time.sleep(0.02)
-    children = workers(process.pid)
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
     process.send_signal(number)
     _, text = process.communicate(timeout=SECONDS)
     end = time.monotonic() + SECONDS
