@@ -9,7 +9,7 @@ OUT := out
 PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
-.PHONY: golden golden-before build lint test bare basic site measure peers library nightly munsell docs atlases samples cubes lock clean pictures axe examples
+.PHONY: golden golden-before build lint test bare basic site measure peers library nightly munsell docs atlases cubes lock clean pictures axe examples
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -98,10 +98,6 @@ measure: $(INSTALLED)
 # Every example of the README, the documentation and the help, from a wheel: takes about 20 minutes.
 examples: $(INSTALLED)
 	$(BIN)/python -m tests.examples
-
-# Sample pictures and measurements of `uplift samples`; commit the result.
-samples: $(INSTALLED)
-	$(BIN)/python -W ignore -m tools.ship_samples
 
 cubes: $(INSTALLED)
 	$(BIN)/python tools/store_cubes.py

@@ -22,16 +22,6 @@ FILE_KEYS = {"mended", "told"}
 """Keys of stored files, which keep their names."""
 
 
-def patterns() -> list[tuple[re.Pattern[str], str]]:
-    """Return the banned expressions, each with the advice to show."""
-    pairs = []
-    for line in WORDS.read_text(encoding="utf-8").splitlines():
-        if line and not line.startswith("#"):
-            expression, _, advice = line.partition("  ")
-            pairs.append((re.compile(rf"\b(?:{expression})\b", re.IGNORECASE), advice.strip()))
-    return pairs
-
-
 def tracked() -> list[Path]:
     """Return the Python and Markdown files and the templates that git tracks, or would if they were added."""
     command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.py", "*.md", "*.j2"]
@@ -61,37 +51,37 @@ def prose(path: Path) -> Iterator[tuple[int, str]]:
 
 def check_words() -> list[str]:
     """Return a line for every banned expression."""
-    banned = patterns()
+    lines = [line.partition("  ") for line in WORDS.read_text(encoding="utf-8").splitlines()]
+    banned = {line[0]: line[2].strip() for line in lines if line[0] and not line[0].startswith("#")}
+    patterns = {re.compile(rf"\b(?:{expression})\b", re.IGNORECASE): advice for expression, advice in banned.items()}
     return [
         f"{path.relative_to(ROOT)}:{number}: '{match.group()}': {advice}"
         for path in tracked()
         if path != Path(__file__)
         for number, line in prose(path)
-        for pattern, advice in banned
+        for pattern, advice in patterns.items()
         for match in pattern.finditer(line)
     ]
 
 
-def public(package: str) -> Iterator[tuple[str, frozenset[str]]]:
+def documented(package: str) -> Iterator[tuple[str, frozenset[str]]]:
     """Yield the dotted names of what a package exports and the public methods of its classes, with codes to check.
 
     Methods with an inherited docstring are left out.
     """
     module = importlib.import_module(package)
     for found in (getattr(module, name) for name in getattr(module, "__all__", ())):
-        if not inspect.isfunction(found) and not inspect.isclass(found):
-            continue
-        name = f"{found.__module__}.{found.__qualname__}"
+        name = f"{found.__module__}.{found.__qualname__}" if callable(found) else ""
         if inspect.isfunction(found):
             yield name, REQUIRED
-            continue
-        own_constructor = "__init__" in vars(found) and not getattr(found, "_is_protocol", False)
-        yield name, REQUIRED if own_constructor else REQUIRED - {"PR01"}
-        for key, value in vars(found).items():
-            inherited = value.__doc__ is None and inspect.getdoc(getattr(found, key))
-            is_method = inspect.isfunction(value) or isinstance(value, property | classmethod)
-            if is_method and not key.startswith("_") and not inherited:
-                yield f"{name}.{key}", REQUIRED
+        elif inspect.isclass(found):
+            own_constructor = "__init__" in vars(found) and not getattr(found, "_is_protocol", False)
+            yield name, REQUIRED if own_constructor else REQUIRED - {"PR01"}
+            for key, value in vars(found).items():
+                is_method = inspect.isfunction(value) or isinstance(value, property | classmethod)
+                inherited = value.__doc__ is None and inspect.getdoc(getattr(found, key, None))
+                if is_method and not key.startswith("_") and not inherited:
+                    yield f"{name}.{key}", REQUIRED
 
 
 def check_docstrings() -> list[str]:
@@ -103,7 +93,7 @@ def check_docstrings() -> list[str]:
     return [
         f"{name}: {code} {text}"
         for package in packages
-        for name, checks in dict.fromkeys(public(package))
+        for name, checks in dict.fromkeys(documented(package))
         for code, text in validate(name)["errors"]
         if code in checks
     ]

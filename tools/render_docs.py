@@ -9,17 +9,16 @@ Examples
 --------
     python -m tools.render_docs                # all pages
     python -m tools.render_docs accuracy       # one page
-    python -m tools.render_docs --check        # fail if a committed page is out of date
 """
 
 from __future__ import annotations
 
-import argparse
 import csv
 import io
 import json
 import statistics
 import string
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -30,6 +29,7 @@ from uplift.viz import format as viz_format
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
+TEMPLATES = DOCS / "templates"
 README = "README"
 NAMED: dict[str, Callable[[float], str]] = {
     "time": viz_format.format_time,
@@ -101,72 +101,51 @@ def pick(rows: Iterable[Row], **conditions: Any) -> Row:
     return found[0]
 
 
-def pages(docs: Path = DOCS) -> list[str]:
+def pages() -> list[str]:
     """Return the names of the pages that have a template."""
-    return sorted(path.name.removesuffix(".md.j2") for path in (docs / "templates").glob("*.md.j2"))
+    return sorted(path.name.removesuffix(".md.j2") for path in TEMPLATES.glob("*.md.j2"))
 
 
-def page_file(name: str, docs: Path = DOCS) -> Path:
+def page_file(name: str) -> Path:
     """Return the file of a page: docs/NAME.md, and the README above docs."""
-    return (docs.parent if name == README else docs) / f"{name}.md"
+    return (ROOT if name == README else DOCS) / f"{name}.md"
 
 
-def read_data(name: str, docs: Path = DOCS) -> dict[str, Any]:
+def read_data(name: str) -> dict[str, Any]:
     """Return the data of a page: docs/data/NAME.json, empty if the page has none."""
-    path = docs / "data" / f"{name}.json"
+    path = DOCS / "data" / f"{name}.json"
     return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
 
 
-def render(name: str, docs: Path = DOCS, data: Mapping[str, Any] | None = None) -> str:
-    """Return the text of a page, from its template below ``docs`` and its data, by default the stored one."""
+def read_text(path: str) -> str:
+    """Return the text of a file of docs."""
+    return (DOCS / path).read_text(encoding="utf-8")
 
-    def load(part: str) -> Any:
-        return read_data(part, docs)
 
-    def rows(path: str) -> list[Row]:
-        return [{key: _value(cell) for key, cell in row.items()} for row in csv.DictReader(io.StringIO(text(path)))]
+def read_rows(path: str) -> list[Row]:
+    """Return the rows of a CSV file of docs: numbers where cells are numbers, None where they are empty."""
 
-    def text(path: str) -> str:
-        return (docs / path).read_text(encoding="utf-8")
+    def value(cell: str) -> Any:
+        try:
+            return float(cell) if cell else None
+        except ValueError:
+            return cell
 
+    return [{key: value(cell) for key, cell in row.items()} for row in csv.DictReader(io.StringIO(read_text(path)))]
+
+
+def render(name: str, data: Mapping[str, Any] | None = None) -> str:
+    """Return the text of a page, from its template and its data, by default the stored one."""
+    loader = FileSystemLoader(TEMPLATES)
     environment = Environment(
-        loader=FileSystemLoader(docs / "templates"),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        autoescape=False,
+        loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
     )
     environment.filters |= {"num": number, "mean": statistics.fmean}
-    environment.globals |= {"load": load, "rows": rows, "text": text, "table": table, "where": where, "pick": pick}
-    return environment.get_template(f"{name}.md.j2").render(load(name) if data is None else data)
-
-
-def _value(cell: str) -> Any:
-    """Convert a cell of a CSV file: a number if it is one, None if it is empty."""
-    try:
-        return float(cell) if cell else None
-    except ValueError:
-        return cell
-
-
-def stale(docs: Path = DOCS) -> list[str]:
-    """Return the names of the pages that differ from their rendering."""
-    return [name for name in pages(docs) if page_file(name, docs).read_text(encoding="utf-8") != render(name, docs)]
-
-
-def main() -> None:
-    """Write pages, or check them."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("names", nargs="*", help="pages to render; all by default")
-    parser.add_argument("--check", action="store_true", help="write nothing, fail if a page is out of date")
-    options = parser.parse_args()
-    if options.check:
-        outdated = stale()
-        raise SystemExit(f"out of date: {', '.join(outdated)}; run 'make docs'" if outdated else 0)
-    for name in options.names or pages():
-        page_file(name).write_text(render(name), encoding="utf-8")
+    environment.globals |= {"load": read_data, "rows": read_rows, "text": read_text}
+    environment.globals |= {"table": table, "where": where, "pick": pick}
+    return environment.get_template(f"{name}.md.j2").render(read_data(name) if data is None else data)
 
 
 if __name__ == "__main__":
-    main()
+    for name in sys.argv[1:] or pages():
+        page_file(name).write_text(render(name), encoding="utf-8")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import json
-import shutil
 import subprocess
 import sys
 
@@ -19,7 +18,7 @@ from benchmarks.choices import ALONE, MARK, OURS, SHIPPED, is_optimistic, mark
 from tests.conftest import ROOT
 from tests.parts import MITSUBA, need
 from tools import render_docs
-from tools.render_docs import number, page_file, pick, read_data, render, stale, table
+from tools.render_docs import number, page_file, pick, read_data, render, table
 from uplift.lab.chart.table import read_chart
 from uplift.lab.study.stability import NO_ATLAS, SPACES
 
@@ -63,18 +62,6 @@ def test_a_page_that_fails_does_not_stop_the_others(monkeypatch):
 @pytest.mark.parametrize("name", RENDERED)
 def test_committed_page_is_the_rendering_of_the_committed_data(name):
     assert page_file(name).read_text(encoding="utf-8") == render(name)
-
-
-def test_a_changed_number_in_the_page_is_noticed(tmp_path):
-    for file in ("templates/scenes.md.j2", "templates/macros.j2", "data/scenes.json"):
-        (tmp_path / file).parent.mkdir(exist_ok=True)
-        shutil.copy(DOCS / file, tmp_path / file)
-    page = tmp_path / "scenes.md"
-    text = (DOCS / "scenes.md").read_text(encoding="utf-8")
-    page.write_text(text, encoding="utf-8")
-    assert stale(tmp_path) == []
-    page.write_text(text.replace("e-", "e-1", 1), encoding="utf-8")
-    assert stale(tmp_path) == ["scenes"]
 
 
 def test_a_missing_figure_is_an_error():
