@@ -148,14 +148,13 @@ def sigmoid_times_d65(power: Array, radiometry: Array, rgb_from_xyz: Array, d65:
     target = rgb / (PBRT_SCALE * rgb.max(axis=1, keepdims=True))
     model, wavelengths = Sigmoid(0.0, 1.0), np.linspace(0.0, 1.0, len(radiometry))
     found = solve(
-        model,
         forward_map(model, wavelengths, sensor),
         np.zeros((len(target), model.count)),
         target,
         tolerance=TOLERANCE,
         max_passes=MAX_PASSES,
     )
-    return SigmoidLights(model.squash(found.multipliers @ model.basis(wavelengths).T) * d65, found.distance)
+    return SigmoidLights(model.to_reflectance(found.multipliers @ model.basis(wavelengths).T) * d65, found.distance)
 
 
 def planck(power: Array, radiometry: Array, wavelengths: Array) -> Array:

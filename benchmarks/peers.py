@@ -29,7 +29,8 @@ from uplift.common.errors import UpliftError
 from uplift.common.processes import ChildError, call_in_child
 from uplift.lab.timing import ONE_THREAD, Spread, spread
 from uplift.lattice import Lattice
-from uplift.models import Model, Moments, Sigmoid, evaluate
+from uplift.models import Moments, Sigmoid, evaluate
+from uplift.models.model import Model
 from uplift.models.sigmoid import evaluate_unscaled
 
 THRESHOLD = 1e-4
@@ -276,10 +277,10 @@ def scipy_least_squares(runs: int) -> list[Peer]:
     basis, weights = model.basis(sensor().wavelengths), sensor().matrix
 
     def residual(multipliers: Array, rgb: Array) -> Array:
-        return weights @ model.squash(basis @ multipliers) - rgb
+        return weights @ model.to_reflectance(basis @ multipliers) - rgb
 
     def jacobian(multipliers: Array, rgb: Array) -> Array:
-        return (weights * model.slope(basis @ multipliers)) @ basis
+        return (weights * model.derivative(basis @ multipliers)) @ basis
 
     def residual_of_moments(moments: Array, rgb: Array) -> Array:
         try:

@@ -79,7 +79,7 @@ def test_textures_with_other_colours_are_errors_unless_filled(run, refuse, scene
     found = channels(home / "out.exr")
     made = np.stack([found[f"multiplier.{index:02}"].ravel() for index in range(9)], axis=-1).astype(float)
     data = small_cube.data
-    back = data.sensor.rgb(data.model.squash(made @ data.model.basis(data.sensor.wavelengths).T))
+    back = data.sensor.rgb(data.model.to_reflectance(made @ data.model.basis(data.sensor.wavelengths).T))
     np.testing.assert_allclose(back, rgb[0], atol=1e-5)
 
 

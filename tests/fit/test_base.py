@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.helpers import residual
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.fit.base import has_freedom, learn_base, smooth
@@ -14,7 +15,6 @@ from uplift.fit.match_spectra import match_spectra, moment_matrix
 from uplift.fit.problem import Problem
 from uplift.fit.solver import solve
 from uplift.models import Moments, Phase, Sigmoid, evaluate
-from uplift.models.minimum_norm import residual
 
 LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))
 GRID = observer.grid()
@@ -45,7 +45,7 @@ def entries_of(sensor, measured):
 
 def test_smooth_spectra_have_nearly_the_colour(problem):
     rgb = np.random.default_rng(3).random((500, 3)) ** 2
-    off = np.abs(residual(problem.model, problem.forward, learn_base(problem)[0](rgb), rgb)).max(axis=1)
+    off = np.abs(residual(problem.forward, learn_base(problem)[0](rgb), rgb)).max(axis=1)
     assert off.max() < 0.02
     assert np.median(off) < 0.001
 
@@ -54,9 +54,9 @@ def test_smooth_spectra_of_dark_colours_stay_dark_outside_the_visible_range(prob
     model, forward = problem.model, problem.forward
 
     def at_760(start):
-        found = solve(model, forward, start, DARK, tolerance=1e-6, max_passes=192)
+        found = solve(forward, start, DARK, tolerance=1e-6, max_passes=192)
         assert found.distance.max() <= 1e-6
-        return model.squash(found.multipliers @ forward.basis.T)[:, 76]
+        return model.to_reflectance(found.multipliers @ forward.basis.T)[:, 76]
 
     assert at_760(smooth(model, forward)(DARK)).max() < 0.4
     assert at_760(np.zeros((len(DARK), 9))).max() > 0.9  # from a grey

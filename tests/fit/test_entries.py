@@ -30,7 +30,7 @@ def problem_of(sensor, lights=LIGHTS, model=MODEL):
 
 def fitted(sensor, measured, lights=LIGHTS, weights=BALANCED):
     found = fit_entries(problem_of(sensor, lights), measured, sensor.rgb(measured), weights)
-    return MODEL.squash(found.multipliers @ MODEL.basis(sensor.wavelengths).T)
+    return MODEL.to_reflectance(found.multipliers @ MODEL.basis(sensor.wavelengths).T)
 
 
 def mean_delta_e(name, first, second):
@@ -110,12 +110,12 @@ def test_smoothness_leaves_the_level_to_the_measurement(sensor):
         weights = objective(problem_of(sensor, model=model), Weights(smoothness=0.5)).multipliers
         constant = model.constant() > 0
         assert weights[constant] == FLATNESS
-        np.testing.assert_allclose(weights[~constant], 0.5 * np.sqrt(model.roughness()[~constant]))
+        np.testing.assert_allclose(weights[~constant], 0.5 * np.sqrt(model.metric_diagonal()[~constant]))
 
 
 def test_error_is_the_difference_between_fit_and_measurement(sensor, measured):
     found = fit_entries(problem_of(sensor, ("A",)), measured, sensor.rgb(measured))
-    spectra = MODEL.squash(found.multipliers @ MODEL.basis(sensor.wavelengths).T)
+    spectra = MODEL.to_reflectance(found.multipliers @ MODEL.basis(sensor.wavelengths).T)
     for row in range(len(measured)):
         assert found.error[row] == pytest.approx(mean_delta_e("A", spectra[row], measured[row]))
 

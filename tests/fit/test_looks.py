@@ -50,7 +50,7 @@ def test_looks_of_real_materials_are_met_in_their_entry_fit(sensor, materials, n
     assert designs.min() >= 0
     assert designs.max() <= 1
     fitted = fit_designs(Problem(sensor, model), goals, designs)
-    answers = np.asarray(model.squash(fitted.multipliers @ model.basis(sensor.wavelengths).T))
+    answers = np.asarray(model.to_reflectance(fitted.multipliers @ model.basis(sensor.wavelengths).T))
     assert np.abs(sensor.rgb(answers) - fitted.rgb).max() <= TOLERANCE
     distances = np.array([goal.delta_e(answer) for goal, answer in zip(goals, answers, strict=True)])
     assert distances.max() <= MET

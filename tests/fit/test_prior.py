@@ -37,8 +37,8 @@ def test_start_at_an_entry_is_nearly_its_spectrum(problem, sensor, materials):
     few = materials.rows(np.arange(0, 160, 20))
     prior = fit_prior(problem, few)
     apart = np.abs(
-        problem.model.squash(prior(few.rgb) @ problem.forward.basis.T)
-        - problem.model.squash(few.multipliers @ problem.forward.basis.T)
+        problem.model.to_reflectance(prior(few.rgb) @ problem.forward.basis.T)
+        - problem.model.to_reflectance(few.multipliers @ problem.forward.basis.T)
     )
     assert apart.max() < 0.01
 
@@ -50,7 +50,7 @@ def test_start_far_from_all_entries_is_smooth(problem, sensor, materials):
     basis = problem.forward.basis.T
     smooth = problem.model.from_storage(prior.base.coefficients(light))
     np.testing.assert_allclose(
-        problem.model.squash(prior(light) @ basis), problem.model.squash(smooth @ basis), atol=0.02
+        problem.model.to_reflectance(prior(light) @ basis), problem.model.to_reflectance(smooth @ basis), atol=0.02
     )
 
 
@@ -100,7 +100,7 @@ def test_errors_of_left_out_entries_agree_with_the_standard_error(problem, senso
         prior = fit_prior(problem, materials.rows(order[:half]))
         queried = materials.rows(order[half:])
         found = problem.solve(queried.rgb, prior(queried.rgb), 16).multipliers
-        spectra = problem.model.squash(found @ problem.forward.basis.T)
+        spectra = problem.model.to_reflectance(found @ problem.forward.basis.T)
         missed.append(delta_e_spectra(LIGHT, spectra, queried.measured))
         stated.append(prior.standard_error(queried.rgb))
     missed, stated = np.concatenate(missed), np.concatenate(stated)

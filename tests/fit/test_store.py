@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.helpers import residual
 from uplift.colorimetry import observer
 from uplift.common.progress import ignore_progress
 from uplift.fit.growth import Growth
@@ -15,7 +16,6 @@ from uplift.fit.seeds import seed
 from uplift.fit.store import MAX_LOSS, store
 from uplift.lattice import Lattice
 from uplift.models import Moments
-from uplift.models.minimum_norm import residual
 
 DIM = 9
 LATTICE = Lattice(observer.axis_nodes("srgb", DIM))
@@ -29,7 +29,7 @@ def problem():
 
 def distance(problem, coefficients):
     """Distance evaluated by numpy, as a lookup does."""
-    rgb = problem.model.squash(problem.model.from_storage(coefficients) @ problem.forward.basis.T)
+    rgb = problem.model.to_reflectance(problem.model.from_storage(coefficients) @ problem.forward.basis.T)
     return np.abs(LATTICE.points - rgb @ problem.forward.sensor.T).max(axis=1)
 
 
@@ -42,7 +42,7 @@ def grown(problem, multipliers, progress=ignore_progress):
     """Growth that ended with multipliers (n, C)."""
     growth = Growth(problem, nodes_of(LATTICE, problem.sensor, 1e-4), progress)
     growth.multipliers[:] = multipliers
-    off = residual(problem.model, problem.forward, multipliers, LATTICE.points)
+    off = residual(problem.forward, multipliers, LATTICE.points)
     growth.distance[:], growth.rgb[:] = np.abs(off).max(axis=1), LATTICE.points - off
     return growth
 

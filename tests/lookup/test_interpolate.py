@@ -20,7 +20,7 @@ def random_colours(count=1000, seed=3):
 
 def stored_spectra(data, wavelengths):
     """(n, N) spectra of all lattice points."""
-    return data.model.squash(data.model.from_storage(data.points.coefficients) @ data.model.basis(wavelengths).T)
+    return reflectance(data.model, data.points.coefficients, wavelengths)
 
 
 def miss(cube, rgb, mode):
@@ -97,7 +97,7 @@ def test_refined_is_nowhere_worse_than_moments(cube):
 def test_refined_multipliers_evaluate_to_the_colour(small_cube):
     rgb = random_colours(50)
     data = small_cube.data
-    spectra = data.model.squash(refined_multipliers(data, rgb) @ data.model.basis(data.sensor.wavelengths).T)
+    spectra = data.model.to_reflectance(refined_multipliers(data, rgb) @ data.model.basis(data.sensor.wavelengths).T)
     np.testing.assert_allclose(data.sensor.rgb(spectra), rgb, rtol=0, atol=2 * TOLERANCE)
 
 

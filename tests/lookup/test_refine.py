@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.helpers import residual
 from uplift.lookup import refine
 from uplift.models import Moments, Sigmoid, minimum_norm
 
@@ -14,38 +15,38 @@ MODELS = [Sigmoid(), Moments(9)]
 
 @pytest.fixture(params=MODELS, ids=lambda model: model.name)
 def setting(request, sensor):
-    """A model, its forward map, and 40 spectra of it."""
+    """The forward map of a model, and 40 spectra of it."""
     forward = minimum_norm.forward_map(request.param, sensor.wavelengths, sensor.matrix)
-    return (request.param, forward, RNG.normal(size=(40, request.param.count)) / (1 + np.arange(request.param.count)))
+    return forward, RNG.normal(size=(40, request.param.count)) / (1 + np.arange(request.param.count))
 
 
 def test_the_step_is_that_of_the_fit(setting):
-    model, forward, multipliers = setting
+    forward, multipliers = setting
     off, damping = 0.1 * RNG.normal(size=(40, 3)), RNG.random(40)
-    found = minimum_norm.minimum_norm_step(model, forward, forward.basis @ multipliers.T, off.T, damping).T
-    expected = minimum_norm.anchored_step(model, forward, multipliers, off, damping, 0 * multipliers) @ forward.root.T
+    found = minimum_norm.minimum_norm_step(forward, forward.basis @ multipliers.T, off.T, damping).T
+    expected = minimum_norm.anchored_step(forward, multipliers, off, damping, 0 * multipliers) @ forward.root.T
     np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-12)
 
 
 def test_accumulated_distances_equal_a_direct_evaluation(setting, monkeypatch):
     """The distance is a sum of changes; it does not depend on the size of blocks."""
-    model, forward, multipliers = setting
-    goal = minimum_norm.forward_rgb(model, forward, 0.7 * multipliers).T
+    forward, multipliers = setting
+    goal = forward.rgb(0.7 * multipliers).T
     monkeypatch.setattr(refine, "BLOCK_COLUMNS", 7)
     moved = multipliers.T.copy()
-    distance = refine._descend(model, forward, moved, goal)
-    evaluated = np.abs(minimum_norm.residual(model, forward, moved.T, goal.T)).max(axis=1)
+    distance = refine._descend(forward, moved, goal)
+    evaluated = np.abs(residual(forward, moved.T, goal.T)).max(axis=1)
     np.testing.assert_allclose(distance, evaluated, rtol=0, atol=1e-10)
     assert distance.max() <= refine.TOLERANCE
 
 
 def test_steps_that_increase_the_distance_are_rejected(setting):
     """The colour is unrealisable; no distance increases."""
-    model, forward, multipliers = setting
+    forward, multipliers = setting
     goal = np.tile([[3.0], [-2.0], [0.5]], 40)
-    before = np.abs(minimum_norm.residual(model, forward, multipliers, goal.T))
+    before = np.abs(residual(forward, multipliers, goal.T))
     moved = multipliers.T.copy()
-    refine._descend(model, forward, moved, goal)
-    after = minimum_norm.residual(model, forward, moved.T, goal.T)
+    refine._descend(forward, moved, goal)
+    after = residual(forward, moved.T, goal.T)
     assert np.isfinite(after).all()
     assert ((after**2).sum(axis=1) <= (before**2).sum(axis=1) * (1 + 1e-9)).all()

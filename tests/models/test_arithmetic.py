@@ -7,7 +7,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from uplift.models.arithmetic import SINGLE_THREAD_SIZE, arctan, arctan_difference, matmul_columns, matmul_rows
+from uplift.models.arithmetic import (
+    SINGLE_THREAD_SIZE,
+    arctan,
+    arctan_difference,
+    blocked_matmul,
+    blocked_matmul_columns,
+)
 
 SIZES = np.concatenate([[0], np.logspace(-300, 300, 4001), np.linspace(0.5, 2, 4001)])
 
@@ -64,16 +70,16 @@ def test_slices_do_not_change_the_product(count, shape):
     rng = np.random.default_rng(count)
     rows, matrix = rng.normal(size=(count, shape[0])), rng.normal(size=shape)
     for one, other in ((rows, matrix), (rows.copy("F"), matrix.copy("F"))):
-        np.testing.assert_allclose(matmul_rows(one, other), rows @ matrix, rtol=1e-12, atol=1e-12)
-        np.testing.assert_allclose(matmul_columns(other.T, one.T), (rows @ matrix).T, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(blocked_matmul(one, other), rows @ matrix, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(blocked_matmul_columns(other.T, one.T), (rows @ matrix).T, rtol=1e-12, atol=1e-12)
 
 
 def test_non_contiguous_columns():
     matrix, columns = np.arange(6.0).reshape(2, 3), np.arange(30.0).reshape(3, 10)
-    np.testing.assert_allclose(matmul_columns(matrix, columns[:, 3:7]), (matrix @ columns)[:, 3:7])
+    np.testing.assert_allclose(blocked_matmul_columns(matrix, columns[:, 3:7]), (matrix @ columns)[:, 3:7])
 
 
 def test_jax_arrays_stay_jax_arrays():
-    found = matmul_rows(jnp.ones((5, 3)), jnp.ones((3, 2)))
+    found = blocked_matmul(jnp.ones((5, 3)), jnp.ones((3, 2)))
     assert isinstance(found, jnp.ndarray)
     assert (found == 3).all()

@@ -37,7 +37,7 @@ def quietly(*args, **options):
 def fresh_distance(cube):
     """max |target − RGB| of every point, from the stored coefficients only."""
     data = cube.data
-    spectra = data.model.squash(data.model.from_storage(data.points.coefficients) @ data.model.basis(GRID).T)
+    spectra = data.model.to_reflectance(data.model.from_storage(data.points.coefficients) @ data.model.basis(GRID).T)
     return np.abs(data.sensor.rgb(spectra) - data.lattice.points).max(axis=1)
 
 

@@ -98,7 +98,7 @@ def test_measures_are_the_largest_and_the_rms(plain_cube):
     other = with_points(data, coefficients=data.points.coefficients[::-1].copy())
     at = data.sensor.wavelengths
     first, second = (
-        data.model.squash(data.model.from_storage(cube.points.coefficients) @ data.model.basis(at).T)
+        data.model.to_reflectance(data.model.from_storage(cube.points.coefficients) @ data.model.basis(at).T)
         for cube in (data, other)
     )
     measures = compare_rebuilt(PATH, data, other).measures

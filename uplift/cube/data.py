@@ -15,7 +15,8 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.lattice import Lattice, PointTable
 from uplift.lattice.entry_boxes import EntryBoxes
-from uplift.models import Model, evaluate
+from uplift.models import evaluate
+from uplift.models.model import Model
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -17,16 +17,16 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array, Mask
-from uplift.fit.batch import COMPILED
+from uplift.fit.batch import to_storage
 from uplift.fit.entries import FittedEntries
 from uplift.fit.families import Family, FamilySamples, average_close, krige_families, learn_relevance
 from uplift.fit.match_spectra import match_spectra
 from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.solver import solve
 from uplift.lattice import Lattice, weighted_sum
-from uplift.models import Model, Moments, evaluate
-from uplift.models.duality import real_dual
+from uplift.models import Moments, evaluate
 from uplift.models.minimum_norm import ForwardMap
+from uplift.models.model import Model
 
 BRIGHTENING = 0.5
 """Power of max(x) that a colour is divided by: 0 leaves it unchanged, 1 makes it as bright as possible."""
@@ -96,14 +96,14 @@ def smooth(
     """Solve the table for smooth spectra of brightened colours ``goal`` (17³, 3), each from its grey."""
     if model.count == NO_FREEDOM:
         return Base(model, None, brightening, grey)
-    solution = solve(model, forward, _grey(model, goal, grey), goal, tolerance=1e-5, max_passes=8)
-    return Base(model, model.to_storage(solution.multipliers, COMPILED), brightening, grey)
+    solution = solve(forward, _grey(model, goal, grey), goal, tolerance=1e-5, max_passes=8)
+    return Base(model, to_storage(model, solution.multipliers), brightening, grey)
 
 
 def _grey(model: Model, rgb: Array, power: float) -> Array:
     # mean(x′)^⅔, as multipliers of a constant
     level = np.clip(rgb.mean(axis=1) ** power, MIN_LEVEL, MAX_LEVEL)
-    return model.unsquash(level)[:, None] * model.constant()
+    return model.from_reflectance(level)[:, None] * model.constant()
 
 
 def learn_base(
@@ -179,7 +179,7 @@ def _match_nodes(problem: Problem, model: Moments, goal: Array, factor: Array) -
     brightened, as no reflectance has such moments, the brightened spectrum is matched instead.
     """
     wavelengths, lights = problem.sensor.wavelengths, problem.lights
-    nodes = model.to_storage(match_spectra(model, wavelengths, goal * factor, lights), COMPILED) / factor
-    _, valid = real_dual(nodes)
-    nodes[~valid] = model.to_storage(match_spectra(model, wavelengths, goal[~valid], lights), COMPILED)
+    nodes = to_storage(model, match_spectra(model, wavelengths, goal * factor, lights)) / factor
+    _, valid = model.try_from_storage(nodes)
+    nodes[~valid] = to_storage(model, match_spectra(model, wavelengths, goal[~valid], lights))
     return nodes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import jax
@@ -11,8 +11,11 @@ import numpy as np
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from uplift.common.arrays import Array
+from uplift.models import Moments
 from uplift.models.arithmetic import arctan
-from uplift.models.duality import Quadrature, integrate
+from uplift.models.duality import integrate, moments_from_multipliers
+from uplift.models.minimum_norm import ForwardMap
+from uplift.models.model import Model
 
 CPU_BATCH_ROWS, ACCELERATOR_BATCH_ROWS = (2048, 64), (1 << 17, 4096)
 """Rows per device: a large batch that fills a core's cache or keeps a GPU busy, and a small one for short rounds."""
@@ -20,6 +23,23 @@ MAX_NODES = 256
 """Larger rules of integration, which few spectra need, are not worth compiling."""
 PART_NODES = 97
 """Nodes of the first rule. Other rules run in parts of as many: one program for all."""
+CONVERGED = 1e-6
+"""For lattices: moments differ by some 1e-9 at most, a sixtieth of the rounding to single precision."""
+
+jax.tree_util.register_dataclass(
+    ForwardMap, ["basis", "sensor", "root", "inverse_root", "jacobian_basis"], meta_fields=["model"]
+)
+
+
+def map_batches(function: Callable[..., Any], constants: Any, *arrays: Array, max_small: int = 0) -> Any:
+    """Apply a compiled function to constants and arrays (n, …) of n > 0 rows, and join the arrays that it returns."""
+    parts = []
+    with jax.enable_x64(True):
+        constants = _distribute(constants)
+        for rows, width in batches(len(arrays[0]), max_small):
+            result = function(constants, *(shard(array[rows], width) for array in arrays))
+            parts.append(jax.tree.map(lambda array, rows=rows: np.asarray(array)[: rows.stop - rows.start], result))
+    return jax.tree.map(lambda *joined: np.concatenate(joined), *parts)
 
 
 def batches(count: int, max_small: int = 0) -> Iterator[tuple[slice, int]]:
@@ -45,39 +65,36 @@ def shard(rows: Array, width: int) -> Any:
     return _distribute(padded, "rows") if len(jax.devices()) > 1 else padded
 
 
-def replicate(constants: Any) -> Any:
-    """Copy the constants of a computation to every device."""
-    return _distribute(constants) if len(jax.devices()) > 1 else jax.device_put(constants)
-
-
 def _distribute(arrays: Any, *axes: str) -> Any:
+    if len(jax.devices()) == 1:
+        return jax.device_put(arrays)
     mesh = Mesh(np.array(jax.devices()), ("rows",))
     return jax.device_put(arrays, NamedSharding(mesh, PartitionSpec(*axes)))  # type: ignore[no-untyped-call]
 
 
+def to_storage(model: Model, multipliers: Array) -> Array:
+    """Coefficients (n, C) of many multipliers (n, C): `Model.to_storage`, less precise and several times faster."""
+    if isinstance(model, Moments):
+        return moments_from_multipliers(multipliers, _integrate, CONVERGED)
+    return model.to_storage(multipliers)
+
+
 def _integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
-    """Compute `uplift.models.duality.integrate`, several times faster."""
+    """Compute `uplift.models.duality.integrate`."""
     count, (nodes, columns) = len(synthesis), analysis.shape
-    if nodes > MAX_NODES + 1:
+    if nodes > MAX_NODES + 1 or not len(multipliers):
         return integrate(multipliers, synthesis, analysis)
     moments = np.zeros((len(multipliers), columns))
-    with jax.enable_x64(True):
-        for first in range(0, nodes, PART_NODES):
-            # Each part is as large as the first rule, which has two sets of moments: the rest has no weight.
-            part = slice(first, first + PART_NODES)
-            points, weights = np.zeros((count, PART_NODES)), np.zeros((PART_NODES, 2 * count))
-            points[:, : nodes - first], weights[: nodes - first, :columns] = synthesis[:, part], analysis[part]
-            rule = replicate((points, weights))
-            for rows, width in batches(len(multipliers)):
-                some = moments[rows]
-                some += np.asarray(_weighted(shard(multipliers[rows], width), *rule))[: len(some), :columns]
+    for first in range(0, nodes, PART_NODES):
+        # Each part is as large as the first rule, which has two sets of moments: the rest has no weight.
+        part = slice(first, first + PART_NODES)
+        points, weights = np.zeros((count, PART_NODES)), np.zeros((PART_NODES, 2 * count))
+        points[:, : nodes - first], weights[: nodes - first, :columns] = synthesis[:, part], analysis[part]
+        moments += map_batches(_weighted, (points, weights), multipliers)[:, :columns]
     return moments
 
 
 @jax.jit
-def _weighted(multipliers: jax.Array, synthesis: jax.Array, analysis: jax.Array) -> jax.Array:
+def _weighted(rule: tuple[jax.Array, jax.Array], multipliers: jax.Array) -> jax.Array:
+    synthesis, analysis = rule
     return (0.5 + arctan(multipliers @ synthesis) / jnp.pi) @ analysis
-
-
-COMPILED = Quadrature(_integrate, 1e-6)
-"""For lattices: moments differ by some 1e-9 at most, a sixtieth of the rounding to single precision."""

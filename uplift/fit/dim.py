@@ -14,7 +14,7 @@ from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
 from uplift.fit.seeds import EntryBlend, InitialGuess, seed
 from uplift.lattice import Lattice, weighted_sum
-from uplift.models.arithmetic import matmul_rows
+from uplift.models.arithmetic import blocked_matmul
 
 DIMS = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128)
 """Candidates."""
@@ -40,7 +40,7 @@ def lattice_error(problem: Problem, lattice: Lattice, prior: Prior, blend: Entry
     start = InitialGuess(prior, seeds, entries.multipliers, blend)(points, target)
     fitted = problem.solve(target, start, MAX_PASSES, prior=start).multipliers
     spectra, own = (
-        np.asarray(problem.model.squash(matmul_rows(each, problem.forward.basis.T)))
+        np.asarray(problem.model.to_reflectance(blocked_matmul(each, problem.forward.basis.T)))
         for each in (fitted, entries.multipliers)
     )
     # What the interpolation of the lattice answers at the colours of the entries

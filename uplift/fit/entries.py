@@ -15,7 +15,7 @@ from uplift.colorimetry.delta_e import delta_e_spectra, lab_jacobian, lab_of
 from uplift.common.arrays import Array
 from uplift.fit.problem import Problem
 from uplift.fit.solver import solve_singly
-from uplift.models import Model
+from uplift.models.model import Model
 
 ENDS = 8
 """Each end of the spectrum is this part of it: 50 nm of 380–780."""
@@ -66,7 +66,7 @@ class Objective:
 
     def residuals(self, multipliers: Any, measured: Any, colours: Any) -> Any:
         """Residuals (N + 3 L + C,) for a measurement (N,) with its `colours`; all of numpy or of JAX."""
-        spectrum = self.model.squash(self.basis @ multipliers)
+        spectrum = self.model.to_reflectance(self.basis @ multipliers)
         difference, colour_difference = spectrum - measured, self.colours(spectrum) - colours
         return multipliers.__array_namespace__().concat(
             [
@@ -79,8 +79,8 @@ class Objective:
     def jacobian(self, multipliers: Array) -> Array:
         """Derivative (N + 3 L + C, C) of the residuals; it does not depend on the measurement."""
         x = self.basis @ multipliers
-        change = self.model.slope(x)[:, None] * self.basis  # g = S(B p), so ∂g/∂p = S′(B p) B
-        to_lab = lab_jacobian(self.lights @ self.model.squash(x), self.whites)
+        change = self.model.derivative(x)[:, None] * self.basis  # g = S(B p), so ∂g/∂p = S′(B p) B
+        to_lab = lab_jacobian(self.lights @ self.model.to_reflectance(x), self.whites)
         colours = (to_lab @ (self.lights @ change)).reshape(-1, len(multipliers))
         return np.concatenate(
             [
@@ -103,7 +103,7 @@ def objective(problem: Problem, weights: Weights = BALANCED) -> Objective:
     importance = np.ones(count)
     importance[: count // ENDS] = importance[-(count // ENDS) :] = weights.ends
     # M = diag(1 + j²), but the constant multiplier is left to the measurement.
-    smooth = np.maximum(weights.smoothness * np.sqrt(model.roughness()), FLATNESS)
+    smooth = np.maximum(weights.smoothness * np.sqrt(model.metric_diagonal()), FLATNESS)
     return Objective(
         model,
         problem.forward.basis,
@@ -146,8 +146,8 @@ def fit_entries(problem: Problem, measured: Array, rgb: Array, weights: Weights 
 
         near = minimise(problem.solver, goal, measured)
     # The minimum has nearly the colour; of all spectra that have it exactly, the nearest to the minimum is taken.
-    multipliers = solve_singly(problem.model, problem.forward, near, rgb, problem.tolerance, MAX_STEPS)
-    spectra = np.asarray(problem.model.squash(multipliers @ problem.forward.basis.T))
+    multipliers = solve_singly(problem.forward, near, rgb, problem.tolerance, MAX_STEPS)
+    spectra = np.asarray(problem.model.to_reflectance(multipliers @ problem.forward.basis.T))
     return FittedEntries(
         rgb, measured, multipliers, delta_e_spectra(problem.error_light or problem.sensor.light, spectra, measured)
     )

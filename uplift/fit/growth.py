@@ -21,7 +21,7 @@ from uplift.common.progress import Progress, ProgressCallback
 from uplift.fit.problem import Nodes, Problem
 from uplift.fit.solver import Solution
 from uplift.lattice import NOT_FITTED, Lattice, weighted_sum
-from uplift.models.arithmetic import matmul_rows
+from uplift.models.arithmetic import blocked_matmul
 
 MAX_PASSES = 24
 BLOCK_POINTS = 1 << 15
@@ -52,8 +52,6 @@ class Growth:
     """(n, 3) their linear RGB."""
     round: NDArray[np.int16] = field(init=False)
     """(n,) round in which the node was fitted, −1 if it was not."""
-    steps: int = 0
-    """Steps of the solver over all nodes."""
 
     def __post_init__(self) -> None:
         size = self.nodes.lattice.size
@@ -79,7 +77,6 @@ class Growth:
         kept = points[better]
         self.multipliers[kept], self.distance[kept] = solution.multipliers[better], distance[better]
         self.rgb[kept] = (goal - solution.residual)[better]
-        self.steps += int(solution.steps.sum())
         fitted = (self.round[points] == NOT_FITTED) & (distance <= self.problem.threshold)
         self.round[points[fitted]] = number
         return solution
@@ -154,7 +151,7 @@ class _Corrections:
         rows = self._row[points]
         rows, correction = rows[rows >= 0], correction[rows >= 0]
         # |R⁻¹ (p − p₀)|∞; the last column is the weight of a known correction.
-        size = np.abs(matmul_rows(correction, self._to_metric)).max(axis=1)
+        size = np.abs(blocked_matmul(correction, self._to_metric)).max(axis=1)
         self._table[rows, :-1], self._table[rows, -1] = correction, size <= MAX_CORRECTION
 
     def interpolator(self, stride: int) -> Callable[[Indices], Array]:

@@ -146,7 +146,7 @@ def visible_change(problem: Problem, measured: Array) -> Array:
     """
     basis, sensor = problem.forward.basis, problem.forward.sensor @ problem.forward.basis
     # Of changes of the coefficients, only the part remains that a smooth change of the same colour does not undo.
-    smooth = sensor.T / problem.model.roughness()[:, None]
+    smooth = sensor.T / problem.model.metric_diagonal()[:, None]
     metameric = np.eye(problem.model.count) - smooth @ np.linalg.solve(sensor @ smooth, sensor)
     changes = []
     for light in problem.lights:

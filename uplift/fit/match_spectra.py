@@ -14,7 +14,7 @@ from uplift.colorimetry.delta_e import lab, lab_jacobian
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.models import Moments
-from uplift.models.arithmetic import matmul_rows
+from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import cosine_basis
 
 LIGHTS_WEIGHT = 0.06
@@ -31,7 +31,7 @@ def match_spectra(model: Moments, wavelengths: Array, reflectances: Array, light
 
     The wavelengths (N,) are evenly spaced over the range of the model.
     """
-    start = model.from_storage(matmul_rows(reflectances, moment_matrix(model, wavelengths)))
+    start = model.from_storage(blocked_matmul(reflectances, moment_matrix(model, wavelengths)))
     basis = model.basis(wavelengths)
     blocks = (slice(first, first + BLOCK_ROWS) for first in range(0, len(start), BLOCK_ROWS))
     found = [_step(model, basis, lights, start[block], reflectances[block]) for block in blocks]
@@ -60,7 +60,7 @@ def _step(model: Moments, basis: Array, lights: Sequence[Light], multipliers: Ar
 
     def differences(x: Array) -> tuple[Array, Array]:
         """Differences of the spectra (n, N), and weighted ones of their colours (n, 3 L)."""
-        spectra = model.squash(x)
+        spectra = model.to_reflectance(x)
         difference = lab(xyz(spectra), whites) - lab(xyz(goal), whites)
         return spectra - goal, LIGHTS_WEIGHT * difference.reshape(len(x), -1)
 
@@ -68,8 +68,8 @@ def _step(model: Moments, basis: Array, lights: Sequence[Light], multipliers: Ar
     count = multipliers.shape[1]
     x = multipliers @ basis.T
     difference, colour_difference = differences(x)
-    slope = model.slope(x)
-    to_lab = LIGHTS_WEIGHT * lab_jacobian(xyz(model.squash(x)), whites)
+    slope = model.derivative(x)
+    to_lab = LIGHTS_WEIGHT * lab_jacobian(xyz(model.to_reflectance(x)), whites)
     change = (slope @ colours).reshape(len(x), -1, 3, count)
     change = (to_lab @ change).reshape(len(x), -1, count)
     # JᵀJ of the spectra is Σ_λ S′(x)² b bᵀ / N; that of the colours is the product of their changes.

@@ -7,6 +7,7 @@ with the small weight `CLOSENESS`. It has one minimum near the prior, which all 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import equinox
@@ -18,10 +19,9 @@ import optimistix
 
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
-from uplift.fit.batch import batches, replicate, shard
+from uplift.fit.batch import map_batches
 from uplift.fit.solver import FIRST_DAMPING, Solution, SolverState, init_state, take_step
-from uplift.models import Model
-from uplift.models.minimum_norm import ForwardMap, residual
+from uplift.models.minimum_norm import ForwardMap
 
 if TYPE_CHECKING:
     from uplift.fit.entries import Objective
@@ -62,7 +62,6 @@ class LeastChange(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
     multipliers to change least (``y`` by default), and ``damping`` and ``anchor_weight`` (n,) of an earlier state.
     """
 
-    model: Model = equinox.field(static=True)
     forward: ForwardMap
     atol: float
     rtol: float = 0.0
@@ -73,23 +72,15 @@ class LeastChange(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
     ) -> SolverState:
         """Evaluate the residuals at ``y`` (n, C)."""
         ones = jnp.ones(len(y))
-        damping = options.get("damping", FIRST_DAMPING * ones)
-        prior, anchor_weight = options.get("prior", y), options.get("anchor_weight", ones)
-        return init_state(self.forward, lambda p: fn(p, args)[0], y, prior, damping, anchor_weight)
+        given = {"prior": y, "damping": FIRST_DAMPING * ones, "anchor_weight": ones, **options}
+        return init_state(self.forward, lambda p: fn(p, args)[0], y, **given)
 
     def step(
         self, fn: Any, y: Any, args: Any, options: dict[str, Any], state: SolverState, tags: Any
     ) -> tuple[Any, SolverState, Any]:
         """Take one step in every problem that is not solved."""
-        aux = None
-
-        def residual_of(p: Any) -> Any:
-            nonlocal aux
-            values, aux = fn(p, args)
-            return values
-
-        y, state = take_step(self.model, self.forward, residual_of, y, state, self.atol)
-        return y, state, aux
+        y, state = take_step(self.forward, lambda p: fn(p, args)[0], y, state, self.atol)
+        return y, state, fn(y, args)[1]
 
     def terminate(
         self, fn: Any, y: Any, args: Any, options: dict[str, Any], state: SolverState, tags: Any
@@ -97,24 +88,13 @@ class LeastChange(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
         """Whether all problems are solved."""
         return (state.distance <= self.atol).all(), optimistix.RESULTS.successful
 
-    def postprocess(
-        self,
-        fn: Any,
-        y: Any,
-        aux: Any,
-        args: Any,
-        options: dict[str, Any],
-        state: SolverState,
-        tags: Any,
-        result: Any,
-    ) -> tuple[Any, Any, dict[str, Any]]:
+    def postprocess(self, fn: Any, y: Any, aux: Any, *rest: Any) -> tuple[Any, Any, dict[str, Any]]:
         """Return the solution as it is."""
         return y, aux, {}
 
 
 def solve_with(
     solver: Solver,
-    model: Model,
     forward: ForwardMap,
     start: Array,
     target: Array,
@@ -125,59 +105,43 @@ def solve_with(
 ) -> Solution:
     """Do the same as `uplift.fit.solver.solve` by a solver of optimistix."""
     count = len(start)
-    solution = Solution(start.copy(), np.empty((count, 3)), np.full(count, np.inf), np.zeros(count, dtype=np.int64))
+    solution = Solution(start.copy(), np.empty((count, 3)), np.full(count, np.inf))
     rows, prior = np.arange(count), start if prior is None else prior
-    with jax.enable_x64(True):
-        constants = replicate(forward)
-        for number in range(min(max_passes, MAX_ROUNDS)):
-            # ε of the round: the first answers are near the prior, those of later rounds near the colour.
-            closeness = jnp.asarray(CLOSENESS / 100**number)
-            for part, width in batches(len(rows)):
-                own = rows[part]
-                given = (solution.multipliers[own], prior[part], target[own])
-                result = _solve(solver, model, constants, closeness, *(shard(array, width) for array in given))
-                multipliers, residuals, steps = (np.asarray(array)[: len(own)] for array in result)
-                distance = np.abs(residuals).max(axis=1)
-                closer = distance < solution.distance[own]
-                for array, values in zip(solution, (multipliers, residuals, distance), strict=False):
-                    array[own[closer]] = values[closer]
-                solution.steps[own] += steps
-            rows = rows[solution.distance[rows] > tolerance]
-            prior = solution.multipliers[rows]
-            if not rows.size:
-                break
+    for number in range(min(max_passes, MAX_ROUNDS)):
+        if not rows.size:
+            break
+        # ε of the round: the first answers are near the prior, those of later rounds near the colour.
+        constants = (forward, np.array(CLOSENESS / 100**number))
+        given = (solution.multipliers[rows], prior, target[rows])
+        multipliers, residual = map_batches(partial(_solve, solver), constants, *given)
+        distance = np.abs(residual).max(axis=1)
+        closer = distance < solution.distance[rows]
+        for array, values in zip(solution, (multipliers, residual, distance), strict=True):
+            array[rows[closer]] = values[closer]
+        rows = rows[solution.distance[rows] > tolerance]
+        prior = solution.multipliers[rows]
     return solution
 
 
 @equinox.filter_jit  # type: ignore[untyped-decorator]
 def _solve(
-    solver: Solver,
-    model: Model,
-    forward: ForwardMap,
-    closeness: jax.Array,
-    start: jax.Array,
-    prior: jax.Array,
-    target: jax.Array,
-) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """Multipliers, residuals and numbers of steps of a batch."""
+    solver: Solver, constants: tuple[ForwardMap, jax.Array], start: jax.Array, prior: jax.Array, target: jax.Array
+) -> tuple[jax.Array, jax.Array]:
+    """Multipliers and residuals of a batch."""
+    forward, closeness = constants
 
     def residuals(y: jax.Array, args: Any) -> tuple[jax.Array, jax.Array]:
         # t − r(R y), and ε (y − y₀), with y = R⁻¹ p
-        expected, rgb, weight = args
-        colour = residual(model, forward, (forward.root @ y)[None], rgb[None])[0]
-        return colour, weight * (y - expected)
+        expected, rgb = args
+        return rgb - forward.rgb((forward.root @ y)[None])[0], closeness * (y - expected)
 
-    def one(y: jax.Array, expected: jax.Array, rgb: jax.Array) -> tuple[jax.Array, jax.Array]:
-        solution = optimistix.least_squares(
-            residuals, solver, y, args=(expected, rgb, closeness), max_steps=MAX_STEPS, throw=False
-        )
-        return solution.value, solution.stats["num_steps"]
+    def solve_one(y: jax.Array, *args: jax.Array) -> Any:
+        return optimistix.least_squares(residuals, solver, y, args=args, max_steps=MAX_STEPS, throw=False).value
 
     y, expected = (array @ forward.inverse_root.T for array in (start, prior))
-    y, steps = jax.vmap(one)(y, expected, target)
-    multipliers = y @ forward.root.T
-    colour = residual(model, forward, multipliers, target)
-    return multipliers, jnp.where(jnp.isfinite(colour), colour, jnp.inf), steps
+    multipliers = jax.vmap(solve_one)(y, expected, target) @ forward.root.T
+    residual = target - forward.rgb(multipliers)
+    return multipliers, jnp.where(jnp.isfinite(residual), residual, jnp.inf)
 
 
 def minimise(solver: Solver, goal: Objective, measured: Array) -> Array:
@@ -185,11 +149,9 @@ def minimise(solver: Solver, goal: Objective, measured: Array) -> Array:
 
     Raises `UpliftError` if the solver does not find a minimum.
     """
-    multipliers = np.zeros((len(measured), goal.model.count))
-    with jax.enable_x64(True):
-        for rows, width in batches(len(measured), max_small=len(measured)):
-            part = multipliers[rows]
-            part[:] = np.asarray(_minimise(solver, goal, shard(measured[rows], width)))[: len(part)]
+    multipliers = np.zeros((0, goal.model.count))
+    if len(measured):
+        multipliers = map_batches(lambda _, rows: _minimise(solver, goal, rows), (), measured, max_small=len(measured))
     pairs = zip(multipliers, measured, strict=True)
     failed = sum(not goal.steepness(p, spectrum) <= MAX_STEEPNESS for p, spectrum in pairs)
     if failed:
@@ -206,10 +168,10 @@ def _minimise(solver: Solver, goal: Objective, measured: jax.Array) -> jax.Array
     def residuals(multipliers: jax.Array, spectrum: jax.Array) -> jax.Array:
         return goal.residuals(multipliers, spectrum, goal.colours(spectrum))
 
-    def one(spectrum: jax.Array) -> jax.Array:
+    def solve_one(spectrum: jax.Array) -> Any:
         start = jnp.zeros(goal.model.count)
         return optimistix.least_squares(
             residuals, solver, start, args=spectrum, max_steps=MAX_ENTRY_STEPS, throw=False
         ).value
 
-    return jax.vmap(one)(measured)
+    return jax.vmap(solve_one)(measured)

@@ -19,7 +19,8 @@ from uplift.fit.base import NO_FREEDOM, Base, learn_base
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import DEFAULT, MIN_ENTRIES, Kernel, Kriging, kernel_sums, krige, learn_kernel, visible_change
 from uplift.fit.problem import Nodes, Problem
-from uplift.models import Model, evaluate
+from uplift.models import evaluate
+from uplift.models.model import Model
 
 MAX_PASSES = 32
 BLOCK_POINTS = 1 << 15

@@ -13,8 +13,8 @@ from uplift.colorimetry.solid import solid, toward_grey
 from uplift.common.arrays import Array, Indices
 from uplift.fit.solver import Solution, solve
 from uplift.lattice import CORNERS, Lattice
-from uplift.models import Model
 from uplift.models.minimum_norm import ForwardMap, forward_map
+from uplift.models.model import Model
 
 if TYPE_CHECKING:
     from uplift.fit.optimistix_solvers import Solver
@@ -55,9 +55,7 @@ class Problem:
             from uplift.fit.optimistix_solvers import solve_with  # the default needs no optimistix
 
             method = partial(solve_with, self.solver)
-        return method(
-            self.model, self.forward, start, target, tolerance=self.tolerance, max_passes=max_passes, prior=prior
-        )
+        return method(self.forward, start, target, tolerance=self.tolerance, max_passes=max_passes, prior=prior)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

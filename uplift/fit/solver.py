@@ -15,14 +15,12 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
-from uplift.fit.batch import batches, replicate, shard
-from uplift.models import Model
-from uplift.models.arithmetic import matmul_rows
+from uplift.fit.batch import map_batches
+from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import MAX_MULTIPLIER
-from uplift.models.minimum_norm import ForwardMap, anchored_step, residual
+from uplift.models.minimum_norm import ForwardMap, anchored_step
 
 FIRST_DAMPING = 1e-6
 """Initial μ; divided by four after a successful step, multiplied by four after a rejected one."""
@@ -33,6 +31,9 @@ MAX_SMALL_BATCHES = 12
 MIN_GAIN, PATIENCE = 1e-3, 8
 """A problem is abandoned after `PATIENCE` consecutive passes that each reduce its distance by less than `MIN_GAIN`.
 Otherwise unrealisable colours, frequent in wide gamuts, would remain until the last pass."""
+
+Residual = Callable[[Any], Any]
+"""From multipliers (n, C) to target minus RGB, t − r, (n, 3)."""
 
 
 class SolverState(NamedTuple):
@@ -54,22 +55,22 @@ class SolverState(NamedTuple):
 
 
 def init_state(
-    forward: ForwardMap, residual_of: Callable[[Any], Any], y: Any, prior: Any, damping: Any, anchor_weight: Any
+    forward: ForwardMap, residual: Residual, y: Any, prior: Any, damping: Any, anchor_weight: Any
 ) -> SolverState:
     """Evaluate the residuals at multipliers ``y`` (n, C)."""
-    return SolverState(residual_of(y), matmul_rows(y - prior, forward.inverse_root.T), damping, anchor_weight)
+    return SolverState(residual(y), blocked_matmul(y - prior, forward.inverse_root.T), damping, anchor_weight)
 
 
 def take_step(
-    model: Model, forward: ForwardMap, residual_of: Callable[[Any], Any], y: Any, state: SolverState, tolerance: Any
+    forward: ForwardMap, residual: Residual, y: Any, state: SolverState, tolerance: Any
 ) -> tuple[Any, SolverState]:
     """Take one step in every problem whose distance exceeds the tolerance; no squared residual increases."""
     where = y.__array_namespace__().where
     # Δx = A⁺ (t − r + A d) − d, and p changes by R Δx.
     anchored = state.displacement * state.anchor_weight[:, None]
-    change = anchored_step(model, forward, y, state.residual, state.damping, anchored)
-    trial = y + matmul_rows(change, forward.root.T)
-    left = residual_of(trial)
+    change = anchored_step(forward, y, state.residual, state.damping, anchored)
+    trial = y + blocked_matmul(change, forward.root.T)
+    left = residual(trial)
     # A step is accepted where it reduces the squared residual; μ follows the success of the linearisation.
     better = ((left**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (abs(trial).max(axis=1) <= MAX_MULTIPLIER)
     accept = (better & (state.distance > tolerance))[:, None]
@@ -82,20 +83,17 @@ def take_step(
     return where(accept, trial, y), after
 
 
-def solve_singly(
-    model: Model, forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int
-) -> Array:
+def solve_singly(forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int) -> Array:
     """Find multipliers (n, C) of linear RGB (n, 3), one problem after another, each nearest to its own start."""
     multipliers = start.copy()
-    damping, free = np.full(1, FIRST_DAMPING), np.zeros(1)
     for row, goal in enumerate(target):
         y = start[row : row + 1]
-        residual_of = partial(residual, model, forward, target=goal)
-        state = init_state(forward, residual_of, y, y, damping, free)
+        residual = lambda p, goal=goal: goal - forward.rgb(p)  # noqa: E731
+        state = init_state(forward, residual, y, y, np.full(1, FIRST_DAMPING), np.zeros(1))
         for _ in range(max_steps):
             if state.distance[0] <= tolerance:
                 break
-            y, state = take_step(model, forward, residual_of, y, state, tolerance)
+            y, state = take_step(forward, residual, y, state, tolerance)
         multipliers[row] = y[0]
     return multipliers
 
@@ -109,12 +107,9 @@ class Solution(NamedTuple):
     """(n, 3) target minus RGB."""
     distance: Array
     """(n,) max |target − RGB|."""
-    steps: NDArray[np.int64]
-    """(n,) steps taken."""
 
 
 def solve(
-    model: Model,
     forward: ForwardMap,
     start: Array,
     target: Array,
@@ -130,72 +125,52 @@ def solve(
     depend on the others.
     """
     count = len(start)
-    solution = Solution(start.copy(), np.empty((count, 3)), np.full(count, np.inf), np.zeros(count, dtype=np.int64))
+    solution = Solution(start.copy(), np.empty((count, 3)), np.full(count, np.inf))
     rows, stale = np.arange(count), np.zeros(count, dtype=np.int64)
-    anchor, anchor_weight = (start, np.zeros(count)) if prior is None else (prior, np.ones(count))
-    given = _Given(start, anchor, np.full(count, FIRST_DAMPING), anchor_weight, target)
-    with jax.enable_x64(True):
-        constants = replicate(forward)
-        # One step at a time while most problems converge, then several, to pass through fewer batches.
-        for number in range(max_passes if count else 0):
-            steps = 1 if number < SINGLE_STEPS else MORE_STEPS
-            parts = []
-            for batch, width in batches(len(rows), MAX_SMALL_BATCHES):
-                part = _Given(*(shard(array[batch], width) for array in given))
-                arrays = _advance(model, constants, tolerance, part, steps)
-                parts.append([np.asarray(array)[: batch.stop - batch.start] for array in arrays])
-            after = _After(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
-            before = solution.distance[rows]
-            solution.multipliers[rows], solution.residual[rows] = after.multipliers, after.residual
-            solution.distance[rows] = after.distance
-            solution.steps[rows] += after.steps
-            # Converged and abandoned problems leave the batch.
-            stale = np.where(after.distance > (1 - MIN_GAIN) * before, stale + 1, 0)
-            kept = (after.distance > tolerance) & (stale < PATIENCE)
-            if not kept.any():
-                break
-            rows, stale = rows[kept], stale[kept]
-            unsolved = (after.multipliers, given.prior, after.damping, after.anchor_weight, given.target)
-            given = _Given(*(array[kept] for array in unsolved))
+    y, damping, anchor_weight = start, np.full(count, FIRST_DAMPING), np.full(count, float(prior is not None))
+    prior = start if prior is None else prior
+    # One step at a time while most problems converge, then several, to pass through fewer batches.
+    for number in range(max_passes if count else 0):
+        advance = partial(_advance, tolerance=tolerance, max_steps=1 if number < SINGLE_STEPS else MORE_STEPS)
+        given = (y, prior[rows], target[rows], damping, anchor_weight)
+        y, state = map_batches(advance, forward, *given, max_small=MAX_SMALL_BATCHES)
+        before = solution.distance[rows]
+        solution.multipliers[rows], solution.residual[rows], solution.distance[rows] = y, state.residual, state.distance
+        # Converged and abandoned problems leave the batch.
+        stale = np.where(state.distance > (1 - MIN_GAIN) * before, stale + 1, 0)
+        kept = (state.distance > tolerance) & (stale < PATIENCE)
+        if not kept.any():
+            break
+        rows, stale = rows[kept], stale[kept]
+        y, damping, anchor_weight = y[kept], state.damping[kept], state.anchor_weight[kept]
     return solution
 
 
-class _Given(NamedTuple):
-    """State of k problems before a pass."""
-
-    multipliers: Any
-    prior: Any
-    damping: Any
-    anchor_weight: Any
-    target: Any
-
-
-class _After(NamedTuple):
-    """State of k problems after a pass."""
-
-    multipliers: Any
-    residual: Any
-    distance: Any
-    damping: Any
-    anchor_weight: Any
-    steps: Any
-
-
-@partial(jax.jit, static_argnums=0)
-def _advance(model: Model, forward: ForwardMap, tolerance: float, given: _Given, max_steps: int) -> _After:
+@jax.jit
+def _advance(
+    forward: ForwardMap,
+    y: jax.Array,
+    prior: jax.Array,
+    target: jax.Array,
+    damping: jax.Array,
+    anchor_weight: jax.Array,
+    *,
+    tolerance: float,
+    max_steps: int,
+) -> tuple[jax.Array, SolverState]:
     """Take up to ``max_steps`` steps in a batch."""
-    residual_of = partial(residual, model, forward, target=given.target)
+
+    def residual(p: jax.Array) -> Any:
+        return target - forward.rgb(p)
 
     def advance(carry: Any) -> Any:
-        count, taken, y, state = carry
-        taken = taken + (state.distance > tolerance)
-        return count + 1, taken, *take_step(model, forward, residual_of, y, state, tolerance)
+        count, y, state = carry
+        return count + 1, *take_step(forward, residual, y, state, tolerance)
 
     def unfinished(carry: Any) -> jax.Array:
-        count, _, _, state = carry
+        count, _, state = carry
         return (count < max_steps) & (state.distance > tolerance).any()
 
-    state = init_state(forward, residual_of, given.multipliers, given.prior, given.damping, given.anchor_weight)
-    taken = jnp.zeros(len(given.multipliers), dtype=jnp.int64)
-    _, taken, y, state = jax.lax.while_loop(unfinished, advance, (jnp.asarray(0), taken, given.multipliers, state))
-    return _After(y, state.residual, state.distance, state.damping, state.anchor_weight, taken)
+    state = init_state(forward, residual, y, prior, damping, anchor_weight)
+    _, y, state = jax.lax.while_loop(unfinished, advance, (jnp.asarray(0), y, state))
+    return y, state

@@ -8,20 +8,19 @@ import jax
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Indices
 from uplift.common.progress import Progress
-from uplift.fit.batch import COMPILED, batches, replicate, shard
+from uplift.fit.batch import map_batches, to_storage
 from uplift.fit.growth import Growth, blocks
-from uplift.fit.problem import Problem
 from uplift.fit.seeds import Seeds
 from uplift.lattice import NO_ENTRY, NOT_FITTED, PointTable, Status
-from uplift.models.minimum_norm import forward_rgb
+from uplift.models.minimum_norm import ForwardMap
 
 SINGLE: np.dtype[Any] = np.dtype(np.float32)
 DOUBLE: np.dtype[Any] = np.dtype(np.float64)
 MAX_LOSS = 0.1
 """Part of the threshold that single precision may add to the distance of a node; docs/stability.md."""
-_forward_rgb = jax.jit(forward_rgb, static_argnums=0)
+_rgb = jax.jit(ForwardMap.rgb)
 
 
 def store(growth: Growth, seeds: Seeds, standard_error: NDArray[np.float32] | None) -> PointTable:
@@ -52,22 +51,23 @@ def _store_coefficients(growth: Growth) -> tuple[NDArray[Any], NDArray[np.float3
     """Coefficients (n, C), their linear RGB (n, 3) and distances (n,), all 0 at nodes that are not fitted.
 
     The coefficients are float32 if that is accurate enough for every node, else float64 for all. Where rounding them
-    cannot change the colour (`Model.rounds_safely`), the colour is that of the solver; elsewhere it is evaluated from
+    cannot change the colour (`Model.is_float32_safe`), the colour is that of the solver; elsewhere it is evaluated from
     the rounded coefficients. They overwrite the multipliers, as memory for both may not suffice.
     """
     problem, points, kind = growth.problem, growth.nodes.points, SINGLE
     coefficients, rgb, distance = growth.multipliers, growth.rgb, np.zeros(len(growth.rgb), dtype=np.float32)
 
     def evaluate(block: Indices) -> None:
-        values = rgb_of(problem, problem.model.from_storage(coefficients[block].astype(kind)))
-        rgb[block], distance[block] = values, np.abs(growth.nodes.goal(block) - values).max(axis=1)
+        if block.size:
+            values = map_batches(_rgb, problem.forward, problem.model.from_storage(coefficients[block].astype(kind)))
+            rgb[block], distance[block] = values, np.abs(growth.nodes.goal(block) - values).max(axis=1)
 
     # Block by block; once a block loses too much in single precision, all sensitive nodes so far are evaluated again.
     sensitive = [points[:0]]
     for block in blocks(points):
         multipliers = growth.multipliers[block]
-        safe = problem.model.rounds_safely(multipliers)
-        coefficients[block] = problem.model.to_storage(multipliers, COMPILED)
+        safe = problem.model.is_float32_safe(multipliers)
+        coefficients[block] = to_storage(problem.model, multipliers)
         distance[block] = growth.distance[block]
         sensitive.append(block[~safe])
         evaluate(sensitive[-1])
@@ -78,14 +78,3 @@ def _store_coefficients(growth: Growth) -> tuple[NDArray[Any], NDArray[np.float3
                 evaluate(earlier)
         growth.progress(Progress("store", int(np.searchsorted(points, block[-1])) + 1, len(points)))
     return coefficients.astype(kind, copy=False), rgb, distance
-
-
-def rgb_of(problem: Problem, multipliers: Array) -> Array:
-    """Linear RGB (n, 3) of multipliers (n, C)."""
-    rgb = np.empty((len(multipliers), 3))
-    with jax.enable_x64(True):
-        forward = replicate(problem.forward)
-        for rows, width in batches(len(multipliers)):
-            part = rgb[rows]
-            part[:] = np.asarray(_forward_rgb(problem.model, forward, shard(multipliers[rows], width)))[: len(part)]
-    return rgb

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.common.arrays import Array, Mask
-from uplift.models.duality import PRECISE, Quadrature
+from uplift.common.arrays import Array
 from uplift.models.model import Model
 
 
@@ -37,35 +36,17 @@ class Exponential(Model):
         t = (np.clip(wavelengths, self.start, self.end) - self.start) / (self.end - self.start)
         return np.asarray(np.cos(np.pi * np.arange(self.count) * t[..., None]))
 
-    def squash(self, x: Any) -> Any:
+    def to_reflectance(self, x: Any) -> Any:
         return x.__array_namespace__().exp(x)
 
-    def slope(self, x: Any) -> Any:
-        return self.squash(x)
+    def derivative(self, x: Any) -> Any:
+        return self.to_reflectance(x)
 
-    def squash_difference(self, x: Array, change: Array) -> Array:
-        return np.asarray(np.exp(x) * np.expm1(change))
-
-    def unsquash(self, reflectance: Array) -> Array:
+    def from_reflectance(self, reflectance: Array) -> Array:
         return np.log(reflectance)
 
     def constant(self) -> Array:
         return np.eye(self.count)[0]
 
-    def roughness(self) -> Array:
+    def metric_diagonal(self) -> Array:
         return np.asarray(1.0 + np.arange(self.count) ** 2)
-
-    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = PRECISE) -> Array:
-        return np.array(multipliers, dtype=float)
-
-    def from_storage(self, coefficients: ArrayLike) -> Array:
-        return np.array(coefficients, dtype=float)
-
-    def rounds_safely(self, multipliers: Array) -> Mask:
-        return np.zeros(len(multipliers), dtype=bool)
-
-    def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
-        return np.array(coefficients, dtype=float), np.ones(len(coefficients), dtype=bool)
-
-    def describe(self) -> dict[str, Any]:
-        return {"name": self.name, **asdict(self)}

@@ -77,9 +77,8 @@ def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
     basis = model.basis(wavelengths)
     positive = np.maximum(prior, FAINTEST * prior.mean(axis=1, keepdims=True))
     positive = positive / (positive @ radiometry @ DENOMINATOR)[:, None]
-    multipliers = np.asarray(np.linalg.solve(basis, model.unsquash(positive).T).T, dtype=float)
+    multipliers = np.asarray(np.linalg.solve(basis, model.from_reflectance(positive).T).T, dtype=float)
     found = solve(
-        model,
         forward_map(model, wavelengths, radiometry.T),
         multipliers,
         unit_xyz(uv),

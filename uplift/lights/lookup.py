@@ -19,7 +19,7 @@ from uplift.lights.lattice import BEND, DENOMINATOR, Cells
 from uplift.lights.table import EmissionData, read_emission, write_emission
 from uplift.lookup.blocks import Function, blockwise
 from uplift.lookup.validation import as_float_type, as_thread_count, as_wavelengths
-from uplift.models.arithmetic import matmul_rows
+from uplift.models.arithmetic import blocked_matmul
 
 EMISSION = Path(__file__).with_name("emission.uplift")
 """The packaged table of linear sRGB."""
@@ -187,7 +187,7 @@ class EmissionTable:
         return blockwise(power, as_rgb(colours), len(at), kind, count)
 
     def _rows_to_xyz(self, rgb: NDArray[Any]) -> Array:
-        return np.asarray(matmul_rows(_checked(rgb), self.data.rgb_to_xyz.T))
+        return np.asarray(blocked_matmul(_checked(rgb), self.data.rgb_to_xyz.T))
 
     def xyz(self, rgb: ArrayLike) -> Array:
         """Convert linear RGB to XYZ.

@@ -11,10 +11,10 @@ import numpy as np
 from uplift.colorimetry.solid import solid, toward_grey
 from uplift.common.arrays import Array, Indices, Values
 from uplift.cube import CubeData
-from uplift.models import Model
-from uplift.models.arithmetic import matmul_columns, matmul_rows
+from uplift.models.arithmetic import blocked_matmul, blocked_matmul_columns
 from uplift.models.duality import MAX_MULTIPLIER
 from uplift.models.minimum_norm import ForwardMap, forward_map, minimum_norm_step
+from uplift.models.model import Model
 
 TOLERANCE = 1e-8
 """Residual, max |linear RGB|, at which a colour is exact."""
@@ -32,11 +32,11 @@ def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Arr
     as those of the sigmoid near white in coarse cells, start again from grey.
     """
     forward = forward_map(model, data.sensor.wavelengths, data.sensor.matrix)
-    multipliers, target, distance = _reach(data, model, forward, np.array(start.T, order="C"), rgb)
+    multipliers, target, distance = _reach(data, forward, np.array(start.T, order="C"), rgb)
     failed = np.flatnonzero(distance > data.threshold)
     if failed.size:
         from_grey = np.zeros((len(multipliers), failed.size))
-        better = _descend(model, forward, from_grey, target[:, failed]) < distance[failed]
+        better = _descend(forward, from_grey, target[:, failed]) < distance[failed]
         multipliers[:, failed[better]] = from_grey[:, better]
     return multipliers.T
 
@@ -50,9 +50,9 @@ def with_colours(data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, 
     """
     model = data.model
     forward = forward_map(model, data.sensor.wavelengths, data.sensor.matrix)
-    linear = model.unsquash(np.array(at_sensor.T, order="C"))
-    change = _reach(data, model, forward, np.zeros((model.count, len(rgb))), rgb, linear)[0].T
-    moved = model.squash(model.unsquash(spectra) + matmul_rows(change, model.basis(wavelengths).T))
+    linear = model.from_reflectance(np.array(at_sensor.T, order="C"))
+    change = _reach(data, forward, np.zeros((model.count, len(rgb))), rgb, linear)[0].T
+    moved = model.to_reflectance(model.from_reflectance(spectra) + blocked_matmul(change, model.basis(wavelengths).T))
     return np.where((change != 0).any(axis=1)[:, None], moved, spectra)
 
 
@@ -67,14 +67,14 @@ def within_solid(data: CubeData, rgb: Array) -> Array:
 
 
 def _reach(
-    data: CubeData, model: Model, forward: ForwardMap, start: Array, rgb: Array, fixed: Array | None = None
+    data: CubeData, forward: ForwardMap, start: Array, rgb: Array, fixed: Array | None = None
 ) -> tuple[Array, Array, Array]:
     """Move multipliers (C, n) to linear RGB (n, 3); what is not reached may be unrealisable and is moved inside.
 
     Returns multipliers (C, n), the linear RGB (3, n) that they were moved to, and distances (n,) from it.
     """
     multipliers, target = start.copy(), np.array(rgb.T, order="C")
-    distance = _descend(model, forward, multipliers, target, fixed)
+    distance = _descend(forward, multipliers, target, fixed)
     failed = np.flatnonzero(distance > data.threshold)
     if failed.size and data.inexact_cells is not None:
         inside = within_solid(data, rgb[failed])
@@ -82,39 +82,40 @@ def _reach(
         target[:, failed] = inside.T
         again = start[:, moved].copy()
         part = None if fixed is None else fixed[:, moved]
-        distance[moved] = _descend(model, forward, again, target[:, moved], part)
+        distance[moved] = _descend(forward, again, target[:, moved], part)
         multipliers[:, moved] = again
     return multipliers, target, distance
 
 
-def _descend(model: Model, forward: ForwardMap, multipliers: Array, target: Array, fixed: Array | None = None) -> Array:
+def _descend(forward: ForwardMap, multipliers: Array, target: Array, fixed: Array | None = None) -> Array:
     """Move multipliers (C, n) in place towards linear RGB (3, n) and return the final distances (n,).
 
     A fixed linear part (N, n) may be added to that of the multipliers.
     """
 
     def linear_part(columns: slice | Indices) -> Array:
-        linear = matmul_columns(forward.basis, multipliers[:, columns])
+        linear = blocked_matmul_columns(forward.basis, multipliers[:, columns])
         return linear if fixed is None else linear + fixed[:, columns]
 
     residual, damping = np.empty_like(target), np.zeros(target.shape[1])
     for first in range(0, target.shape[1], BLOCK_COLUMNS):
         block = slice(first, first + BLOCK_COLUMNS)
         linear = linear_part(block)
-        residual[:, block] = target[:, block] - matmul_columns(forward.sensor, model.squash(linear))
-        _move(model, forward, multipliers, residual, damping, block, linear)
+        residual[:, block] = target[:, block] - blocked_matmul_columns(
+            forward.sensor, forward.model.to_reflectance(linear)
+        )
+        _move(forward, multipliers, residual, damping, block, linear)
     for _ in range(MAX_STEPS - 1):
         pending = np.flatnonzero(np.abs(residual).max(axis=0) > TOLERANCE)
         if not pending.size:
             break
         for first in range(0, pending.size, BLOCK_COLUMNS):
             columns = pending[first : first + BLOCK_COLUMNS]
-            _move(model, forward, multipliers, residual, damping, columns, linear_part(columns))
+            _move(forward, multipliers, residual, damping, columns, linear_part(columns))
     return np.asarray(np.abs(residual).max(axis=0))
 
 
 def _move(
-    model: Model,
     forward: ForwardMap,
     multipliers: Array,
     residual: Array,
@@ -128,10 +129,10 @@ def _move(
     """
     current, off, mu = multipliers[:, columns], residual[:, columns], damping[columns]
     with np.errstate(over="ignore", invalid="ignore"):  # overflowing steps are rejected
-        change = minimum_norm_step(model, forward, linear, off, mu)
+        change = minimum_norm_step(forward, linear, off, mu)
         trial = current + change
-        difference = model.squash_difference(linear, matmul_columns(forward.basis, change))
-        trial_off = off - matmul_columns(forward.sensor, difference)
+        difference = forward.model.reflectance_change(linear, blocked_matmul_columns(forward.basis, change))
+        trial_off = off - blocked_matmul_columns(forward.sensor, difference)
     better = (trial_off**2).sum(axis=0) < (off**2).sum(axis=0)
     better &= np.abs(trial).max(axis=0) <= MAX_MULTIPLIER
     multipliers[:, columns] = np.where(better, trial, current)

@@ -9,7 +9,7 @@ from uplift.models.model import Model, evaluate, reflectance
 from uplift.models.moments import Moments, Phase
 from uplift.models.sigmoid import Sigmoid
 
-__all__ = ["Model", "Moments", "Phase", "Sigmoid", "evaluate", "from_description", "reflectance"]
+__all__ = ["Moments", "Phase", "Sigmoid", "evaluate", "from_description", "reflectance"]
 
 
 def from_description(description: Mapping[str, Any]) -> Model:

@@ -85,7 +85,7 @@ def arctan_difference(x: Array, change: Array) -> Array:
     return difference
 
 
-def matmul_rows(rows: Any, matrix: Any) -> Any:
+def blocked_matmul(rows: Any, matrix: Any) -> Any:
     """Compute ``rows`` (n, K) @ ``matrix`` (K, N) of numpy or JAX arrays."""
     if rows.__array_namespace__() is not np:
         return rows @ matrix
@@ -101,10 +101,8 @@ def matmul_rows(rows: Any, matrix: Any) -> Any:
     return product
 
 
-def matmul_columns(matrix: Any, columns: Any) -> Any:
-    """Compute ``matrix`` (M, K) @ ``columns`` (K, n) of numpy or JAX arrays."""
-    if columns.__array_namespace__() is not np:
-        return matrix @ columns
+def blocked_matmul_columns(matrix: Array, columns: Array) -> Array:
+    """Compute ``matrix`` (M, K) @ ``columns`` (K, n) of numpy arrays."""
     product = np.empty((len(matrix), columns.shape[1]))
     size = max(SINGLE_THREAD_SIZE // matrix.size, 1)
     full = columns.shape[1] // size * size

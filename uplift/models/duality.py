@@ -1,7 +1,5 @@
 """Conversion between trigonometric moments and multipliers of bounded maximum-entropy spectra.
 
-`complex_moments` has the multipliers of signals on the full circle.
-
 References
 ----------
 Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded signals for spectral rendering",
@@ -11,23 +9,20 @@ ACM TOG 38(4). docs/mathematics.md, 4.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from uplift.common.arrays import Array, Complex, Mask
 from uplift.common.errors import UpliftError
-from uplift.models import complex_moments
 from uplift.models.arithmetic import arctan
-
-RealOrComplex = TypeVar("RealOrComplex", bound=Array | Complex)
-"""Real for a mirrored signal, which is even in the phase; complex on the full circle."""
 
 MAX_MULTIPLIER = 1e9
 """Larger multipliers are scaled down to this: spectra change by a billionth, and roots stay off the unit circle."""
 MIN_LEADING = 1e-14
 """Smallest leading coefficient relative to the largest; smaller ones are rounding errors with remote roots."""
+CONVERGED = 1e-8
+"""Change of moments by another doubling of the nodes at which a spectrum has converged."""
 _FIRST_NODES = 48
 _MAX_NODES = 96 << 6
 _SAMPLES = 1 << 18
@@ -45,13 +40,6 @@ def cosine_basis(phase: Array, count: int) -> Array:
     return table
 
 
-def fourier_basis(phase: Array, count: int) -> Complex:
-    """Tabulate 1, 2 exp(iφ), …, 2 exp(imφ) as (N, C); with complex multipliers, its real part is the linear part."""
-    table = 2 * np.exp(1j * phase[:, None] * np.arange(count))
-    table[:, 0] = 1
-    return table
-
-
 def integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     """Integrate spectra to moments (n, C): samples by ``synthesis`` (C, K), weighted by ``analysis`` (K, C)."""
     moments = np.empty((len(multipliers), analysis.shape[1]))
@@ -62,41 +50,50 @@ def integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     return moments
 
 
-@dataclass(frozen=True)
-class Quadrature:
-    """How spectra are integrated to moments: `integrate` or a faster equivalent.
-
-    A spectrum has converged when doubling the nodes changes it by ``converged`` at most; the error is about the square.
-    """
-
-    integrate: Callable[[Array, Array, Array], Array] = integrate
-    converged: float = 1e-8
-
-
-PRECISE = Quadrature()
-
-
-def moments_from_multipliers(multipliers: Array, quadrature: Quadrature = PRECISE) -> Array:
+def moments_from_multipliers(
+    multipliers: Array, integrate: Callable[[Array, Array, Array], Array] = integrate, converged: float = CONVERGED
+) -> Array:
     """Moments (n, C) of the spectra of multipliers (n, C), by the trapezoid rule over the phase.
 
     The rule converges geometrically, so its error is about the square of the last change. The nodes are doubled for
-    spectra that have not converged. Nearly box-shaped ones would need too many nodes; `moments_by_roots` handles them.
+    spectra that still change by more than ``converged``. Nearly box-shaped ones would need too many nodes;
+    `moments_by_roots` handles them. ``integrate`` may be a faster equivalent of `integrate`.
     """
     # T_2K = (T_K + M_K) / 2: the first rule and its midpoints together, then midpoints of those that need more.
     count, nodes = multipliers.shape[1], _FIRST_NODES
-    found = quadrature.integrate(multipliers, *_trapezoid_and_midpoints(nodes, count))
-    moments, change = found[:, :count].copy(), (found[:, count:] - found[:, :count]) / 2
+    both = integrate(multipliers, *_rule(nodes, count, with_trapezoid=True))
+    moments, change = both[:, :count].copy(), (both[:, count:] - both[:, :count]) / 2
     pending = np.arange(len(multipliers))
     while True:
         moments[pending] += change
-        pending = pending[np.abs(change).max(axis=1) > quadrature.converged]
+        pending = pending[np.abs(change).max(axis=1) > converged]
         nodes *= 2
         if not pending.size or nodes >= _MAX_NODES:
             break
-        change = (quadrature.integrate(multipliers[pending], *_midpoints(nodes, count)) - moments[pending]) / 2
+        change = (integrate(multipliers[pending], *_rule(nodes, count)) - moments[pending]) / 2
     if pending.size:
         moments[pending] = moments_by_roots(multipliers[pending])
     return moments
+
+
+def _rule(nodes: int, count: int, with_trapezoid: bool = False) -> tuple[Array, Array]:
+    """Return synthesis (C, K) and analysis (K, C) of the midpoints of K intervals.
+
+    With the trapezoid rule, of 2 K + 1 nodes and 2 C moments: those of the trapezoid rule, then those of the midpoints.
+    """
+    phase, weights = -np.pi * (np.arange(nodes) + 0.5) / nodes, np.full(nodes, 1 / nodes)
+    if with_trapezoid:
+        ends = np.full(nodes + 1, 1 / nodes)
+        ends[[0, -1]] /= 2
+        phase, weights = np.append(np.linspace(-np.pi, 0, nodes + 1), phase), np.append(ends, weights)
+    table = cosine_basis(phase, count)
+    # c_j = (1/π) ∫ g cos jφ dφ over [−π, 0]
+    analysis = weights[:, None] * table
+    analysis[:, 1:] /= 2
+    if with_trapezoid:
+        midpoint = np.arange(len(phase))[:, None] > nodes
+        analysis = np.concatenate([np.where(midpoint, 0, analysis), np.where(midpoint, analysis, 0)], axis=1)
+    return table.T, analysis
 
 
 def moments_by_roots(multipliers: Array) -> Array:
@@ -147,87 +144,31 @@ def _zeroth(lead: Complex, outer: Complex) -> Array:
     return np.clip(np.where(zeroth > 1.5, zeroth - 2, zeroth), 0, 1)
 
 
-def multipliers_from_moments(moments: RealOrComplex) -> RealOrComplex:
-    """Multipliers (n, C) of the bounded maximum-entropy spectra with given moments (n, C), real or complex.
-
-    Complex moments are (1/2π) ∫ g(φ) exp(−ijφ) dφ with a real zeroth moment, where g = ½ + arctan(Re Σ p_l w_l) / π and
-    w is the `fourier_basis`. The moments of an even g are real.
-
-    Near the boundary of the moment space the recursion breaks down. Such moments are blended with those of grey, with
-    a weight of 1e−10 at first and at most 1e−4. Raises `UpliftError` for moments that no reflectance has.
-    """
-    grey = np.zeros_like(moments[:1])
-    grey[:, 0] = 0.5
-    multipliers, valid = try_dual(moments)
-    for weight in _GREY_WEIGHTS:
-        pending = np.flatnonzero(~valid)
-        if not pending.size:
-            return multipliers
-        blend = (1 - weight) * moments[pending] + weight * grey
-        multipliers[pending], valid[pending] = try_dual(blend)
-    if valid.all():
-        return multipliers
-    raise UpliftError(
-        f"{(~valid).sum()} sets of coefficients are not the moments of any reflectance",
-        code="invalid-moments",
-    )
-
-
-def try_dual(moments: RealOrComplex) -> tuple[RealOrComplex, Mask]:
-    """Compute the multipliers (n, C) of moments (n, C), and where (n,) they are valid: moments of a reflectance."""
-    dual: Any = real_dual if np.isrealobj(moments) else complex_moments.dual
-    multipliers, valid = np.empty_like(moments), np.empty(len(moments), dtype=bool)
-    for first in range(0, len(moments), _ROWS):
-        block = slice(first, first + _ROWS)
-        multipliers[block], valid[block] = dual(moments[block])
-    return multipliers, valid
-
-
-def _rule(phase: Array, weights: Array, count: int) -> tuple[Array, Array]:
-    """Return synthesis (C, K) and analysis (K, C) of a rule with K nodes and weights."""
-    table = cosine_basis(phase, count)
-    analysis = weights[:, None] * table
-    analysis[:, 1:] /= 2
-    return table.T, analysis
-
-
-def _midpoints(nodes: int, count: int) -> tuple[Array, Array]:
-    """Return the rule of the midpoints of K intervals."""
-    return _rule(-np.pi * (np.arange(nodes) + 0.5) / nodes, np.full(nodes, 1 / nodes), count)
-
-
-def _trapezoid_and_midpoints(nodes: int, count: int) -> tuple[Array, Array]:
-    """Return synthesis (C, 2K + 1) and analysis (2K + 1, 2C) of both rules, whose moments stand side by side."""
-    weights = np.full(nodes + 1, 1 / nodes)
-    weights[[0, -1]] /= 2
-    rules = (_rule(np.linspace(-np.pi, 0, nodes + 1), weights, count), _midpoints(nodes, count))
-    synthesis = np.concatenate([rule[0] for rule in rules], axis=1)
-    analysis = np.zeros((2 * nodes + 1, 2 * count))
-    analysis[: nodes + 1, :count], analysis[nodes + 1 :, count:] = rules[0][1], rules[1][1]
-    return synthesis, analysis
-
-
-def real_dual(moments: Array) -> tuple[Array, Mask]:
-    """Compute multipliers (n, C) of real moments (n, C), and their validity (n,).
+def try_multipliers(moments: Array) -> tuple[Array, Mask]:
+    """Multipliers (n, C) of moments (n, C), and where (n,) they are valid: moments of a reflectance.
 
     All reflection coefficients share one complex phase. Schur's algorithm (1917) therefore yields them from a real
     series, and the orthogonal polynomials follow from two real recursions: half of the operations of Levinson's
     recursion. Internally the order is the first axis, so that all arithmetic runs along contiguous spectra.
     """
-    orders = np.ascontiguousarray(moments.T)
-    zeroth = orders[0]
-    with np.errstate(all="ignore"):
-        # The series determines the zeroth moment only up to integers.
-        bounded = (zeroth >= 0) & (zeroth <= 1)
-        polynomials, scale, positive = _recursion(*_series(orders))
-        tangent = np.tan(np.pi / 2 * zeroth)
-        polynomials *= np.sqrt(np.stack([tangent, 1 / tangent]) / (2 * scale))
-        # p_l is the coefficient of (τ |A|² − |B|² / τ) / 2κ at lag l, with τ = tan(π c₀ / 2) and κ = Π (1 − g²).
-        multipliers = np.empty_like(orders)
-        for lag, row in enumerate(multipliers):
-            first, second = np.einsum("kpn,kpn->pn", polynomials[lag:], polynomials[: len(orders) - lag])
-            row[:] = first - second
-    return multipliers.T, bounded & positive & np.isfinite(multipliers).all(axis=0)
+    multipliers, valid = np.empty_like(moments), np.empty(len(moments), dtype=bool)
+    for first in range(0, len(moments), _ROWS):
+        block = slice(first, first + _ROWS)
+        orders = np.ascontiguousarray(moments[block].T)
+        zeroth = orders[0]
+        with np.errstate(all="ignore"):
+            # The series determines the zeroth moment only up to integers.
+            bounded = (zeroth >= 0) & (zeroth <= 1)
+            polynomials, scale, positive = _recursion(*_series(orders))
+            # x = (τ |A|² − |B|² / τ) / 2κ with τ = tan(π c₀ / 2) and κ = Π (1 − g²)
+            tangent = np.tan(np.pi / 2 * zeroth)
+            polynomials *= np.sqrt(np.stack([tangent, 1 / tangent]) / (2 * scale))
+            # p_l is the coefficient of x at lag l.
+            for lag, row in enumerate(multipliers[block].T):
+                first_part, second_part = np.einsum("kpn,kpn->pn", polynomials[lag:], polynomials[: len(orders) - lag])
+                row[:] = first_part - second_part
+        valid[block] = bounded & positive & np.isfinite(multipliers[block]).all(axis=1)
+    return multipliers, valid
 
 
 def _series(moments: Array) -> tuple[Array, Array]:
@@ -265,3 +206,26 @@ def _recursion(upper: Array, lower: Array) -> tuple[Array, Array, Mask]:
         scale *= factor
         positive &= factor > 0
     return polynomials, scale, positive
+
+
+def multipliers_from_moments(moments: Any, solve: Callable[[Any], tuple[Any, Mask]] = try_multipliers) -> Any:
+    """Multipliers (n, C) of the bounded maximum-entropy spectra with moments (n, C), by `try_multipliers` or its like.
+
+    Near the boundary of the moment space the recursion breaks down. Such moments are blended with those of grey, with
+    a weight of 1e−10 at first and at most 1e−4. Raises `UpliftError` for moments that no reflectance has.
+    """
+    grey = np.zeros_like(moments[:1])
+    grey[:, 0] = 0.5
+    multipliers, valid = solve(moments)
+    for weight in _GREY_WEIGHTS:
+        pending = np.flatnonzero(~valid)
+        if not pending.size:
+            return multipliers
+        blend = (1 - weight) * moments[pending] + weight * grey
+        multipliers[pending], valid[pending] = solve(blend)
+    if valid.all():
+        return multipliers
+    raise UpliftError(
+        f"{(~valid).sum()} sets of coefficients are not the moments of any reflectance",
+        code="invalid-moments",
+    )

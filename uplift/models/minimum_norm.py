@@ -10,60 +10,56 @@ target (docs/mathematics.md, 5). With the damped pseudo-inverse A⁺ = Aᵀ (A A
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
-from uplift.models.arithmetic import matmul_columns, matmul_rows
+from uplift.models.arithmetic import blocked_matmul, blocked_matmul_columns
 from uplift.models.model import Model
 
 
-class ForwardMap(NamedTuple):
-    """Arrays of the map from multipliers to RGB, a pytree for JAX."""
+@dataclass(frozen=True, eq=False)
+class ForwardMap:
+    """The map r = W S(B p) from multipliers p of a model to linear RGB, and the metric; a pytree for JAX."""
 
+    model: Model
     basis: Any
-    """Basis B of the linear part, shape (N, C)."""
+    """B, shape (N, C)."""
     sensor: Any
     """W, spectrum to RGB, shape (3, N)."""
     root: Any
     """R with R Rᵀ = M⁻¹, shape (C, C)."""
     inverse_root: Any
     """R⁻¹, shape (C, C)."""
-    products: Any
-    """Sensor times basis times R, shape (N, 3·C): the constant part of the Jacobian with respect to R⁻¹ p."""
+    jacobian_basis: Any
+    """W times B R, shape (N, 3·C): the constant part of the Jacobian A."""
+
+    def rgb(self, multipliers: Any) -> Any:
+        """Linear RGB (n, 3) of multipliers (n, C)."""
+        spectra = self.model.to_reflectance(blocked_matmul(multipliers, self.basis.T))
+        return blocked_matmul(spectra, self.sensor.T)
 
 
-def forward_map(model: Model, wavelengths: ArrayLike, sensor: Array, inverse_metric: Array | None = None) -> ForwardMap:
-    """Create the forward map; the metric defaults to the roughness of the model."""
+def forward_map(model: Model, wavelengths: ArrayLike, sensor: Array) -> ForwardMap:
+    """Create the forward map at wavelengths (N,) with the metric M of the model."""
     basis = model.basis(wavelengths)
-    root = np.linalg.cholesky(np.diag(1 / model.roughness()) if inverse_metric is None else inverse_metric)
-    products = sensor.T[:, :, None] * (basis @ root)[:, None, :]
-    return ForwardMap(basis, sensor, root, np.linalg.inv(root), products.reshape(len(basis), -1))
+    root = np.linalg.cholesky(np.diag(1 / model.metric_diagonal()))
+    jacobian_basis = sensor.T[:, :, None] * (basis @ root)[:, None, :]
+    return ForwardMap(model, basis, sensor, root, np.linalg.inv(root), jacobian_basis.reshape(len(basis), -1))
 
 
-def forward_rgb(model: Model, forward_map: ForwardMap, multipliers: Any) -> Any:
-    """Linear RGB r = W S(B p), (n, 3), of multipliers (n, C)."""
-    return matmul_rows(model.squash(matmul_rows(multipliers, forward_map.basis.T)), forward_map.sensor.T)
-
-
-def residual(model: Model, forward_map: ForwardMap, multipliers: Any, target: Any) -> Any:
-    """Target minus RGB, t − r, (n, 3), of multipliers (n, C)."""
-    return target - forward_rgb(model, forward_map, multipliers)
-
-
-def anchored_step(
-    model: Model, forward_map: ForwardMap, multipliers: Any, residual: Any, damping: Any, displacement: Any
-) -> Any:
+def anchored_step(forward: ForwardMap, multipliers: Any, residual: Any, damping: Any, displacement: Any) -> Any:
     """Change Δx (n, C) that cancels residuals (n, 3) to first order, nearest to the prior; R Δx is that of multipliers.
 
     ``damping`` (n,) is μ, ``displacement`` (n, C) the difference d of x from the prior, 0 for the minimum-norm step.
     Spectra are rows of arrays of numpy or of JAX.
     """
     # A = W diag(S′(B p)) B R
-    slope = model.slope(matmul_rows(multipliers, forward_map.basis.T))
-    jacobian = matmul_rows(slope, forward_map.products).reshape(-1, 3, forward_map.basis.shape[1])
+    derivative = forward.model.derivative(blocked_matmul(multipliers, forward.basis.T))
+    jacobian = blocked_matmul(derivative, forward.jacobian_basis).reshape(-1, 3, forward.basis.shape[1])
     # y = (A Aᵀ + μ tr I)⁻¹ (t − r + A d), Δx = Aᵀ y − d
     gram = jacobian @ jacobian.mT
     lower = [[gram[:, a, b] for b in range(a + 1)] for a in range(3)]
@@ -73,15 +69,17 @@ def anchored_step(
     return (y[:, None, :] @ jacobian)[:, 0, :] - displacement
 
 
-def minimum_norm_step(model: Model, forward_map: ForwardMap, linear: Array, residual: Array, damping: Array) -> Array:
+def minimum_norm_step(forward: ForwardMap, linear: Array, residual: Array, damping: Array) -> Array:
     """Change R Δx (C, n) of multipliers that cancels residuals (3, n) to first order, from the linear part (N, n).
 
     Spectra are columns of numpy arrays here, so that all arithmetic runs along contiguous memory.
     """
-    jacobian = matmul_columns(forward_map.products.T, model.slope(linear)).reshape(3, len(forward_map.root), -1)
+    # Aᵀ = Rᵀ Bᵀ diag(S′(x)) Wᵀ, by columns; Δx = Aᵀ (A Aᵀ + μ tr I)⁻¹ (t − r)
+    jacobian = blocked_matmul_columns(forward.jacobian_basis.T, forward.model.derivative(linear))
+    jacobian = jacobian.reshape(3, len(forward.root), -1)
     lower = [[np.einsum("cn,cn->n", jacobian[a], jacobian[b]) for b in range(a + 1)] for a in range(3)]
     y = solve_damped(lower, damping, residual)
-    return matmul_columns(forward_map.root, np.einsum("an,acn->cn", np.stack(y), jacobian))
+    return np.asarray(blocked_matmul_columns(forward.root, np.einsum("an,acn->cn", np.stack(y), jacobian)))
 
 
 def solve_damped(gram: Sequence[Sequence[Any]], damping: Any, right: Any) -> tuple[Any, Any, Any]:

@@ -1,205 +1,86 @@
-"""Interface of spectrum models: a sigmoid of a linear function of the multipliers (docs/mathematics.md, 2)."""
+"""Interface of spectrum models: g = S(B p), a sigmoid S of a linear function of the multipliers p.
+
+docs/mathematics.md, 2. The fit works on the multipliers; a cube stores coefficients c.
+"""
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from abc import ABC, abstractmethod
+from dataclasses import asdict, dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Mask
-from uplift.models.arithmetic import matmul_rows
-from uplift.models.duality import PRECISE, Quadrature
+from uplift.models.arithmetic import blocked_matmul
 
 
-class Model(Protocol):
-    """A family of reflectance spectra g(λ) = squash(basis(λ) · p), where all real p give values in (0, 1).
+@dataclass(frozen=True)
+class Model(ABC):
+    """A family of reflectance spectra: all real multipliers p give values in (0, 1).
 
-    The fit works on the multipliers p; a cube stores the coefficients c. ``squash`` and ``slope`` use the array API,
-    so that numpy and JAX run the same code.
+    `to_reflectance` and `derivative` use the array API, so that numpy and JAX run the same code. The multipliers are
+    stored unless a model has better coefficients.
     """
 
-    @property
-    def name(self) -> str:
-        """Name of the family in cube files.
-
-        Returns
-        -------
-        str
-        """
-        ...
+    name: ClassVar[str]
 
     @property
+    @abstractmethod
     def count(self) -> int:
-        """Number of coefficients per spectrum, C.
+        """Number of coefficients per spectrum, C."""
 
-        Returns
-        -------
-        int
-        """
-        ...
-
+    @abstractmethod
     def basis(self, wavelengths: ArrayLike) -> Array:
-        """Evaluate the basis of the linear part.
+        """Evaluate the basis B (N, C) of the linear part at wavelengths (N,) in nm."""
 
-        Parameters
-        ----------
-        wavelengths : array_like, shape (N,)
-            Wavelengths in nm.
+    @abstractmethod
+    def to_reflectance(self, x: Any) -> Any:
+        """Map the linear part, an array of numpy or JAX, to reflectance S(x): increasing, ½ at 0."""
 
-        Returns
-        -------
-        ndarray, shape (N, C)
-        """
-        ...
+    @abstractmethod
+    def derivative(self, x: Any) -> Any:
+        """Evaluate S′(x)."""
 
-    def squash(self, x: Any) -> Any:
-        """Map the linear part to reflectance: increasing, ½ at 0.
+    @abstractmethod
+    def from_reflectance(self, reflectance: Array) -> Array:
+        """Return the linear part of reflectances in (0, 1): the inverse of `to_reflectance`."""
 
-        Parameters
-        ----------
-        x : array
-            Linear part, of numpy or JAX.
+    def reflectance_change(self, x: Array, change: Array) -> Array:
+        """Evaluate S(x + change) − S(x), for columns (N, n) of linear parts and their changes."""
+        return np.asarray(self.to_reflectance(x + change) - self.to_reflectance(x))
 
-        Returns
-        -------
-        array
-            Reflectance in (0, 1).
-        """
-        ...
-
-    def slope(self, x: Any) -> Any:
-        """Evaluate the derivative of `squash`.
-
-        Parameters
-        ----------
-        x : array
-            Linear part, of numpy or JAX.
-
-        Returns
-        -------
-        array
-        """
-        ...
-
-    def squash_difference(self, x: Array, change: Array) -> Array:
-        """Evaluate squash(x + change) − squash(x), faster than two calls of `squash` if changes are small.
-
-        Parameters
-        ----------
-        x, change : ndarray, shape (N, n)
-            Linear part and its change, a column per spectrum.
-
-        Returns
-        -------
-        ndarray, shape (N, n)
-        """
-        ...
-
-    def unsquash(self, reflectance: Array) -> Array:
-        """Evaluate the inverse of `squash`.
-
-        Parameters
-        ----------
-        reflectance : ndarray
-            Reflectance in (0, 1).
-
-        Returns
-        -------
-        ndarray
-            Linear part.
-        """
-        ...
-
+    @abstractmethod
     def constant(self) -> Array:
-        """Return the multipliers whose linear part is 1 at all wavelengths.
+        """Return the multipliers (C,) whose linear part is 1 at all wavelengths."""
 
-        Returns
-        -------
-        ndarray, shape (C,)
-        """
-        ...
+    @abstractmethod
+    def metric_diagonal(self) -> Array:
+        """Return the diagonal (C,) of the smoothness metric M (docs/mathematics.md, 5)."""
 
-    def roughness(self) -> Array:
-        """Return the diagonal of the smoothness metric M (docs/mathematics.md, 5).
-
-        Returns
-        -------
-        ndarray, shape (C,)
-        """
-        ...
-
-    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = PRECISE) -> Array:
-        """Convert multipliers to the coefficients that cubes store.
-
-        Parameters
-        ----------
-        multipliers : array_like, shape (..., C)
-            Multipliers.
-        quadrature : Quadrature
-            How spectra are integrated, if the coefficients are integrals.
-
-        Returns
-        -------
-        ndarray, shape (..., C)
-        """
-        ...
+    def to_storage(self, multipliers: ArrayLike) -> Array:
+        """Convert multipliers (..., C) to the coefficients (..., C) that cubes store."""
+        return np.array(multipliers, dtype=float)
 
     def from_storage(self, coefficients: ArrayLike) -> Array:
-        """Convert stored coefficients to multipliers.
-
-        Parameters
-        ----------
-        coefficients : array_like, shape (..., C)
-            Coefficients.
-
-        Returns
-        -------
-        ndarray, shape (..., C)
-        """
-        ...
-
-    def rounds_safely(self, multipliers: Array) -> Mask:
-        """Return which spectra keep their colour when their coefficients are rounded to single precision.
-
-        Parameters
-        ----------
-        multipliers : ndarray, shape (n, C)
-            Multipliers.
-
-        Returns
-        -------
-        ndarray of bool, shape (n,)
-            True if linear RGB changes by at most 2e-7, about the rounding of RGB itself. False decides nothing.
-        """
-        ...
+        """Convert coefficients (..., C) to multipliers (..., C); those of no reflectance raise `UpliftError`."""
+        return np.array(coefficients, dtype=float)
 
     def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
-        """Convert coefficients that may belong to no reflectance.
+        """Convert coefficients (n, C) to multipliers (n, C), arbitrary where not valid (n,): of no reflectance."""
+        return np.array(coefficients, dtype=float), np.ones(len(coefficients), dtype=bool)
 
-        Parameters
-        ----------
-        coefficients : ndarray, shape (n, C)
-            Coefficients.
+    def is_float32_safe(self, multipliers: Array) -> Mask:
+        """Return which spectra (n,) keep linear RGB to 2e-7 if their coefficients are rounded to single precision.
 
-        Returns
-        -------
-        multipliers : ndarray, shape (n, C)
-            Multipliers; arbitrary where invalid.
-        valid : ndarray of bool, shape (n,)
-            Whether the coefficients belong to a reflectance.
+        False decides nothing.
         """
-        ...
+        return np.zeros(len(multipliers), dtype=bool)
 
     def describe(self) -> dict[str, Any]:
-        """Describe the model for `uplift.models.from_description`.
-
-        Returns
-        -------
-        dict
-            JSON values.
-        """
-        ...
+        """Describe the model in JSON values, for `uplift.models.from_description`."""
+        return {"name": self.name, **asdict(self)}
 
 
 def reflectance(model: Model, coefficients: ArrayLike, wavelengths: ArrayLike) -> Array:
@@ -239,4 +120,4 @@ def evaluate(model: Model, multipliers: Array, wavelengths: ArrayLike) -> Array:
     ndarray, shape (n, N)
         Reflectance in [0, 1].
     """
-    return np.asarray(model.squash(matmul_rows(multipliers, model.basis(wavelengths).T)))
+    return np.asarray(model.to_reflectance(blocked_matmul(multipliers, model.basis(wavelengths).T)))

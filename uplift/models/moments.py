@@ -12,8 +12,7 @@ ACM TOG 38(4). docs/mathematics.md, 2 to 4.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
-from functools import partial
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -24,7 +23,6 @@ from uplift.common.errors import OptionError
 from uplift.common.text import format_value
 from uplift.models import duality
 from uplift.models.arithmetic import arctan, arctan_difference
-from uplift.models.duality import PRECISE, Quadrature
 from uplift.models.model import Model
 
 MIN_COUNT, MAX_COUNT = 3, 17
@@ -126,47 +124,42 @@ class Moments(Model):
             )
 
     def basis(self, wavelengths: ArrayLike) -> Array:
+        # B p = p₀ + 2 Σ p_l cos lφ
         return duality.cosine_basis(self.phase(wavelengths), self.count)
 
-    def squash(self, x: Any) -> Any:
-        # g = ½ + arctan(x) / π with the linear part x = p₀ + 2 Σ p_l cos lφ (Peters et al. 2019)
+    def to_reflectance(self, x: Any) -> Any:
+        # S(x) = ½ + arctan(x) / π: Peters et al. 2019
         return 0.5 + arctan(x) / np.pi
 
-    def slope(self, x: Any) -> Any:
+    def derivative(self, x: Any) -> Any:
+        # S′(x) = 1 / (π (1 + x²))
         return 1 / (np.pi * (1 + x * x))
 
-    def squash_difference(self, x: Array, change: Array) -> Array:
-        return arctan_difference(x, change) / np.pi
-
-    def unsquash(self, reflectance: Array) -> Array:
+    def from_reflectance(self, reflectance: Array) -> Array:
         return np.tan(np.pi * (reflectance - 0.5))
+
+    def reflectance_change(self, x: Array, change: Array) -> Array:
+        return arctan_difference(x, change) / np.pi
 
     def constant(self) -> Array:
         return np.eye(self.count)[0]
 
-    def roughness(self) -> Array:
-        # A unit of p_j adds 1 to the squared value and j² to the squared slope over φ.
+    def metric_diagonal(self) -> Array:
+        # A unit of p_j adds 1 to the squared value and j² to the squared derivative over φ.
         return 1 + np.arange(self.count, dtype=float) ** 2
 
-    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = PRECISE) -> Array:
-        return _by_rows(partial(duality.moments_from_multipliers, quadrature=quadrature), multipliers)
+    def to_storage(self, multipliers: ArrayLike) -> Array:
+        rows = np.asarray(multipliers, dtype=float)
+        return duality.moments_from_multipliers(rows.reshape(-1, rows.shape[-1])).reshape(rows.shape)
 
     def from_storage(self, coefficients: ArrayLike) -> Array:
-        return _by_rows(duality.multipliers_from_moments, coefficients)
+        rows = np.asarray(coefficients, dtype=float)
+        return np.asarray(duality.multipliers_from_moments(rows.reshape(-1, rows.shape[-1]))).reshape(rows.shape)
 
-    def rounds_safely(self, multipliers: Array) -> Mask:
+    def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
+        return duality.try_multipliers(coefficients)
+
+    def is_float32_safe(self, multipliers: Array) -> Mask:
         # The linear part is at most |p₀| + 2 Σ |p_l|.
         largest = np.abs(multipliers[:, 0]) + 2 * np.abs(multipliers[:, 1:]).sum(axis=1)
         return np.asarray(largest <= MAX_SAFE_LINEAR)
-
-    def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
-        return duality.try_dual(coefficients)
-
-    def describe(self) -> dict[str, Any]:
-        return {"name": self.name, "count": self.count, "phase": asdict(self.phase)}
-
-
-def _by_rows(function: Any, values: ArrayLike) -> Array:
-    """Apply a function of (n, C) to (…, C)."""
-    array = np.asarray(values, dtype=float)
-    return np.reshape(function(array.reshape(-1, array.shape[-1])), array.shape)

@@ -1,4 +1,4 @@
-"""The sigmoid model: a squashed quadratic polynomial of the wavelength, three coefficients per spectrum.
+"""The sigmoid model: a sigmoid of a quadratic polynomial of the wavelength, three coefficients per spectrum.
 
 References
 ----------
@@ -7,14 +7,13 @@ Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral up
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Mask
-from uplift.models.duality import PRECISE, Quadrature
 from uplift.models.model import Model
 
 MAX_SAFE_LINEAR = 1.0
@@ -50,40 +49,26 @@ class Sigmoid(Model):
         x = (np.clip(wavelengths, self.start, self.end) - middle) / half
         return np.stack([x * x, x, np.ones_like(x)], axis=-1)
 
-    def squash(self, x: Any) -> Any:
+    def to_reflectance(self, x: Any) -> Any:
         # S(t) = ½ + t / (2√(1 + t²)): Jakob & Hanika 2019, eq. 5
         return 0.5 + x / (2 * (1 + x * x) ** 0.5)
 
-    def slope(self, x: Any) -> Any:
+    def derivative(self, x: Any) -> Any:
+        # S′(t) = ½ (1 + t²)^(−3/2)
         return 0.5 / (1 + x * x) ** 1.5
 
-    def squash_difference(self, x: Array, change: Array) -> Array:
-        return np.asarray(self.squash(x + change) - self.squash(x))
-
-    def unsquash(self, reflectance: Array) -> Array:
+    def from_reflectance(self, reflectance: Array) -> Array:
         half = reflectance - 0.5
         return np.asarray(2 * half / np.sqrt(np.maximum(1 - 4 * half * half, LEAST)))
 
     def constant(self) -> Array:
         return np.eye(self.count)[-1]
 
-    def roughness(self) -> Array:
+    def metric_diagonal(self) -> Array:
         return np.ones(self.count)
 
-    def to_storage(self, multipliers: ArrayLike, quadrature: Quadrature = PRECISE) -> Array:
-        return np.array(multipliers, dtype=float)
-
-    def from_storage(self, coefficients: ArrayLike) -> Array:
-        return np.array(coefficients, dtype=float)
-
-    def rounds_safely(self, multipliers: Array) -> Mask:
+    def is_float32_safe(self, multipliers: Array) -> Mask:
         return np.asarray(np.abs(multipliers).sum(axis=1) <= MAX_SAFE_LINEAR)
-
-    def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
-        return np.array(coefficients, dtype=float), np.ones(len(coefficients), dtype=bool)
-
-    def describe(self) -> dict[str, Any]:
-        return {"name": self.name, **asdict(self)}
 
 
 def evaluate_unscaled(coefficients: Array, wavelengths: Array) -> Array:

@@ -23,7 +23,7 @@ from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
 from uplift.fit.seeds import Seeds
 from uplift.lattice import EntryBoxes
-from uplift.models import Model
+from uplift.models.model import Model
 from uplift.pipeline.options import Options
 
 AtlasLike = Atlas | StrPath | Sequence[StrPath] | None

@@ -23,7 +23,8 @@ from uplift.fit.looks import MET, LookGoal, design_reflectance, fit_designs
 from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
 from uplift.fit.solver import solve_singly
-from uplift.models import Model, evaluate
+from uplift.models import evaluate
+from uplift.models.model import Model
 from uplift.pipeline.entries import Constraints, MeasuredEntries
 from uplift.pipeline.look import Look, LooksLike, about, as_looks, format_rgb, look_error
 
@@ -57,7 +58,7 @@ class LookTargets:
             return self, entries, prior
         # The wish becomes w y + (1 − w) y₀ in XYZ, with the colours y₀ of the spectrum p₀ that is expected at x.
         rgb = np.array([goal.rgb for goal in self.goals])
-        expected = solve_singly(problem.model, problem.forward, prior(rgb), rgb, problem.tolerance, MAX_STEPS)
+        expected = solve_singly(problem.forward, prior(rgb), rgb, problem.tolerance, MAX_STEPS)
         expected = evaluate(problem.model, expected, problem.sensor.wavelengths)
         parts = list(zip(self.looks, self.goals, expected, strict=True))
         goals = tuple(goal.softened(spectrum, look.weight) for look, goal, spectrum in parts)

@@ -15,7 +15,8 @@ from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP
 from uplift.common.errors import OptionError, unknown_name
 from uplift.common.text import format_value
 from uplift.cube.file import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
-from uplift.models import Model, Moments, Phase, Sigmoid
+from uplift.models import Moments, Phase, Sigmoid
+from uplift.models.model import Model
 from uplift.models.moments import MAX_COUNT
 
 AUTO: Literal["auto"] = "auto"

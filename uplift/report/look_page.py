@@ -71,7 +71,7 @@ def _model(sensor: Sensor, answer: Array, rgb: Array) -> dict[str, Any]:
     """Linear part of the answer, basis in the metric of least change, and the RGB to keep."""
     model = Moments(MAX_COUNT, Phase(*sensor.range[:2]))
     inside = np.clip(answer, MARGIN, 1 - MARGIN)
-    basis = model.basis(sensor.wavelengths) / np.sqrt(model.roughness())
+    basis = model.basis(sensor.wavelengths) / np.sqrt(model.metric_diagonal())
     return {
         "wavelengths": sensor.wavelengths.tolist(),
         "start": _rounded(np.log(inside / (1 - inside))),

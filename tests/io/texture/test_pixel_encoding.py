@@ -59,7 +59,7 @@ def evaluated(path, prefix):
     model = models.from_description(json.loads(header["uplift.model"]))
     values = read_channels(path, [f"{prefix}.{index:02}" for index in range(model.count)]).astype(float)
     multipliers = model.from_storage(values) if prefix == "moment" else values
-    return lambda at: model.squash(multipliers @ model.basis(at).T)
+    return lambda at: model.to_reflectance(multipliers @ model.basis(at).T)
 
 
 @pytest.mark.parametrize("cube", ["small_cube", "small_sigmoid_cube"])

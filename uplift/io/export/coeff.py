@@ -108,9 +108,7 @@ def _fit(data: CubeData, scale: Array) -> tuple[NDArray[np.float32], float]:
         for level in levels:
             rgb = _points(scale[level], res)
             target = around(data, rgb).weighted_sum(data.points.rgb.astype(float), data.atlas.rgb)
-            multipliers = solve(
-                model, forward, multipliers, target, tolerance=TOLERANCE, max_passes=MAX_PASSES
-            ).multipliers
+            multipliers = solve(forward, multipliers, target, tolerance=TOLERANCE, max_passes=MAX_PASSES).multipliers
             if level == middle:
                 middle_multipliers = multipliers
             stored = _per_nanometre(model, multipliers).astype(np.float32)
@@ -137,4 +135,4 @@ def _per_nanometre(model: Sigmoid, multipliers: Array) -> Array:
 def _colours(model: Sigmoid, forward: ForwardMap, wavelengths: Array, coefficients: NDArray[np.float32]) -> Array:
     """Return linear RGB (n, 3) of stored coefficients (n, 3)."""
     powers = np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
-    return np.asarray(model.squash(coefficients.astype(float) @ powers) @ forward.sensor.T)
+    return np.asarray(model.to_reflectance(coefficients.astype(float) @ powers) @ forward.sensor.T)

@@ -16,7 +16,8 @@ from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import extended_multipliers, refined_multipliers
 from uplift.lookup.validation import as_colours
-from uplift.models import Model, evaluate
+from uplift.models import evaluate
+from uplift.models.model import Model
 
 MEAN_WAVELENGTHS = np.arange(380.0, 781.0, 25.0)
 """Wavelengths in nm of the mean reflectance, by which Mitsuba chooses between lobes; it need not be exact."""

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from uplift.io.mitsuba.texels import PADDING, Placement, Samples, Texels
-from uplift.models import Model, Moments, Sigmoid
+from uplift.models import Moments, Sigmoid
+from uplift.models.model import Model
 from uplift.models.moments import WARPS
 
 HASH_ROUNDS = 3

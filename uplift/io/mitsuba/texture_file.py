@@ -24,7 +24,8 @@ from uplift.io.texture.lights import prepare_lights
 from uplift.io.texture.uplifter import ReadColours
 from uplift.lights.lookup import EmissionTable
 from uplift.lookup.blocks import blockwise
-from uplift.models import Model, Moments, from_description
+from uplift.models import Moments, from_description
+from uplift.models.model import Model
 
 QUANTITIES = ("T", "S0")
 """Beginnings of the names of channels of reflectance and of power in the layout of Fichet et al. 2021."""

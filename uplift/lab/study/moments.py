@@ -20,6 +20,7 @@ from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Complex
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.lab.study import complex_moments
 from uplift.models import duality
 from uplift.models.moments import Phase
 
@@ -72,8 +73,9 @@ class Technique:
 
         Shapes: ``moments`` (n, C), ``wavelengths`` (N,); result (n, N). Raises `UpliftError`.
         """
-        multipliers = duality.multipliers_from_moments(moments)
-        waves = duality.fourier_basis(self.phase(wavelengths), moments.shape[1])
+        solve = duality.try_multipliers if self.mirrored else complex_moments.try_multipliers
+        multipliers = duality.multipliers_from_moments(moments, solve)
+        waves = complex_moments.fourier_basis(self.phase(wavelengths), moments.shape[1])
         return np.asarray(0.5 + np.arctan((multipliers @ waves.T).real) / np.pi)
 
 

@@ -12,7 +12,7 @@ from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.colorimetry.observer import END, START
 from uplift.common.arrays import Array
 from uplift.models import Moments, Sigmoid
-from uplift.models.arithmetic import matmul_rows
+from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import cosine_basis
 from uplift.models.model import Model, evaluate, reflectance
 from uplift.scene.representations.composite import spike_xyz
@@ -63,7 +63,7 @@ class TrigonometricMoments(TabulatedProducts):
         analysis = cosine_basis(phase, self.model.count) * np.gradient(phase)[:, None] / np.pi
         analysis[:, 1:] /= 2
         analysis[[0, -1]] /= 2
-        return np.asarray(matmul_rows(reflectance, analysis))
+        return np.asarray(blocked_matmul(reflectance, analysis))
 
 
 def trigonometric_moments(count: int) -> TrigonometricMoments:
@@ -101,7 +101,7 @@ def fit_sigmoids(model: Sigmoid, table: Array) -> Array:
     damping = np.full((len(table), 1, 1), FIRST_DAMPING)
     residual = residuals(coefficients)
     for _ in range(ITERATIONS):
-        jacobian = measurement @ (model.slope(coefficients @ basis.T)[:, :, None] * basis)
+        jacobian = measurement @ (model.derivative(coefficients @ basis.T)[:, :, None] * basis)
         gram = jacobian.mT @ jacobian
         scale = damping * np.einsum("nii->ni", gram)[:, :, None] * np.eye(model.count)
         trial = coefficients - np.linalg.solve(gram + scale, jacobian.mT @ residual[:, :, None])[:, :, 0]

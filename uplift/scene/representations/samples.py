@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
-from uplift.models.arithmetic import matmul_rows
+from uplift.models.arithmetic import blocked_matmul
 from uplift.scene.quadrature import UndefinedRule, gauss_rule, interpolatory_rule
 
 STEP = 1.0
@@ -91,7 +91,7 @@ class SampleRepresentation(Representation):
     weights: Array
 
     def encode_light(self, power: Array) -> Array:
-        return np.asarray(matmul_rows(power, self.encoder))
+        return np.asarray(blocked_matmul(power, self.encoder))
 
     def multiply(self, light: Array, surface: Array) -> Array:
         return light * surface

@@ -14,9 +14,18 @@ import numpy as np
 from uplift.common.arrays import Array, Complex, Mask
 
 
-def dual(moments: Complex) -> tuple[Complex, Mask]:
-    """Compute multipliers (n, C) of moments (n, C), the zeroth real, and their validity (n,).
+def fourier_basis(phase: Array, count: int) -> Complex:
+    """Tabulate 1, 2 exp(iφ), …, 2 exp(imφ) as (N, C); with complex multipliers, its real part is the linear part."""
+    table = 2 * np.exp(1j * phase[:, None] * np.arange(count))
+    table[:, 0] = 1
+    return table
 
+
+def try_multipliers(moments: Complex) -> tuple[Complex, Mask]:
+    """Multipliers (n, C) of moments (n, C), and where (n,) they are valid.
+
+    Complex moments are (1/2π) ∫ g(φ) exp(−ijφ) dφ with a real zeroth moment, where g = ½ + arctan(Re Σ p_l w_l) / π and
+    w is the `fourier_basis`. Those of an even g are real, and `uplift.models.duality` needs half of the operations.
     Internally the order is the first axis, so that all arithmetic runs along contiguous spectra.
     """
     orders = np.ascontiguousarray(moments.T)
