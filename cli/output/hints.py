@@ -56,7 +56,6 @@ HINTS = {
     "too-few-colours": "use --colours 16 or more",
     "unknown-gamut-mapping": "use --out-of-gamut with error, clip, scale, desaturate or desaturate-oklab",
     "unknown-method": "give --methods with other names; '*' matches any characters",
-    "unknown-scale": "use --scale auto, percent or fraction",
     "unknown-warp": "use --warp none or vision",
     "unsupported-depth": "use another --depth",
 }

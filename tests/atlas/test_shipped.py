@@ -11,7 +11,7 @@ import uplift
 from tests.atlas.atlas_texts import ATLASES
 from tests.helpers import raises, warns
 from uplift.atlas import read_atlas, shipped_atlases
-from uplift.atlas.shipped import find_atlas_file
+from uplift.atlas.sources import find_atlas_file
 from uplift.common.errors import AtlasError
 
 SHIPPED = {

@@ -76,7 +76,7 @@ def test_scale_given_by_the_caller(save):
     assert source.measured == "percent"
     with raises(AtlasError, "atlas"):
         read_atlas(dark, measured="fraction")
-    with raises(OptionError, "unknown-scale"):
+    with raises(OptionError, "option"):
         read_atlas(dark, measured="per mille")
 
 
@@ -96,7 +96,7 @@ def test_scale_given_by_the_caller(save):
     ],
 )
 def test_other_quantities_are_refused(save, text):
-    with raises(AtlasError, "not-a-reflectance"):
+    with raises(AtlasError, "wrong-quantity"):
         read_atlas(save(text))
 
 
@@ -139,7 +139,7 @@ def test_missing_packages_are_named(tmp_path, monkeypatch, format):
         ('<?xml version="1.0"?>\n<!DOCTYPE x [<!ENTITY a "b">]>\n<IESTM2714 xmlns="i">&a;</IESTM2714>', "atlas"),
         ('<IESTM2714 xmlns="i">' + "<a>" * 100 + "</a>" * 100 + "</IESTM2714>", "atlas"),
         ('<IESTM2714 xmlns="i"><a></IESTM2714>', "atlas"),
-        ('<IESTM2714 xmlns="iestm2714"/>', "not-a-reflectance"),
+        ('<IESTM2714 xmlns="iestm2714"/>', "wrong-quantity"),
         ('<cc:CxF xmlns:cc="http://colorexchangeformat.com/CxF3-core"/>', "not-an-atlas"),
         ("##TITLE=a\n##NPOINTS=1000000000\n", "atlas"),
         ("##TITLE=a\n##XUNITS=HZ\n##YUNITS=REFLECTANCE\n##XYPOINTS=(XY..XY)\n1, 1\n", "atlas"),
@@ -160,11 +160,11 @@ def test_damaged_files_raise(save, text, code):
 
 def test_content_of_archives_is_limited(tmp_path, monkeypatch):
     monkeypatch.setattr(spreadsheet, "MAX_CONTENT", 100)
-    with raises(AtlasError, "file-unreadable"):
+    with raises(AtlasError, "atlas"):
         read_atlas(XLSX.save(MACBETH, tmp_path))
     monkeypatch.undo()
     monkeypatch.setattr(spreadsheet, "MAX_CELLS", 10)
-    with raises(AtlasError, "file-unreadable"):
+    with raises(AtlasError, "atlas"):
         read_atlas(XLSX.save(MACBETH, tmp_path))
 
 

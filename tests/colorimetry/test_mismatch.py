@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull
 
 from tests.helpers import raises
 from uplift.atlas import read_atlas, resample
-from uplift.atlas.shipped import shipped_atlases
+from uplift.atlas.sources import shipped_atlases
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import lab, lab_to_xyz
 from uplift.colorimetry.mismatch import mismatch_volumes

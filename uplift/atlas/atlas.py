@@ -8,7 +8,6 @@ from importlib import import_module
 from typing import overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from uplift.atlas.document import SourceLocation
 from uplift.common.arrays import Array
@@ -25,7 +24,6 @@ LONGEST = 1e6
 
 SLACK = 1e-6
 """Tolerance in nm for the ends of a range, as start + n × increment is rounded."""
-
 
 MAX_NAME = 1000
 """Characters of a name."""
@@ -76,10 +74,15 @@ class Entry:
 
     def __post_init__(self) -> None:
         location = SourceLocation(self.path, self.line, self.name)
-        _check_name(self.name, location)
         for key in ("wavelengths", "values"):
-            object.__setattr__(self, key, _read_only(getattr(self, key), key, location))
-        _check_spectrum(self.wavelengths, self.values, location)
+            try:
+                samples = np.array(getattr(self, key), dtype=float)
+            except (TypeError, ValueError):
+                raise location.error(f"the {key} are not all numbers", "give an array of numbers") from None
+            samples.setflags(write=False)
+            object.__setattr__(self, key, samples)
+        for problem, hint in _faults(self.name, self.wavelengths, self.values):
+            raise location.error(problem, hint)
 
     def __repr__(self) -> str:
         first, last = self.wavelengths[[0, -1]]
@@ -295,59 +298,33 @@ def merge(parts: Iterable[Atlas]) -> Atlas:
     )
 
 
-def _check_name(name: str, location: SourceLocation) -> None:
-    """Check that a name is one line of text without surrounding blanks. Raise `AtlasError`."""
+def _faults(name: str, wavelengths: Array, values: Array) -> Iterator[tuple[str, str]]:
+    """Yield problems of a name and of samples (N,) in nm and units of 1, with hints. The first one counts."""
     if not name.strip():
-        raise location.error("an entry needs a name", "give every entry a unique name")
+        yield "an entry needs a name", "give every entry a unique name"
     if name != name.strip() or len(name.splitlines()) != 1 or "\0" in name:
-        raise location.error("the name has line breaks or surrounding blanks", "give the entry a name of one line")
-    if len(name) > MAX_NAME or (not name.isascii() and name != name.encode(errors="ignore").decode()):
-        raise location.error(
-            f"the name must have at most {MAX_NAME} characters, all of them valid Unicode",
-            "give the entry a shorter name",
-        )
-
-
-def _check_spectrum(wavelengths: Array, values: Array, location: SourceLocation) -> None:
-    """Check wavelengths (N,) in nm and values (N,) in units of 1. Raise `AtlasError`."""
+        yield "the name has line breaks or surrounding blanks", "give the entry a name of one line"
+    if len(name) > MAX_NAME or name != name.encode(errors="ignore").decode():
+        problem = f"the name must have at most {MAX_NAME} characters, all of them valid Unicode"
+        yield problem, "give the entry a shorter name"
     if wavelengths.ndim != 1 or wavelengths.shape != values.shape:
         problem = f"wavelengths and values must have the same shape (N,), got {wavelengths.shape} and {values.shape}"
-        raise location.error(problem, "give one wavelength for every value")
+        yield problem, "give one wavelength for every value"
     if len(wavelengths) < 2:
-        problem = f"an entry needs at least 2 samples, got {len(wavelengths)}"
-        raise location.error(problem, "add the missing samples")
-    i = _first(~(np.isfinite(wavelengths) & np.isfinite(values)))
-    if i is not None:
+        yield f"an entry needs at least 2 samples, got {len(wavelengths)}", "add the missing samples"
+    for i in np.flatnonzero(~(np.isfinite(wavelengths) & np.isfinite(values))):
         problem = f"sample {i + 1} is not finite: {values[i]:g} at {wavelengths[i]:g} nm"
-        raise location.error(problem, "replace it by the measured value or remove the entry")
+        yield problem, "replace it by the measured value or remove the entry"
     first, last = wavelengths[0], wavelengths[-1]
     if first <= 0 or last > LONGEST:
         problem = f"wavelengths must be in (0, {LONGEST:g}] nm, got {first if first <= 0 else last:g}"
-        raise location.error(problem, "give wavelengths in nm")
-    i = _first(np.diff(wavelengths) < SLACK)
-    if i is not None:
+        yield problem, "give wavelengths in nm"
+    for i in np.flatnonzero(np.diff(wavelengths) < SLACK):
         problem = f"wavelengths must ascend, got {wavelengths[i]:g} nm, then {wavelengths[i + 1]:g} nm"
-        raise location.error(problem, "sort the samples by wavelength, each wavelength once")
+        yield problem, "sort the samples by wavelength, each wavelength once"
     if first > VISIBLE[0] + SLACK or last < VISIBLE[1] - SLACK:
         problem = f"an entry must cover {VISIBLE[0]:g}–{VISIBLE[1]:g} nm, got {first:g}–{last:g} nm"
-        raise location.error(problem, "add the missing samples and give wavelengths in nm")
-    i = _first((values > HIGHEST) | (values < LOWEST))
-    if i is not None:
+        yield problem, "add the missing samples and give wavelengths in nm"
+    for i in np.flatnonzero((values > HIGHEST) | (values < LOWEST)):
         problem = f"reflectance must be in [{LOWEST:g}, {HIGHEST:g}], got {values[i]:g} at {wavelengths[i]:g} nm"
-        hint = "the scale (in atlas text 'Maximum sample value') is probably missing or wrong"
-        raise location.error(problem, hint)
-
-
-def _first(bad: NDArray[np.bool_]) -> int | None:
-    """Return the index of the first true element, None if there is none."""
-    return int(bad.argmax()) if bad.any() else None
-
-
-def _read_only(samples: ArrayLike, key: str, location: SourceLocation) -> Array:
-    """Copy samples to a read-only array."""
-    try:
-        array = np.array(samples, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise location.error(f"the {key} are not all numbers", "give an array of numbers") from None
-    array.setflags(write=False)
-    return array
+        yield problem, "the scale (in atlas text 'Maximum sample value') is probably missing or wrong"

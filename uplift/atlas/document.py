@@ -1,4 +1,4 @@
-"""Files with source locations, and parsing of numbers with errors that name the location."""
+"""Files as text with source locations, and parsing steps that all readers share: numbers, scales, units, XML."""
 
 from __future__ import annotations
 
@@ -7,21 +7,29 @@ import hashlib
 import os
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
+from xml.parsers import expat
 
-from uplift.common.arrays import StrPath
+import numpy as np
+from numpy.typing import ArrayLike
+
+from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import AtlasError
 from uplift.common.files import read_bytes
 from uplift.common.text import parse_float, printable
 
 MAX_QUOTED = 40
 """Characters of an invalid token or name that a message quotes."""
-
-
 MAX_BYTES = 64 << 20
 """Largest file that is read, some 100,000 entries."""
-
+MAX_DEPTH, MAX_ELEMENTS = 64, 2_000_000
+"""Limits of an XML file."""
 UTF_16_START = 16
 """Bytes by which UTF-16 without a byte-order mark is recognised."""
+NANOMETRES = {"nm": 1.0, "nanometers": 1.0, "nanometres": 1.0, "um": 1e3, "micrometers": 1e3, "micrometres": 1e3}
+"""Factor by the unit of wavelengths, in lower case."""
+WAVE_NUMBER = "1/cm"
+EXPORT = "export the file again, or export a CSV table"
 
 
 @dataclass(frozen=True)
@@ -32,13 +40,9 @@ class SourceLocation:
     line: int | None = None
     entry: str | None = None
 
-    def at(self, line: int) -> SourceLocation:
-        """Return the location of another line of the same entry."""
-        return dataclasses.replace(self, line=line)
-
-    def after(self, text: str) -> SourceLocation:
-        """Return the location after ``text``, which starts here."""
-        return self.at((self.line or 1) + text.count("\n")) if "\n" in text else self
+    def at(self, line: int | None = None, entry: str | None = None) -> SourceLocation:
+        """Return the location of another line or entry of the same file."""
+        return dataclasses.replace(self, line=line or self.line, entry=entry or self.entry)
 
     def error(self, problem: str, hint: str, *, code: str | None = None) -> AtlasError:
         """Create an error at this location."""
@@ -55,6 +59,11 @@ class Document:
     digest: str
 
     @property
+    def location(self) -> SourceLocation:
+        """The file as a whole."""
+        return SourceLocation(self.path)
+
+    @property
     def name(self) -> str:
         """Base name of the file, with characters that are not text as escapes."""
         return printable(os.path.basename(self.path))
@@ -67,38 +76,58 @@ class Document:
     @cached_property
     def text(self) -> str:
         """The content as text with LF line ends: UTF-16, UTF-8, or else Latin-1. Raises `AtlasError` for others."""
-        location = SourceLocation(self.path)
-        text = _decode(self.data, location)
+        data, encoding, hint = self.data, _utf_16(self.data), "save the atlas as UTF-8 text"
+        try:
+            text = data.decode(encoding or "utf-8-sig")
+        except UnicodeDecodeError:
+            if encoding is not None:
+                raise self.location.at(1).error("the UTF-16 text is damaged", hint) from None
+            text = data.decode("latin-1")
+        if "\0" in text:
+            line = text[: text.index("\0")].count("\n") + 1
+            raise self.location.at(line).error("binary data (a NUL character) instead of text", hint)
         if not text.strip():
-            raise location.error("the file is empty", "name a file that contains atlas entries")
-        return text
+            raise self.location.error("the file is empty", "name a file that contains atlas entries")
+        return text.replace("\r\n", "\n").replace("\r", "\n")
 
     @cached_property
     def lines(self) -> list[str]:
         """Lines of the text; line n of an editor is ``lines[n - 1]``."""
         return self.text.split("\n")
 
+    def check_xml(self) -> None:
+        """Raise `AtlasError` for XML with a document type, too many or too deep elements, or errors of syntax."""
+        depth = count = 0
+
+        def start(name: str, attributes: Any) -> None:
+            nonlocal depth, count
+            depth, count = depth + 1, count + 1
+            if depth > MAX_DEPTH or count > MAX_ELEMENTS:
+                problem = f"an XML file must have at most {MAX_ELEMENTS:,} elements, and {MAX_DEPTH} nested ones"
+                raise self.location.error(problem, EXPORT)
+
+        def end(name: str) -> None:
+            nonlocal depth
+            depth -= 1
+
+        def doctype(*_: Any) -> None:
+            raise self.location.error("an XML file must not have a document type, which may define entities", EXPORT)
+
+        parser = expat.ParserCreate()
+        parser.StartElementHandler, parser.EndElementHandler, parser.StartDoctypeDeclHandler = start, end, doctype
+        try:
+            parser.Parse(self.data, True)
+        except AtlasError:
+            raise
+        except (expat.ExpatError, ValueError, LookupError) as error:
+            location = self.location.at(getattr(error, "lineno", 1))
+            raise location.error(f"not a valid XML file: {error}", EXPORT) from None
+
 
 def read_document(path: StrPath) -> Document:
     """Read a file. Raise `AtlasError` if it is missing, unreadable or too large."""
     data = read_bytes(path, AtlasError, limit=MAX_BYTES, hint="name an atlas file that can be read")
     return Document(os.fspath(path), data, hashlib.sha256(data).hexdigest())
-
-
-def _decode(data: bytes, location: SourceLocation) -> str:
-    encoding = _utf_16(data)
-    if encoding is None and b"\0" in data:
-        line = data[: data.index(b"\0")].count(b"\n") + 1
-        raise location.at(line).error("binary data (a NUL byte) instead of text", "save the atlas as UTF-8 text")
-    try:
-        text = data.decode(encoding or "utf-8-sig")
-    except UnicodeDecodeError:
-        if encoding is not None:
-            raise location.at(1).error("the UTF-16 text is damaged", "save the atlas as UTF-8 text") from None
-        text = data.decode("latin-1")
-    if encoding is not None and "\0" in text:
-        raise location.at(1).error("binary data (a NUL character) instead of text", "save the atlas as UTF-8 text")
-    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def _utf_16(data: bytes) -> str | None:
@@ -116,8 +145,12 @@ def parse_number(token: str, location: SourceLocation, label: str) -> float:
     try:
         return parse_float(token)
     except ValueError:
-        problem = f"{label} '{truncate(token)}' is not a number"
-        raise location.error(problem, "write a plain number such as 0.125") from None
+        raise not_a_number(token, location, label) from None
+
+
+def not_a_number(token: str, location: SourceLocation, label: str) -> AtlasError:
+    """Create the error for a token that should be a number."""
+    return location.error(f"{label} '{truncate(token)}' is not a number", "write a plain number such as 0.125")
 
 
 def check_scale(scale: float, label: str, location: SourceLocation) -> float:
@@ -128,9 +161,24 @@ def check_scale(scale: float, label: str, location: SourceLocation) -> float:
     return scale
 
 
+def to_nanometres(lengths: ArrayLike, unit: str, location: SourceLocation) -> Array:
+    """Convert wavelengths, or wave numbers in 1/cm. Raise `AtlasError` for an unknown unit."""
+    if unit not in (WAVE_NUMBER, *NANOMETRES):
+        problem = f"wavelengths must be in nanometers, micrometers or 1/cm, got '{truncate(unit)}'"
+        raise location.error(problem, "export the file with wavelengths in nm")
+    lengths = np.asarray(lengths, dtype=float)
+    with np.errstate(all="ignore"):  # wavelengths that are not finite are refused later
+        return 1e7 / lengths if unit == WAVE_NUMBER else NANOMETRES[unit] * lengths
+
+
+def one_line(text: object) -> str:
+    """Return a text, empty for None, with every run of blanks and line breaks as one blank."""
+    return "" if text is None else " ".join(str(text).replace("\0", " ").split())
+
+
 def truncate(text: str) -> str:
     """Shorten text to one line of at most `MAX_QUOTED` characters."""
-    text = " ".join(text.replace("\0", " ").split())
+    text = one_line(text)
     return text if len(text) <= MAX_QUOTED else text[:MAX_QUOTED] + "…"
 
 

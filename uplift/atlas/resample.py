@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas.atlas import Atlas, Entry
+from uplift.atlas.atlas import Atlas
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 
@@ -84,24 +84,22 @@ def on_grid(atlas: Atlas, wavelengths: ArrayLike) -> Array:
 
     Examples
     --------
+    >>> from uplift.atlas import Entry
     >>> atlas = Atlas((Entry("ramp", [400, 700], [0.25, 0.75]),))
     >>> on_grid(atlas, [380, 400, 550, 700]).tolist()
     [[0.25, 0.25, 0.5, 0.75]]
     """
     resampled = resample(atlas, wavelengths)
-    if resampled.clips:
-        warnings.warn(_warning(resampled.clips), stacklevel=2)
-    return resampled.values
-
-
-def _warning(clips: tuple[Clip, ...]) -> UpliftWarning:
+    clips = resampled.clips
     if len(clips) == 1:
-        return UpliftWarning(str(clips[0]), code="entry-clipped", entry=clips[0].name)
-    names = ", ".join(f"'{clip.name}'" for clip in clips[:MAX_NAMES])
-    more = f" and {len(clips) - MAX_NAMES} more" if len(clips) > MAX_NAMES else ""
-    most = max(clips, key=lambda clip: max(-clip.value, clip.value - 1))
-    problem = f"{len(clips)} entries clipped to [0, 1]: {names}{more}; '{most.name}' has {most}"
-    return UpliftWarning(problem, code="entry-clipped")
+        warnings.warn(UpliftWarning(str(clips[0]), code="entry-clipped", entry=clips[0].name), stacklevel=2)
+    elif clips:
+        names = ", ".join(f"'{clip.name}'" for clip in clips[:MAX_NAMES])
+        more = f" and {len(clips) - MAX_NAMES} more" if len(clips) > MAX_NAMES else ""
+        most = max(clips, key=lambda clip: max(-clip.value, clip.value - 1))
+        problem = f"{len(clips)} entries clipped to [0, 1]: {names}{more}; '{most.name}' has {most}"
+        warnings.warn(UpliftWarning(problem, code="entry-clipped"), stacklevel=2)
+    return resampled.values
 
 
 def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
@@ -118,23 +116,16 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
     -------
     Resampled
     """
-    grid = np.asarray(wavelengths, dtype=np.float64)
-    raw = np.array([_interpolate(entry, grid) for entry in atlas]).reshape(-1, len(grid))
-    clips = [_clip(entry.name, row, grid) for entry, row in zip(atlas, raw, strict=True)]
-    return Resampled(np.clip(raw, 0.0, 1.0), tuple(clip for clip in clips if clip is not None))
-
-
-def _interpolate(entry: Entry, grid: Array) -> Array:
     from scipy.interpolate import PchipInterpolator
 
-    with np.errstate(over="ignore"):  # harmonic means of slopes near 0
-        curve = PchipInterpolator(entry.wavelengths, entry.values)
-    return np.asarray(curve(np.clip(grid, entry.wavelengths[0], entry.wavelengths[-1])), dtype=np.float64)
-
-
-def _clip(name: str, row: Array, grid: Array) -> Clip | None:
-    excess = np.maximum(row - 1.0, -row)
-    if not np.any(excess > NOISE):
-        return None
-    worst = int(excess.argmax())
-    return Clip(name, float(row[worst]), float(grid[worst]))
+    grid = np.asarray(wavelengths, dtype=np.float64)
+    raw, clips = np.empty((len(atlas), len(grid))), []
+    for row, entry in zip(raw, atlas, strict=True):
+        with np.errstate(over="ignore"):  # harmonic means of slopes near 0
+            curve = PchipInterpolator(entry.wavelengths, entry.values)
+        row[:] = curve(np.clip(grid, entry.wavelengths[0], entry.wavelengths[-1]))
+        excess = np.maximum(row - 1.0, -row)
+        if excess.max(initial=0) > NOISE:
+            worst = int(excess.argmax())
+            clips.append(Clip(entry.name, float(row[worst]), float(grid[worst])))
+    return Resampled(np.clip(raw, 0.0, 1.0), tuple(clips))

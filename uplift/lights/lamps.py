@@ -8,10 +8,13 @@ from dataclasses import replace
 import numpy as np
 
 from uplift.atlas.atlas import Atlas, merge
-from uplift.atlas.document import Document, SourceLocation, read_document
+from uplift.atlas.document import Document, read_document, truncate
 from uplift.atlas.formats import recognise
-from uplift.atlas.measurements import Measurements, accept_power, to_atlas
+from uplift.atlas.measurements import Measurements, to_atlas
 from uplift.common.arrays import StrPath
+
+REFLECTANCES = "reflectance"
+"""Quantity of a measurement archive."""
 
 
 def read_lamps(*paths: StrPath) -> Atlas:
@@ -28,14 +31,11 @@ def read_lamps(*paths: StrPath) -> Atlas:
 
 def _read(document: Document) -> Atlas:
     chosen = recognise(document)
-    with accept_power():
-        found = chosen.read(document)
-    if isinstance(found, Atlas):
-        raise SourceLocation(document.path).error(
-            f"a file of the format {chosen.name} holds reflectances, not the power of lamps",
-            "give spectral powers, such as a CSV table",
-            code="not-a-lamp",
-        )
+    found = chosen.read(document)
+    stated = REFLECTANCES if isinstance(found, Atlas) else found.material
+    if isinstance(found, Atlas) or stated:
+        problem = f"the file states '{truncate(stated)}', not the power of a lamp"
+        raise document.location.error(problem, "give spectral powers, such as a CSV table", code="wrong-quantity")
     return to_atlas(document, _scaled(document, found), chosen.name, "fraction")
 
 
@@ -46,7 +46,7 @@ def _scaled(document: Document, measurements: Measurements) -> Measurements:
         values = np.asarray(spectrum.values, dtype=float)
         highest = float(values[np.isfinite(values)].max(initial=0))
         if highest <= 0:
-            raise SourceLocation(document.path, spectrum.line, spectrum.name).error(
+            raise document.location.at(spectrum.line, spectrum.name).error(
                 "a lamp must have power, got none above 0", "remove the lamp", code="lamp-without-power"
             )
         spectra.append(replace(spectrum, values=values / highest))

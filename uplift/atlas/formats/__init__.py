@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
 from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
 
 from uplift.atlas.atlas import Atlas
 from uplift.atlas.document import Document
-from uplift.atlas.formats import art, cgats, cxf, envi, jcamp_dx, spreadsheet, table, tm27
 from uplift.atlas.measurements import Measurements, to_atlas
+
+LIBRARY = ".sli"
+"""Suffix of the numbers of an ENVI library, which have no mark: its header is another file."""
 
 
 @dataclass(frozen=True)
 class Format:
-    """A format of atlas files.
+    """A format of atlas files. Its reader is imported when a file has it.
 
     Parameters
     ----------
@@ -21,10 +25,10 @@ class Format:
         Name for listings.
     suffixes : tuple of str
         Usual suffixes. The content determines the format, but for ``.sli``.
-    recognise : callable
-        Whether a document has the format.
-    read : callable
-        Reader of a document that has it.
+    pattern : str or bytes
+        Regular expression that is found in the text, or the bytes, of a file of the format.
+    module : str
+        Module of ``uplift.atlas.formats`` that reads it.
     library : str
         Distribution that parses the format; empty for uplift itself.
     extra : str
@@ -35,25 +39,45 @@ class Format:
 
     name: str
     suffixes: tuple[str, ...]
-    recognise: Callable[[Document], bool]
-    read: Callable[[Document], Measurements | Atlas]
+    pattern: str | bytes
+    module: str
     library: str = ""
     extra: str = ""
     written: bool = False
 
+    def read(self, document: Document) -> Measurements | Atlas:
+        """Read a document of the format.
 
+        Parameters
+        ----------
+        document : Document
+            The file.
+
+        Returns
+        -------
+        Measurements or Atlas
+        """
+        return import_module(f"{__name__}.{self.module}").read(document)
+
+
+XML = r"\A\s*<(?s:.{0,4000}?<)?(?:[\w.-]+:)?"
+"""Text before the name of an element near the beginning of an XML file."""
 FORMATS = (
     Format(
-        "spreadsheet", (".xlsx", ".xls", ".ods"), spreadsheet.is_spreadsheet, spreadsheet.read, "python-calamine", "io"
+        "spreadsheet", (".xlsx", ".xls", ".ods"), rb"\A(PK\x03\x04|\xd0\xcf\x11\xe0)", "spreadsheet",
+        "python-calamine", "io",
     ),
-    Format("ENVI spectral library", (".sli", ".hdr"), envi.is_envi, envi.read, "spectral", "io"),
-    Format("CxF3", (".cxf",), cxf.is_cxf, cxf.read, "colour-cxf", "io"),
-    Format("IES TM-27-14", (".spdx",), tm27.is_tm27, tm27.read, "colour-science"),
-    Format("JCAMP-DX", (".dx", ".jdx"), jcamp_dx.is_jcamp, jcamp_dx.read, "jcamp", "io"),
-    Format("CGATS", (".txt", ".ti3", ".sp"), cgats.is_cgats, cgats.read),
-    Format("ART measurement archive", (".txt", ".ark"), art.is_art_archive, art.read, written=True),
-    Format("table", (".csv", ".txt", ".spd"), lambda _: True, table.read, written=True),
-)
+    Format("ENVI spectral library", (LIBRARY, ".hdr"), rb"\A\s*ENVI", "envi", "spectral", "io"),
+    Format("CxF3", (".cxf",), XML + r"CxF\s[^>]{0,4000}colorexchangeformat\.com/CxF3-core", "cxf", "colour-cxf", "io"),
+    Format("IES TM-27-14", (".spdx",), XML + r"IESTM2714[\s/>]", "tm27", "colour-science"),
+    Format("JCAMP-DX", (".dx", ".jdx"), r"(?i)\A(\s*\$\$.*\n)*\s*##\s*TITLE\s*=", "jcamp_dx", "jcamp", "io"),
+    Format("CGATS", (".txt", ".ti3", ".sp"), r"(?m)^[^\S\n]*BEGIN_DATA_FORMAT[^\S\n]*$", "cgats"),
+    Format(
+        "ART measurement archive", (".txt", ".ark"),
+        r"(?im)\A\s*ART\s+measurement\s+archive|^[^\S\n]*Entry\s+ID\s*:", "art", written=True,
+    ),
+    Format("table", (".csv", ".txt", ".spd"), "", "table", written=True),
+)  # fmt: skip
 """Formats; the last one takes all other files."""
 
 
@@ -61,9 +85,19 @@ def read_any(document: Document, measured: str = "auto") -> Atlas:
     """Read a document by the first format that recognises it. Raise `AtlasError`."""
     chosen = recognise(document)
     found = chosen.read(document)
-    return found if isinstance(found, Atlas) else to_atlas(document, found, chosen.name, measured)
+    if isinstance(found, Atlas):
+        return found
+    if found.refusal is not None:
+        raise found.refusal
+    return to_atlas(document, found, chosen.name, measured)
 
 
 def recognise(document: Document) -> Format:
-    """Return the first format that recognises a document."""
-    return next(each for each in FORMATS if each.recognise(document))
+    """Return the first format whose pattern a document has."""
+    for each in FORMATS:
+        content: Any = document.data if isinstance(each.pattern, bytes) else document.text
+        if re.search(each.pattern, content):
+            return each
+        if LIBRARY in each.suffixes and document.path.lower().endswith(LIBRARY):
+            return each
+    return FORMATS[-1]

@@ -1,52 +1,58 @@
-"""Reader of the ART measurement archive (``.ark``), the atlas text format of Tódová 2020, figure 3.1.
+"""The ART measurement archive (``.ark``), the atlas text format of Tódová 2020, figure 3.1: reader and writer.
 
 An archive is a preamble and entries. An entry has two sections of ``key : value`` fields, and a list of samples:
-``{a, b, …}`` or ``{{x, y}, …}``.
+``{a, b, …}`` or ``{{x, y}, …}``. Keys compare without case and spacing.
 """
 
 from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source
-from uplift.atlas.document import Document, SourceLocation, check_scale, parse_number, truncate, without_unit
+from uplift.atlas.document import (
+    Document,
+    SourceLocation,
+    check_scale,
+    not_a_number,
+    one_line,
+    parse_number,
+    truncate,
+    without_unit,
+)
 from uplift.common.arrays import Array
+from uplift.common.text import parse_float
 
 MAGIC = "ART measurement archive"
+ENTRY = "entry id"
+TITLES = ("Sampling information", "ASCII sample data")
+"""Key of the first line of an entry, and the lines before its second and third section."""
 REFLECTANCE = "reflectance spectrum"
 OTHER_TYPES = (
-    "emission spectrum",
-    "transmission spectrum",
-    "colourimetric matching function",
-    "colour matching function",
-    "colorimetric matching function",
-    "color matching function",
-    "index of refraction",
-)
-FIELDS = (
-    "Description",
-    "Additional description",
-    "Type",
-    "Fluorescence data",
-    "Measurement device",
-    "Measured by",
-    "Measurement date",
-)
+    "emission spectrum", "transmission spectrum", "colourimetric matching function", "colour matching function",
+    "colorimetric matching function", "color matching function", "index of refraction",
+)  # fmt: skip
+HEADER = {"content": "Archive content", "copyright": "Archive copyright", "licence": "Archive license"}
+STATEMENTS = {
+    "description": "Description",
+    "additional_description": "Additional description",
+    "device": "Measurement device",
+    "measured_by": "Measured by",
+    "date": "Measurement date",
+}
+"""Fields by the attributes of `Header` and `Entry`."""
 SCALE = "Maximum sample value"
 SAMPLINGS = {"regular": ("Type", "Start", "Increment", SCALE), "point sampled": ("Type", SCALE)}
 """Fields of the sampling section, per type of sampling."""
-
-Line = tuple[int, str]
-"""Number, counted from 1, and text."""
-
 NOT_STATED = "not stated"
 """Placeholder of a header line without a value: other readers require a value in every line."""
-
+QUOTED = re.compile(r'"([^"]*|"(?:.*")?)"')
+"""A text in one pair of quotes, which do not belong to it; those of ``"a" and "b"`` do not enclose."""
 PAIR = re.compile(r"[\s,]*\{([^{}]*)\}")
 """A pair of samples; the comma before it is optional."""
 COMPLETE_ENTRY = "complete the entry (the file may be truncated here) or remove it"
@@ -54,138 +60,34 @@ WRITE_VALUES = "write the samples as numbers separated by commas, in one pair of
 WRITE_PAIRS = "write the samples as {{wavelength, value}, {wavelength, value}, …}"
 
 
-def is_art_archive(document: Document) -> bool:
-    """Whether the text has the first line or an entry of this format."""
-    first = next(line for line in document.lines if line.strip())
-    return _fold(first).startswith(_fold(MAGIC)) or any(map(_begins_entry, document.lines))
+class Line(NamedTuple):
+    """A line that is neither blank nor a rule."""
 
-
-def read(document: Document) -> Atlas:
-    """Read the reflectances of an archive; entries of other types are skipped."""
-    header = read_header(document)
-    lines = list(enumerate(document.lines, start=1))
-    starts = [index for index, (_, text) in enumerate(lines) if _begins_entry(text)]
-    if not starts:
-        hint = "add entries, each beginning with a line 'Entry ID: …'"
-        raise SourceLocation(document.path, len(lines)).error("an archive needs at least one entry", hint)
-    ends = [*starts[1:], len(lines)]
-    entries = [_entry(lines[start:end], document.path) for start, end in zip(starts, ends, strict=True)]
-    return Atlas(
-        tuple(item for item in entries if isinstance(item, Entry)),
-        tuple(item for item in entries if isinstance(item, SkippedEntry)),
-        (Source(document.name, document.digest, header, "ART measurement archive"),),
-    )
-
-
-def read_header(document: Document) -> Header:
-    """Read the statements of an archive about itself. Raise `AtlasError`."""
-    location = SourceLocation(document.path)
-    preamble = itertools.takewhile(lambda line: not _begins_entry(line[1]), enumerate(document.lines, start=1))
-    lines = _content(preamble)
-    if lines and _fold(lines[0][1]).startswith(_fold(MAGIC)):
-        number, text = lines.pop(0)
-        version = text.split()[-1]
-        if not version.startswith("1."):
-            problem = f"unknown archive version '{truncate(version)}'"
-            raise location.at(number).error(problem, "write the archive as version 1.0, 1.1 or 1.2")
-    fields = _fields(lines, location)
-    fields.check_known(("Archive content", "Archive copyright", "Archive license"))
-    values = [fields.text(f"Archive {key}") for key in ("content", "copyright", "license")]
-    return Header(*("" if text == NOT_STATED else text for text in values))
-
-
-def _entry(lines: list[Line], path: str) -> Entry | SkippedEntry:
-    """Parse the lines of an entry: two sections of fields, and a list of samples."""
-    number, text = lines[0]
-    name = text.partition(":")[2].strip()
-    location = SourceLocation(path, number, name or None)
-    middle = _find(lines, "Sampling information", location)
-    end = _find(lines, "ASCII sample data", location)
-    fields = _fields(lines[1:middle], location)
-    sampling = _fields(lines[middle + 1 : end], location)
-    samples, start = _samples(lines[end + 1 :], location)
-    reason = _why_skipped(fields, sampling)
-    if reason:
-        return SkippedEntry(name, reason, path, number)
-    fields.check_known(FIELDS)
-    wavelengths, values = _sampled(sampling, samples, start)
-    return Entry(
-        name,
-        wavelengths,
-        values,
-        description=_unquote(fields.text("Description")),
-        additional_description=_unquote(fields.text("Additional description")),
-        device=fields.text("Measurement device"),
-        measured_by=fields.text("Measured by"),
-        date=fields.text("Measurement date"),
-        path=path,
-        line=number,
-    )
-
-
-def _why_skipped(fields: Fields, sampling: Fields) -> str:
-    """Return why an entry of a known type cannot be used, empty if it can. Raise `AtlasError` for unknown types."""
-    kind, location = fields.required("Type")
-    if _fold(kind) in OTHER_TYPES:
-        return f"its type is '{kind}', not '{REFLECTANCE}'"
-    if _fold(kind) != REFLECTANCE:
-        known = ", ".join(f"'{name}'" for name in (REFLECTANCE, *OTHER_TYPES[:4]))
-        raise location.error(f"unknown type '{truncate(kind)}'", f"the types are {known}")
-    if "fluorescence data" in fields.values:
-        answer, location = fields.required("Fluorescence data")
-        if _fold(answer) not in ("yes", "no"):
-            problem = f"'Fluorescence data' must be 'yes' or 'no', got '{truncate(answer)}'"
-            raise location.error(problem, "write 'yes' or 'no'")
-        is_fluorescent = _fold(answer) == "yes"
-    else:  # the sampling section is then specific to the kind
-        is_fluorescent = bool(sampling.text("Reflectance start"))
-    return "it is fluorescent (bispectral), not a plain reflectance" if is_fluorescent else ""
-
-
-def _sampled(sampling: Fields, samples: str, start: SourceLocation) -> tuple[Array, Array]:
-    """Return wavelengths (N,) in nm and reflectances (N,) in units of 1."""
-    kind, location = sampling.required("Type")
-    if _fold(kind) not in SAMPLINGS:
-        raise location.error(f"unknown sampling type '{truncate(kind)}'", "write 'regular' or 'point sampled'")
-    sampling.check_known(SAMPLINGS[_fold(kind)])
-    scale = check_scale(sampling.number(SCALE), f"'{SCALE}'", sampling.required(SCALE)[1])
-    with np.errstate(over="ignore", invalid="ignore"):  # Entry reports values that are not finite
-        if _fold(kind) == "point sampled":
-            wavelengths, values = np.array(_pairs(samples, start)).T
-        else:
-            first, increment = sampling.number("Start"), sampling.number("Increment")
-            if "{" in samples or "}" in samples:
-                raise start.error("braces within a regular sample list", WRITE_VALUES)
-            values = np.array(_numbers(samples, start))
-            wavelengths = first + increment * np.arange(len(values), dtype=np.float64)
-        return wavelengths, values / scale
-
-
-def _unquote(text: str) -> str:
-    """Remove one pair of enclosing quotes; those of ``"a" and "b"`` do not enclose (`art_write` quotes to match)."""
-    inside = text[1:-1]
-    quoted = len(text) > 1 and text[0] == text[-1] == '"'
-    encloses = '"' not in inside or (inside[0] == inside[-1] == '"')
-    return inside if quoted and encloses else text
+    number: int
+    """Number in the file, counted from 1."""
+    text: str
+    key: str
+    """Text before the first colon, in lower case with single blanks."""
 
 
 @dataclass(frozen=True)
 class Fields:
-    """``key : value`` lines of one section; keys compare without case and spacing."""
+    """Fields of one section, by their keys in lower case."""
 
-    values: dict[str, Line]
+    lines: dict[str, Line]
     location: SourceLocation
 
     def text(self, key: str) -> str:
         """Return an optional value, empty if it is missing."""
-        return self.values.get(_fold(key), (0, ""))[1]
+        line = self.lines.get(key.lower())
+        return "" if line is None else line.text.partition(":")[2].strip()
 
     def required(self, key: str) -> tuple[str, SourceLocation]:
         """Return a required value and its location. Raise `AtlasError` if it is missing."""
-        line, value = self.values.get(_fold(key), (0, ""))
+        value = self.text(key)
         if not value:
             raise self.location.error(f"the field '{key}' is missing", f"add a line '{key} : …' to the entry")
-        return value, self.location.at(line)
+        return value, self.location.at(self.lines[key.lower()].number)
 
     def number(self, key: str) -> float:
         """Return a required number, which may have the unit ``nm``. Raise `AtlasError`."""
@@ -194,57 +96,117 @@ class Fields:
 
     def check_known(self, known: Iterable[str]) -> None:
         """Check for unknown fields, such as misspelt ones. Raise `AtlasError`."""
-        known = tuple(known)
-        for key, (line, _) in self.values.items():
-            if key not in map(_fold, known):
-                hint = "the fields are " + ", ".join(f"'{name}'" for name in known)
-                raise self.location.at(line).error(f"unknown field '{truncate(key)}'", hint)
+        names = {name.lower(): name for name in known}
+        for key, line in self.lines.items():
+            if key not in names:
+                hint = "the fields are " + ", ".join(f"'{name}'" for name in names.values())
+                raise self.location.at(line.number).error(f"unknown field '{truncate(key)}'", hint)
+
+
+def read(document: Document) -> Atlas:
+    """Read the reflectances of an archive; entries of other types are skipped."""
+    header = read_header(document)
+    lines = _content(enumerate(document.lines, start=1))
+    starts = [index for index, line in enumerate(lines) if line.key == ENTRY]
+    if not starts:
+        hint = "add entries, each beginning with a line 'Entry ID: …'"
+        raise document.location.at(len(document.lines)).error("an archive needs at least one entry", hint)
+    entries = [
+        _read_entry(document, lines[start:end]) for start, end in zip(starts, [*starts[1:], len(lines)], strict=True)
+    ]
+    return Atlas(
+        tuple(item for item in entries if isinstance(item, Entry)),
+        tuple(item for item in entries if isinstance(item, SkippedEntry)),
+        (Source(document.name, document.digest, header, MAGIC),),
+    )
+
+
+def read_header(document: Document) -> Header:
+    """Read the statements of an archive about itself. Raise `AtlasError`."""
+    lines = list(itertools.takewhile(lambda line: line.key != ENTRY, _content(enumerate(document.lines, start=1))))
+    if lines and lines[0].key.startswith(MAGIC.lower()):
+        number, text, _ = lines.pop(0)
+        version = text.split()[-1]
+        if not version.startswith("1."):
+            problem = f"unknown archive version '{truncate(version)}'"
+            raise document.location.at(number).error(problem, "write the archive as version 1.0, 1.1 or 1.2")
+    fields = _fields(lines, document.location)
+    fields.check_known(HEADER.values())
+    values = {name: fields.text(key) for name, key in HEADER.items()}
+    return Header(**{name: "" if value == NOT_STATED else value for name, value in values.items()})
+
+
+def _content(lines: Iterable[tuple[int, str]]) -> list[Line]:
+    """Return the lines that are neither blank nor a rule."""
+    stripped = ((number, text.strip()) for number, text in lines)
+    return [
+        Line(number, text, one_line(text.partition(":")[0]).casefold())
+        for number, text in stripped
+        if text.strip("-") and not text.casefold().startswith("<hr")
+    ]
 
 
 def _fields(lines: Iterable[Line], location: SourceLocation) -> Fields:
-    """Parse the lines of a section. Raise `AtlasError` for a line without a colon and for a repeated key."""
-    values: dict[str, Line] = {}
-    for number, text in _content(lines):
-        key, colon, value = text.partition(":")
-        if not colon:
-            raise location.at(number).error(f"unexpected text '{truncate(text)}'", "write 'key : value'")
-        if _fold(key) in values:
-            raise location.at(number).error(f"the field '{truncate(key)}' is repeated", "remove one of the two")
-        values[_fold(key)] = number, value.strip()
-    return Fields(values, location)
+    """Collect the lines of a section. Raise `AtlasError` for a line without a colon and for a repeated key."""
+    found: dict[str, Line] = {}
+    for line in lines:
+        if ":" not in line.text:
+            problem = f"unexpected text '{truncate(line.text)}'"
+            raise location.at(line.number).error(problem, "write 'key : value'")
+        if line.key in found:
+            problem = f"the field '{truncate(line.key)}' is repeated"
+            raise location.at(line.number).error(problem, "remove one of the two")
+        found[line.key] = line
+    return Fields(found, location)
 
 
-def _begins_entry(text: str) -> bool:
-    key, colon, _ = text.partition(":")
-    return bool(colon) and _fold(key) == "entry id"
+def _read_entry(document: Document, lines: list[Line]) -> Entry | SkippedEntry:
+    """Parse the lines of an entry: two sections of fields, and a list of samples."""
+    name = lines[0].text.partition(":")[2].strip()
+    location = SourceLocation(document.path, lines[0].number, name or None)
+    keys = [line.key for line in lines]
+    for title in TITLES:
+        if title.lower() not in keys:
+            raise location.at(lines[-1].number).error(f"the section '{title}' is missing", COMPLETE_ENTRY)
+    middle, end = (keys.index(title.lower()) for title in TITLES)
+    fields, sampling = _fields(lines[1:middle], location), _fields(lines[middle + 1 : end], location)
+    samples, start = _sample_list(document, lines[end + 1 :], location)
+    reason = _why_skipped(fields, sampling)
+    if reason:
+        return SkippedEntry(name, reason, document.path, location.line)
+    fields.check_known(("Type", "Fluorescence data", *STATEMENTS.values()))
+    statements = {attribute: fields.text(key) for attribute, key in STATEMENTS.items()}
+    for attribute in ("description", "additional_description"):
+        if quoted := QUOTED.fullmatch(statements[attribute]):
+            statements[attribute] = quoted[1]
+    wavelengths, values = _sampled(sampling, samples, start)
+    return Entry(name, wavelengths, values, path=document.path, line=location.line, **statements)
 
 
-def _fold(text: str) -> str:
-    """Normalise case and blanks."""
-    return " ".join(text.split()).casefold()
+def _why_skipped(fields: Fields, sampling: Fields) -> str:
+    """Return why an entry of a known type cannot be used, empty if it can. Raise `AtlasError` for unknown types."""
+    kind, location = fields.required("Type")
+    if one_line(kind).casefold() in OTHER_TYPES:
+        return f"its type is '{kind}', not '{REFLECTANCE}'"
+    if one_line(kind).casefold() != REFLECTANCE:
+        known = ", ".join(f"'{name}'" for name in (REFLECTANCE, *OTHER_TYPES[:4]))
+        raise location.error(f"unknown type '{truncate(kind)}'", f"the types are {known}")
+    answer = "yes" if sampling.text("Reflectance start") else "no"  # the section is specific to the kind
+    if "fluorescence data" in fields.lines:
+        answer, location = fields.required("Fluorescence data")
+    if answer.casefold() not in ("yes", "no"):
+        problem = f"'Fluorescence data' must be 'yes' or 'no', got '{truncate(answer)}'"
+        raise location.error(problem, "write 'yes' or 'no'")
+    return "it is fluorescent (bispectral), not a plain reflectance" if answer.casefold() == "yes" else ""
 
 
-def _content(lines: Iterable[Line]) -> list[Line]:
-    """Return the lines that are neither blank nor a rule."""
-    stripped = ((number, text.strip()) for number, text in lines)
-    return [line for line in stripped if line[1].strip("-") and not line[1].casefold().startswith("<hr")]
-
-
-def _find(lines: list[Line], title: str, location: SourceLocation) -> int:
-    for i, (_, text) in enumerate(lines):
-        if len(text) < 200 and _fold(text) == _fold(title):
-            return i
-    last = (_content(lines) or lines)[-1][0]
-    raise location.at(last).error(f"the section '{title}' is missing", COMPLETE_ENTRY)
-
-
-def _samples(lines: list[Line], location: SourceLocation) -> tuple[str, SourceLocation]:
-    """Return the text between the braces that open on the first line with content, and its location."""
-    content = _content(lines)
-    if not content or not content[0][1].startswith("{"):
+def _sample_list(document: Document, lines: list[Line], location: SourceLocation) -> tuple[str, SourceLocation]:
+    """Return the text between the braces that open on the first line with content, and the location of that line."""
+    if not lines or not lines[0].text.startswith("{"):
         raise location.error("the sample list, opened by '{', is missing", COMPLETE_ENTRY)
-    start = location.at(content[0][0])
-    text = "\n".join(text for number, text in lines if number >= content[0][0]).strip()
+    first, last = lines[0].number, lines[-1].number
+    start = location.at(first)
+    text = "\n".join(document.lines[first - 1 : last]).strip()
     depth = 0
     for brace in re.finditer(r"[{}]", text):
         depth += 1 if brace[0] == "{" else -1
@@ -253,31 +215,106 @@ def _samples(lines: list[Line], location: SourceLocation) -> tuple[str, SourceLo
     else:
         raise start.error("the sample list is not closed by '}'", COMPLETE_ENTRY)
     end = brace.end()
-    rest = text[end:].split("\n")
-    after = _content(enumerate(rest, content[0][0] + text.count("\n", 0, end)))
+    after = _content(enumerate(text[end:].split("\n"), first + text.count("\n", 0, end)))
     if after:
-        raise start.at(after[0][0]).error("unexpected text after the sample list", "end the entry with '}'")
+        raise start.at(after[0].number).error("unexpected text after the sample list", "end the entry with '}'")
     return text[1 : end - 1], start
 
 
-def _pairs(text: str, location: SourceLocation) -> list[list[float]]:
+def _sampled(sampling: Fields, samples: str, start: SourceLocation) -> tuple[Array, Array]:
+    """Return wavelengths (N,) in nm and reflectances (N,) in units of 1."""
+    kind, location = sampling.required("Type")
+    known = SAMPLINGS.get(one_line(kind).casefold())
+    if known is None:
+        raise location.error(f"unknown sampling type '{truncate(kind)}'", "write 'regular' or 'point sampled'")
+    sampling.check_known(known)
+    scale = check_scale(sampling.number(SCALE), f"'{SCALE}'", sampling.required(SCALE)[1])
+    with np.errstate(over="ignore", invalid="ignore"):  # Entry reports values that are not finite
+        if "Start" not in known:
+            wavelengths, values = np.array(_pairs(samples, start)).T
+        else:
+            first, increment = sampling.number("Start"), sampling.number("Increment")
+            if "{" in samples or "}" in samples:
+                raise start.error("braces within a regular sample list", WRITE_VALUES)
+            values = np.array(_numbers(samples, 0, len(samples), start))
+            wavelengths = first + increment * np.arange(len(values), dtype=np.float64)
+        return wavelengths, values / scale
+
+
+def _pairs(samples: str, start: SourceLocation) -> list[list[float]]:
     """Parse ``{x, y}, {x, y}, …``. Raise `AtlasError`."""
     pairs, end = list[list[float]](), 0
-    while match := PAIR.match(text, end):
-        pairs.append(_numbers(match[1], location.after(text[end : match.start(1)])))
+    while match := PAIR.match(samples, end):
+        pairs.append(_numbers(samples, *match.span(1), start))
         if len(pairs[-1]) != 2:
             break
-        location, end = location.after(match[0]), match.end()
-    if text[end:].strip() or not pairs:
-        raise location.error("the samples are not in pairs", WRITE_PAIRS)
+        end = match.end()
+    if samples[end:].strip() or not pairs:
+        raise _below(start, samples[:end]).error("the samples are not in pairs", WRITE_PAIRS)
     return pairs
 
 
-def _numbers(text: str, location: SourceLocation) -> list[float]:
+def _numbers(samples: str, first: int, last: int, start: SourceLocation) -> list[float]:
+    """Parse the numbers between two positions of a list that begins at ``start``. Raise `AtlasError`."""
     numbers = []
-    for token in text.split(","):
-        lead = len(token) - len(token.lstrip())
-        location = location.after(token[:lead])
-        numbers.append(parse_number(token, location, "sample"))
-        location = location.after(token[lead:])
+    for token in samples[first:last].split(","):
+        try:
+            numbers.append(parse_float(token))
+        except ValueError:
+            blanks = token[: len(token) - len(token.lstrip())]
+            raise not_a_number(token, _below(start, samples[:first] + blanks), "sample") from None
+        first += len(token) + 1
     return numbers
+
+
+def _below(start: SourceLocation, text: str) -> SourceLocation:
+    """Return the location behind a text that begins at ``start``."""
+    return start.at((start.line or 1) + text.count("\n"))
+
+
+def text(atlas: Atlas, header: Header) -> str:
+    """Format an archive: version 1.1, or 1.2 if an entry has an additional description.
+
+    `read` returns the same values, bit for bit.
+    """
+    version = "1.2" if any(entry.additional_description for entry in atlas) else "1.1"
+    lines = [f"{MAGIC} version {version}", ""]
+    lines += (f"{key}: {one_line(getattr(header, name)) or NOT_STATED}" for name, key in HEADER.items())
+    return "\n".join([*lines, "", *(line for entry in atlas for line in _entry_lines(entry))])
+
+
+def _entry_lines(entry: Entry) -> Iterator[str]:
+    def field(key: str, value: str) -> str:
+        return f"{key:<22}:  {one_line(value)}".rstrip()
+
+    yield from (f"Entry ID:   {entry.name}", "-" * 75)
+    for name, key in STATEMENTS.items():
+        value = one_line(getattr(entry, name))
+        if name == "device":
+            yield from (field("Type", REFLECTANCE), field("Fluorescence data", "no"))
+        if name.endswith("description") and len(value) > 1 and value[0] == value[-1] == '"':
+            value = f'"{value}"'  # the reader removes one pair of quotes
+        if value or name != "additional_description":
+            yield field(key, value)
+    yield from (TITLES[0], "-" * 20)
+    step, values = _exact_step(entry.wavelengths), entry.values.tolist()
+    if step is None:
+        yield field("Type", "point sampled")
+        samples = [f"{{{x!r}, {y!r}}}" for x, y in zip(entry.wavelengths.tolist(), values, strict=True)]
+    else:
+        yield field("Type", "regular")
+        yield field("Start", f"{float(entry.wavelengths[0])!r} nm")
+        yield field("Increment", f"{step!r} nm")
+        samples = list(map(repr, values))
+    yield field(SCALE, "1.0")
+    yield from (TITLES[1], "-" * 17, f"{{{', '.join(samples)}}}", "")
+
+
+def _exact_step(wavelengths: Array) -> float | None:
+    """Return the step that gives exactly these wavelengths in the reader, None if there is none."""
+    n = len(wavelengths)
+    first, last = wavelengths[0], wavelengths[-1]
+    for step in (wavelengths[1] - first, (last - first) / (n - 1), round((last - first) / (n - 1), 9)):
+        if np.array_equal(first + step * np.arange(n), wavelengths):
+            return float(step)
+    return None

@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from uplift.atlas.atlas import Header
-from uplift.atlas.document import Document, SourceLocation, check_scale, parse_number
-from uplift.atlas.formats.grid import Cell, Row, read_grid, wavelength
-from uplift.atlas.measurements import Measurements, check_quantity, refuse_quantity
+from uplift.atlas.document import EXPORT, Document, check_scale, one_line, parse_number
+from uplift.atlas.formats.table import Cell, Row, read_grid, wavelength
+from uplift.atlas.measurements import Measurements, find_quantity, wrong_quantity
 from uplift.common.text import parse_float
 
 FORMAT, DATA = "DATA_FORMAT", "DATA"
@@ -24,29 +24,25 @@ LIGHT_SOURCES = re.compile(r'^\s*DEVICE_CLASS\s+"?DISPLAY', re.MULTILINE)
 """Keyword of ArgyllCMS for measurements of a screen."""
 
 
-def is_cgats(document: Document) -> bool:
-    """Whether a line begins the format of the data."""
-    return any(line.strip() == f"BEGIN_{FORMAT}" for line in document.lines)
-
-
 def read(document: Document) -> Measurements:
     """Read the sets of a CGATS file. Fields other than the name and the spectrum are not used."""
-    location = SourceLocation(document.path)
+    location = document.location
     preamble, rows = _parse(document)
-    text = "\n".join(preamble)
-    check_quantity(text, location)
-    if LIGHT_SOURCES.search(text):
-        refuse_quantity("the file states measurements of a display, not reflectance", location)
     if not any(wavelength(cell.text) is not None for cell in rows[0]):
         problem = "the CGATS file has no spectral fields"
         raise location.at(rows[0][0].line).error(problem, "export the spectra with the colours")
     keywords = {match[1]: match[2] or match[3] or "" for line in preamble if (match := KEYWORD.match(line))}
-    found = _with_exact_wavelengths(read_grid(rows, document.path), keywords)
+    found = _with_exact_wavelengths(read_grid(rows, location), keywords)
     scale = None
     if "SPECTRAL_NORM" in keywords:  # of ArgyllCMS: the value of a perfect reflector
         norm = parse_number(keywords["SPECTRAL_NORM"], location, "SPECTRAL_NORM")
         scale = check_scale(norm, "SPECTRAL_NORM", location)
-    return replace(found, scale=scale, header=Header(" ".join(keywords.get("DESCRIPTOR", "").split())))
+    text = "\n".join(preamble)
+    refusal = found.refusal or find_quantity(text, location)
+    if refusal is None and LIGHT_SOURCES.search(text):
+        refusal = wrong_quantity("the file states measurements of a display, not reflectance", location)
+    header = Header(one_line(keywords.get("DESCRIPTOR")))
+    return replace(found, scale=scale, header=header, refusal=refusal)
 
 
 def _parse(document: Document) -> tuple[list[str], list[Row]]:
@@ -70,8 +66,8 @@ def _parse(document: Document) -> tuple[list[str], list[Row]]:
         elif not sets:
             preamble.append(text)
     if not fields or not sets:
-        location = SourceLocation(document.path, len(document.lines))
-        raise location.error("a CGATS file must have fields and sets of data", "export the file again")
+        location = document.location.at(len(document.lines))
+        raise location.error("a CGATS file must have fields and sets of data", EXPORT)
     return preamble, [tuple(fields), *sets]
 
 

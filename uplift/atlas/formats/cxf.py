@@ -5,12 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from uplift.atlas.atlas import Header, SkippedEntry
-from uplift.atlas.document import Document, SourceLocation
-from uplift.atlas.formats.xml import check_xml, root_name
+from uplift.atlas.document import Document, one_line
 from uplift.atlas.measurements import Measurements, Spectrum, not_used_note, parsed_by
-from uplift.common.errors import AtlasError, needs_extra
 
-NAMESPACE = "http://colorexchangeformat.com/CxF3-core"
 INCREMENT = 10
 """Step in nm of spectra whose colour specification states none."""
 REFLECTANCE = "ReflectanceSpectrum"
@@ -21,17 +18,11 @@ OTHER_SPECTRA = {
 }
 
 
-def is_cxf(document: Document) -> bool:
-    """Whether the first element is that of CxF3."""
-    return root_name(document) == f"{NAMESPACE} CxF"
-
-
 def read(document: Document) -> Measurements:
     """Read the reflectance spectra of the objects of a CxF3 file; objects with other spectra only are skipped."""
-    check_xml(document)
-    with needs_extra("io", "CxF files", AtlasError):
+    document.check_xml()
+    with parsed_by("colour-cxf", "CxF files", document):
         from colour_cxf import cxf3
-    with parsed_by("colour-cxf", "CxF3", document.path):
         from xsdata.formats.dataclass.parsers import XmlParser
         from xsdata.formats.dataclass.parsers.config import ParserConfig
 
@@ -39,8 +30,8 @@ def read(document: Document) -> Measurements:
         lenient = ParserConfig(fail_on_unknown_properties=False, fail_on_unknown_attributes=False)
         found = _content(XmlParser(config=lenient).from_bytes(document.data, cxf3.CxF), document.path)
     if not found.spectra and not found.skipped:
-        location, hint = SourceLocation(document.path), "export the spectra with the colours"
-        raise location.error("has no object with a spectrum", hint, code="not-an-atlas")
+        problem, hint = "has no object with a spectrum", "export the spectra with the colours"
+        raise document.location.error(problem, hint, code="not-an-atlas")
     return found
 
 
@@ -61,7 +52,7 @@ def _content(cxf: Any, path: str) -> Measurements:
         if others and not reflectances:
             skipped.append(SkippedEntry(name, f"it is {others[0]}, not reflectance", path))
         colours.update(kind for kind in kinds if kind.startswith("Color"))
-    header = Header(" ".join((information.description or "").split()) if information else "")
+    header = Header(one_line(information.description) if information else "")
     # the schema has values in (−0.1, 3); some programs write percent
     scale = 1.0 if all(-0.1 < value < 3 for spectrum in spectra for value in spectrum.values) else None
     notes = ("layout: an object per spectrum", *not_used_note(sorted(colours)))
@@ -84,5 +75,5 @@ def _spectrum(name: str, choice: Any, ranges: dict[str, tuple[float | None, floa
     start = choice.start_wl if choice.start_wl is not None else stated
     first = 380 if start is None else start
     values = [float(value) for value in choice.value]
-    date = str(choice.measure_date) if choice.measure_date else ""
-    return Spectrum(name, [float(first + step * index) for index in range(len(values))], values, date=date)
+    nm = [float(first + step * index) for index in range(len(values))]
+    return Spectrum(name, nm, values, date=one_line(choice.measure_date))

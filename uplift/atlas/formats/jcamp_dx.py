@@ -5,76 +5,52 @@ from __future__ import annotations
 import contextlib
 import io
 import re
-from typing import Any
 
 import numpy as np
 
-from uplift.atlas.document import Document, SourceLocation, truncate
-from uplift.atlas.measurements import (
-    PERCENT,
-    Measurements,
-    Spectrum,
-    check_quantity,
-    parsed_by,
-    refuse_as_lamp,
-    refuse_quantity,
-)
-from uplift.common.errors import AtlasError, needs_extra
+from uplift.atlas.document import EXPORT, Document, one_line, to_nanometres, truncate
+from uplift.atlas.measurements import PERCENT, Measurements, Spectrum, find_quantity, parsed_by, wrong_quantity
 
 POINTS = re.compile(r"^##\s*NPOINTS\s*=\s*(\S+)", re.IGNORECASE | re.MULTILINE)
 MAX_POINTS = 1_000_000
-TO_NANOMETRES = {"nanometers": 1.0, "nanometres": 1.0, "nm": 1.0, "micrometers": 1e3, "micrometres": 1e3, "um": 1e3}
-"""Factor by the unit of the abscissa, in lower case."""
-WAVE_NUMBER = "1/cm"
-
-
-def is_jcamp(document: Document) -> bool:
-    """Whether the first line with a letter is the title of JCAMP-DX."""
-    first = next((line for line in document.lines if line.strip() and not line.startswith("$$")), "")
-    return re.match(r"\s*##\s*TITLE\s*=", first, re.IGNORECASE) is not None
+REFLECTANCES = ("", "%r", "r", "arbitrary units")
+"""Units of values that may be reflectances without the word."""
 
 
 def read(document: Document) -> Measurements:
     """Read the spectrum of a file, or those of the blocks of a compound file."""
-    location = SourceLocation(document.path)
     for count in POINTS.findall(document.text):
         if not re.fullmatch(r"\d{1,7}(\.0*)?", count) or float(count) > MAX_POINTS:
             problem = f"NPOINTS must be at most {MAX_POINTS:,}, got {truncate(count)}"
-            raise location.error(problem, "export the file again")
-    with needs_extra("io", "JCAMP-DX files", AtlasError):
+            raise document.location.error(problem, EXPORT)
+    with parsed_by("jcamp", "JCAMP-DX files", document), contextlib.redirect_stdout(io.StringIO()) as printed:
         import jcamp
-    with parsed_by("jcamp", "JCAMP-DX", document.path), contextlib.redirect_stdout(io.StringIO()) as printed:
+
         content = jcamp.read(document.text.splitlines())
         blocks = content.get("children") or [content]
     if "failed" in printed.getvalue() or "Mismatch" in printed.getvalue():
-        problem = truncate(printed.getvalue())
-        raise location.error(f"the data contradict their check values: {problem}", "export the file again")
-    found = [_spectrum(block, document) for block in blocks]
-    scales = {scale for _, scale in found}
+        problem = f"the data contradict their check values: {truncate(printed.getvalue())}"
+        raise document.location.error(problem, EXPORT)
+    spectra, scales, refusal, material = list[Spectrum](), set[float | None](), None, ""
+    for block in blocks:
+        name = one_line(block.get("title")) or document.stem
+        location = document.location.at(entry=name)
+        unit = one_line(block.get("yunits")).lower()
+        if "reflect" in unit:
+            material = material or unit
+        else:
+            refusal = refusal or find_quantity(f"{unit} {block.get('data type', '')}", location)
+            if unit not in REFLECTANCES:
+                problem = f"YUNITS must be reflectance, got '{truncate(unit)}'"
+                refusal = refusal or wrong_quantity(problem, location)
+        nm = to_nanometres(block.get("x", ()), one_line(block.get("xunits")).lower(), location)
+        values = np.asarray(block.get("y", ()), dtype=float)
+        spectra.append(Spectrum(name, nm, values, date=str(block.get("date", ""))))
+        scales.add(PERCENT if "%" in unit or "percent" in unit else None)
     return Measurements(
-        tuple(spectrum for spectrum, _ in found),
+        tuple(spectra),
         scale=scales.pop() if len(scales) == 1 else None,
         notes=(f"layout: {len(blocks)} block{'s' * (len(blocks) != 1)}",),
+        material=material,
+        refusal=refusal,
     )
-
-
-def _spectrum(block: dict[str, Any], document: Document) -> tuple[Spectrum, float | None]:
-    """Return the spectrum of a block, and the scale that it states."""
-    name = " ".join(str(block.get("title", "")).split()) or document.stem
-    location = SourceLocation(document.path, entry=name)
-    unit = str(block.get("yunits", "")).strip().lower()
-    if "reflect" in unit:
-        refuse_as_lamp(unit, location)
-    else:
-        check_quantity(f"{unit} {block.get('data type', '')}", location)
-        if unit not in ("", "%r", "r", "arbitrary units"):
-            refuse_quantity(f"YUNITS must be reflectance, got '{truncate(unit)}'", location)
-    length = str(block.get("xunits", "")).strip().lower()
-    if length not in (WAVE_NUMBER, *TO_NANOMETRES):
-        problem = f"XUNITS must be nanometers, micrometers or 1/cm, got '{truncate(length)}'"
-        raise location.error(problem, "export the file with wavelengths in nm")
-    x, y = (np.asarray(block.get(axis, ()), dtype=float) for axis in "xy")
-    with np.errstate(all="ignore"):
-        nm = 1e7 / x if length == WAVE_NUMBER else TO_NANOMETRES[length] * x
-    spectrum = Spectrum(name, nm, y, date=str(block.get("date", "")))
-    return spectrum, PERCENT if "%" in unit or "percent" in unit else None

@@ -7,13 +7,14 @@ import zipfile
 from dataclasses import replace
 from typing import Any
 
-from uplift.atlas.document import Document, SourceLocation
-from uplift.atlas.formats.grid import NO_TABLE, Cell, Row, read_grid, trimmed
+from uplift.atlas.document import Document, one_line
+from uplift.atlas.formats.table import NO_TABLE, Cell, Row, read_grid, trimmed
 from uplift.atlas.measurements import Measurements, parsed_by
 from uplift.common.csv import plain_cell
-from uplift.common.errors import AtlasError, needs_extra
+from uplift.common.errors import AtlasError
 
-ZIP, OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
+OLE = b"\xd0\xcf\x11\xe0"
+"""First bytes of ``.xls``; the other ones are ZIP archives."""
 MAX_CONTENT = 256 << 20
 """Bytes of all files of an archive after decompression."""
 MAX_CELLS = 20_000_000
@@ -21,44 +22,33 @@ CHUNK = 1 << 20
 HINT = "save the sheet as a CSV table"
 
 
-def is_spreadsheet(document: Document) -> bool:
-    """Whether a file is an archive as spreadsheets are."""
-    return document.data.startswith((ZIP, OLE))
-
-
 def read(document: Document) -> Measurements:
     """Read the first sheet that has a table of spectra."""
     _check_content(document)
-    with needs_extra("io", "spreadsheets", AtlasError):
+    with parsed_by("python-calamine", "spreadsheets", document):
         import python_calamine as calamine
-    with parsed_by("python-calamine", "a spreadsheet", document.path):
+
         book = calamine.CalamineWorkbook.from_filelike(io.BytesIO(document.data))
         names = list(book.sheet_names)
-    problem: AtlasError | None = None
+    problem = document.location.error(NO_TABLE, HINT, code="not-an-atlas")
     for name in names:
-        rows = _rows(book, name, document.path)
         try:
-            found = read_grid(rows, document.path) if len(rows) > 1 else None
+            found = read_grid(_rows(book, name, document), document.location)
         except AtlasError as error:
-            if error.code != "not-an-atlas":
+            if error.code != problem.code:
                 raise
             problem = error
-            continue
-        if found is not None:
+        else:
             return replace(found, notes=(f"sheet: {name}", *found.notes))
-    location = SourceLocation(document.path)
-    raise problem or location.error(NO_TABLE, HINT, code="not-an-atlas")
+    raise problem
 
 
-def _rows(book: Any, name: str, path: str) -> list[Row]:
-    with parsed_by("python-calamine", "a spreadsheet", path):
+def _rows(book: Any, name: str, document: Document) -> list[Row]:
+    with parsed_by("python-calamine", "spreadsheets", document):
         sheet = book.get_sheet_by_name(name)
         if sheet.height * sheet.width > MAX_CELLS:
-            raise SourceLocation(path).error(
-                f"a sheet must have at most {MAX_CELLS:,} cells, got {sheet.height} × {sheet.width}",
-                HINT,
-                code="file-unreadable",
-            )
+            problem = f"a sheet must have at most {MAX_CELLS:,} cells, got {sheet.height} × {sheet.width}"
+            raise document.location.error(problem, HINT)
         start = sheet.start[0] if sheet.start else 0
         lines = sheet.to_python(skip_empty_area=True)
     rows = [trimmed(Cell(_text(value), line) for value in values) for line, values in enumerate(lines, start + 1)]
@@ -69,19 +59,18 @@ def _text(value: Any) -> str:
     """Return the text of a cell; numbers with all their digits."""
     if isinstance(value, float):
         return repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
-    return plain_cell(" ".join(str(value).split()))
+    return plain_cell(one_line(value))
 
 
 def _check_content(document: Document) -> None:
     """Raise `AtlasError` for an archive that is damaged, or too large when it is decompressed."""
-    if not document.data.startswith(ZIP):
+    if document.data.startswith(OLE):
         return
-    location = SourceLocation(document.path)
     left = MAX_CONTENT
-    with parsed_by("zipfile", "a spreadsheet", document.path), zipfile.ZipFile(io.BytesIO(document.data)) as archive:
+    with parsed_by("zipfile", "spreadsheets", document), zipfile.ZipFile(io.BytesIO(document.data)) as archive:
         for member in archive.infolist():
             with archive.open(member) as file:
                 while left >= 0 and (chunk := file.read(CHUNK)):  # the size that an archive states may be wrong
                     left -= len(chunk)
     if left < 0:
-        raise location.error(f"its content must not exceed {MAX_CONTENT:,} bytes", HINT, code="file-unreadable")
+        raise document.location.error(f"its content must not exceed {MAX_CONTENT:,} bytes", HINT)

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Plai
 
 from uplift import lookup
 from uplift.atlas import Atlas, on_grid, read_atlas
-from uplift.atlas.shipped import find_atlas_file
+from uplift.atlas.sources import find_atlas_file
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.written_colour import MAX_NUMBER, WrittenColour, is_number, parse_colour

@@ -1,0 +1,250 @@
+"""Where atlases come from and go to: files, the atlases that are installed with uplift, and other libraries."""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import hashlib
+import os
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from uplift.atlas.atlas import Atlas, Entry, Header, Source, merge
+from uplift.atlas.document import SourceLocation, read_document, truncate
+from uplift.atlas.formats import art, read_any
+from uplift.atlas.measurements import MEASURED, Measured
+from uplift.common.arrays import StrPath
+from uplift.common.errors import OptionError, OutputError, UpliftWarning
+from uplift.common.files import write_text
+
+PACKAGE = "uplift_atlases"
+"""Name under which the folder atlases/ of the repository is installed."""
+FORMS = (
+    "pass a mapping of names to distributions with .wavelengths and .values, "
+    "one distribution with .name, or several with .labels"
+)
+
+
+def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
+    """Read atlas files into one atlas. The content of a file determines its format, one of `FORMATS`.
+
+    Parameters
+    ----------
+    *paths : path-like
+        Files, in the order of their entries. Where a file does not exist, a shipped atlas of that name is read, with or
+        without the suffix ``.txt``; see `shipped_atlases`.
+    measured : {"auto", "percent", "fraction"}
+        Scale of the values. ``"auto"`` takes the scale that a file states, or else decides by its values. Measurement
+        archives always state their scale.
+
+    Returns
+    -------
+    Atlas
+
+    Raises
+    ------
+    AtlasError
+        A file cannot be read, or two entries share a name. The error has path, line, entry and hint.
+    OptionError
+        The scale is unknown.
+
+    Warns
+    -----
+    UpliftWarning
+        An entry was skipped (``entry-skipped``), a table was read as percent (``values-in-percent``), or a shipped
+        atlas replaces a missing file (``shipped-atlas``); the name ``macbeth`` without a suffix gives no warning.
+
+    Examples
+    --------
+    >>> import uplift
+    >>> macbeth = uplift.read_atlas("macbeth")
+    >>> macbeth["orange"]
+    Entry('orange', 81 samples, 380–780 nm)
+    """
+    if measured not in MEASURED:
+        problem = f"unknown scale of measured values '{truncate(str(measured))}'"
+        raise OptionError(problem, hint=f"use one of {', '.join(MEASURED)}")
+    found = list(map(find_atlas_file, paths))
+    atlas = merge(read_any(read_document(path), measured) for path in found)
+    for skipped in atlas.skipped:
+        warnings.warn(skipped.warning(), stacklevel=2)
+    return atlas
+
+
+def write_atlas(atlas: Atlas, path: StrPath, header: Header | None = None, *, force: bool = True) -> None:
+    """Write an atlas atomically.
+
+    Parameters
+    ----------
+    atlas : Atlas
+        The entries to write.
+    path : path-like
+        The file. With the suffix ``.csv`` it is a table, otherwise atlas text.
+    header : Header, optional
+        Statements about the archive, by default those of the sources. A table has no header.
+    force : bool, default True
+        Replace an existing file.
+
+    Raises
+    ------
+    OutputError
+        The atlas is empty, the path cannot be written, the file exists and ``force`` is false, or the entries of a
+        table differ in sampling.
+    """
+    from uplift.atlas.formats import table
+
+    if not atlas.entries:
+        problem = "an atlas to write must have entries, got none"
+        raise OutputError(problem, path=path, hint="give an atlas that contains reflectances")
+    if header is None:  # the statements of all sources, each one once
+        stated = {
+            key: dict.fromkeys(getattr(source.header, key) for source in atlas.sources)
+            for key in ("content", "copyright", "licence")
+        }
+        header = Header(**{key: "; ".join(filter(None, texts)) for key, texts in stated.items()})
+    is_table = os.fspath(path).lower().endswith(".csv")
+    write_text(table.text(atlas) if is_table else art.text(atlas, header), path, force=force)
+
+
+def from_distributions(distributions: Any) -> Atlas:
+    """Create an atlas from distributions of colour-science, or from objects with the same attributes.
+
+    Parameters
+    ----------
+    distributions : mapping or object
+        A mapping of names to objects with ``wavelengths`` (N,) in nm and ``values`` (N,) in units of 1; one object with
+        ``labels`` (E,), ``wavelengths`` (N,) and ``values`` (N, E); or one distribution with ``name``,
+        ``wavelengths`` and ``values``.
+
+    Returns
+    -------
+    Atlas
+
+    Raises
+    ------
+    AtlasError
+        An object lacks these attributes, or is not a reflectance in units of 1.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> grey = SimpleNamespace(wavelengths=[380, 780], values=[0.5, 0.5])
+    >>> from_distributions({"grey": grey}).names
+    ('grey',)
+    """
+    named = distributions
+    if not isinstance(distributions, Mapping):
+        named = {getattr(distributions, "name", type(distributions).__name__): distributions}
+    samples: list[tuple[str, Any, Any]] = []
+    for name, each in named.items():
+        try:
+            nm, values = each.wavelengths, each.values
+        except AttributeError:
+            problem = f"'{type(each).__name__}' is not a spectral distribution"
+            raise SourceLocation(entry=str(name)).error(problem, FORMS) from None
+        labels = getattr(each, "labels", None)
+        if labels is None or named is distributions:
+            samples.append((str(name), nm, values))
+        elif np.ndim(values) != 2 or np.shape(values)[1] != len(labels):
+            problem = f"values must have shape (N, {len(labels)}) for {len(labels)} labels, got {np.shape(values)}"
+            raise SourceLocation().error(problem, "give one column of values per label")
+        else:
+            samples += [(str(label), nm, column) for label, column in zip(labels, np.transpose(values), strict=True)]
+    entries = tuple(Entry(*each) for each in samples)
+    digest = hashlib.sha256(art.text(Atlas(entries), Header()).encode()).hexdigest()
+    return Atlas(entries, sources=(Source("distributions", digest),))
+
+
+@dataclass(frozen=True)
+class ShippedAtlas:
+    """An atlas that is installed with uplift, with the statements of its header.
+
+    Parameters
+    ----------
+    name : str
+        Name, valid in place of a path: the file name without its suffix.
+    content : str
+        Description of the measurements, which begins with their number.
+    source : str
+        Copyright of the measurements.
+    licence : str
+        Licence under which they are distributed.
+    path : Path
+        The installed file.
+    digest : str
+        SHA-256 of its bytes, in hexadecimal digits.
+    """
+
+    name: str
+    content: str
+    source: str
+    licence: str
+    path: Path
+    digest: str
+
+    @property
+    def entries(self) -> int:
+        """Number of entries, as ``content`` states it.
+
+        Returns
+        -------
+        int
+        """
+        return int(self.content.split()[0])
+
+
+@functools.cache
+def shipped_atlases() -> tuple[ShippedAtlas, ...]:
+    """Return the atlases that are installed with uplift, by name.
+
+    >>> for atlas in shipped_atlases():
+    ...     if atlas.name == "macbeth":
+    ...         print(atlas.entries, atlas.content)
+    24 24 patches of the Macbeth ColorChecker, measured by Ohta (1997)
+    """
+    found = []
+    for name, path in _shipped_paths().items():
+        document = read_document(path)
+        header = art.read_header(document)
+        found.append(ShippedAtlas(name, header.content, header.copyright, header.licence, path, document.digest))
+    return tuple(found)
+
+
+@functools.cache
+def _shipped_paths() -> dict[str, Path]:
+    """Shipped files by name, in alphabetical order."""
+    try:
+        folder = Path(str(files(PACKAGE)))
+    except ModuleNotFoundError:
+        return {}
+    return {path.stem: path for path in sorted(folder.glob("*.txt"))}
+
+
+def find_atlas_file(path: StrPath, folder: StrPath = "") -> StrPath:
+    """Return the file that a path, relative to ``folder``, or the name of a shipped atlas stands for.
+
+    An existing file takes precedence. Otherwise a path without a folder may name a shipped atlas, with or without the
+    suffix. Warnings refer to the caller of the caller.
+    """
+    name, paths = os.fspath(path), _shipped_paths()
+    file = os.path.join(folder, path)
+    if os.path.lexists(file) and not os.path.isdir(file):
+        return file
+    stem = name.removesuffix(".txt")
+    if stem in paths:
+        if stem != name:
+            problem = f"the file does not exist; the shipped atlas '{stem}' is used"
+            warnings.warn(UpliftWarning(problem, code="shipped-atlas", path=path), stacklevel=3)
+        return paths[stem]
+    near = difflib.get_close_matches(Path(name).stem, paths, n=1, cutoff=0.7)
+    if near and not os.path.lexists(file):
+        problem = "cannot be read: no such file or directory"
+        hint = f"did you mean the shipped atlas '{near[0]}'?"
+        raise SourceLocation(file).error(problem, hint, code="file-not-found")
+    return file
