@@ -111,7 +111,7 @@ def colours_in(data, cell, count=400):
     share[: count // 2] = np.clip(np.round(share[: count // 2] * 1.5 - 0.25, 1), 0, 1 - 1e-12)
     low = data.lattice.position(np.array(cell))
     rgb = data.lattice.nodes[low] + share * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])
-    return rgb[(data.lattice.lowest_corner(rgb) == low).all(axis=1)]
+    return rgb[(data.lattice.cell(rgb)[0] == low).all(axis=1)]
 
 
 def missing(data, required):
@@ -146,7 +146,7 @@ def test_colours_near_a_face_touch_both_cells(small_cube):
     node = lattice.nodes[3]
     touched = cells_touched(lattice, np.array([[node - 1e-8, 0.3, 0.3]]))
     assert {tuple(position) for position in lattice.position(touched)} == {
-        (red, *lattice.lowest_corner(np.array([0.3, 0.3]))) for red in (2, 3)
+        (red, *lattice.cell(np.array([0.3, 0.3]))[0]) for red in (2, 3)
     }
     assert len(cells_touched(lattice, np.array([[node + 1e-3, 0.3, 0.3]]))) == 1
 

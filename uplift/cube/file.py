@@ -225,8 +225,8 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
     _check(data)
     if "points" in arrays:
         data = replace(data, points=_expand(data.points, arrays["points"].astype(np.int64), data.lattice))
-    size = data.lattice.size
-    require(len(data.points) == size, f"there must be {size} points, got {len(data.points)}")
+    size, count = data.lattice.size, data.points.status.size
+    require(count == size, f"there must be {size} points, got {count}")
     return data
 
 

@@ -29,7 +29,7 @@ BLOCK_PIXELS = 1 << 16
 
 @dataclass(frozen=True)
 class Images:
-    """A scene of at least one image; implements `uplift.lattice.SceneLike`. Memory holds the cells of the colours only.
+    """A scene of at least one image; a `SceneLike` of `uplift.build`. Memory holds the cells of the colours only.
 
     ``encoding``, ``out_of_gamut`` and ``space`` are those of `uplift.io.texture.prepare`. Raises `OptionError`.
     """
@@ -81,7 +81,7 @@ class Images:
 
 def cells_touched(lattice: Lattice, rgb: Array) -> Array:
     """Return the numbers (m,) of the cells around linear RGB (n, 3), and of those within rounding error of them."""
-    low, high = lattice.lowest_corner(rgb - MARGIN), lattice.lowest_corner(rgb + MARGIN)
+    (low, _), (high, _) = lattice.cell(rgb - MARGIN), lattice.cell(rgb + MARGIN)
     on_face = (low != high).any(axis=1)
     adjacent = np.where(CORNERS[:, None, :] == 1, high[on_face], low[on_face]).reshape(-1, 3)
     return np.concatenate([lattice.index(low), lattice.index(adjacent)])

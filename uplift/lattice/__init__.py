@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from uplift.lattice.entry_boxes import BoxHits, EntryBoxes, SceneLike
+from uplift.lattice.entry_boxes import BoxHits, EntryBoxes
 from uplift.lattice.lattice import CORNERS, Lattice, weighted_sum
 from uplift.lattice.point_table import ABSENT_VALUES, NO_ENTRY, NOT_FITTED, PointTable, Status
 
@@ -15,7 +15,6 @@ __all__ = [
     "EntryBoxes",
     "Lattice",
     "PointTable",
-    "SceneLike",
     "Status",
     "weighted_sum",
 ]

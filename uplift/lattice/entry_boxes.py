@@ -11,13 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask
-from uplift.common.progress import ProgressCallback
 from uplift.lattice.lattice import Lattice
 from uplift.lattice.point_table import NO_ENTRY
 
@@ -60,8 +58,8 @@ class EntryBoxes:
     @cached_property
     def cells(self) -> tuple[Indices, Indices]:
         """Numbers of the cells that boxes touch, ascending, and the entry of each of these boxes."""
-        low, high = (self.lattice.lowest_corner(face)[:, None] for face in self.faces)
-        cells = self.lattice.lowest_corner(self.rgb)[:, None] + CELL_BLOCK
+        low, high = (self.lattice.cell(face)[0][:, None] for face in self.faces)
+        cells = self.lattice.cell(self.rgb)[0][:, None] + CELL_BLOCK
         touched = ((cells >= low) & (cells <= high)).all(axis=-1) & (self.half_width > 0)[:, None]
         entry, _ = np.nonzero(touched)
         number = self.lattice.index(cells[touched])
@@ -83,21 +81,29 @@ class EntryBoxes:
         """
         requested = cells.reshape(self.lattice.shape)
         required = requested.copy()
-        low = self.lattice.lowest_corner(self.faces[0] - MARGIN)
-        high = self.lattice.lowest_corner(self.faces[1] + MARGIN)
+        low, _ = self.lattice.cell(self.faces[0] - MARGIN)
+        high, _ = self.lattice.cell(self.faces[1] + MARGIN)
         for entry in np.flatnonzero(self.half_width > 0):
             box = tuple(slice(low[entry, axis], high[entry, axis] + 1) for axis in range(3))
             if requested[box].any():
                 required[box] = True
         return self.lattice.corner_points(required.ravel())
 
-    def find(self, rgb: Array) -> BoxHits:
-        """Find which of the linear RGB (n, 3) lie in boxes."""
-        return self.find_in_cells(rgb, self.lattice.index(self.lattice.lowest_corner(rgb)))
-
-    def find_in_cells(self, rgb: Array, cell: Indices) -> BoxHits:
-        """Do the same as `find` for colours whose cells (n,) are known."""
-        rows, entry = self._boxes(rgb, cell)
+    def find(self, rgb: Array, cell: Indices | None = None) -> BoxHits:
+        """Find which of the linear RGB (n, 3) lie in boxes. Their ``cell`` (n,) is computed if it is not known."""
+        numbers, entries = self.cells
+        cell = self.lattice.index(self.lattice.cell(rgb)[0]) if cell is None else cell
+        # Boxes that touch the cell of a colour are tested in turn.
+        rows = np.flatnonzero(self.touched_cells[cell])
+        entry = np.full(len(rows), NO_ENTRY)
+        first, last = (np.searchsorted(numbers, cell[rows], side=side) for side in ("left", "right"))
+        for turn in range(int((last - first).max(initial=0))):
+            near = np.flatnonzero(first + turn < last)
+            candidate, colour = entries[first[near] + turn], rgb[rows[near]]
+            low, high = (face[candidate] for face in self.faces)
+            inside = ((colour >= low) & (colour <= high)).all(axis=1)
+            entry[near[inside]] = candidate[inside]
+        rows, entry = rows[entry != NO_ENTRY], entry[entry != NO_ENTRY]
         centre = self.rgb[entry]
         ray = rgb[rows] - centre
         low, high = (face[entry] for face in self.faces)
@@ -107,30 +113,3 @@ class EntryBoxes:
         exit_rgb, moved = rgb[rows], weight > 0
         exit_rgb[moved] = np.clip(centre[moved] + ray[moved] / weight[moved, None], 0, 1)
         return BoxHits(rows, entry, weight, exit_rgb)
-
-    def _boxes(self, rgb: Array, cell: Indices) -> tuple[Indices, Indices]:
-        """Rows (k,) of the colours (n, 3) that lie in a box, and the entries (k,) of the boxes."""
-        near = np.flatnonzero(self.touched_cells[cell])
-        found = np.full(len(near), NO_ENTRY)
-        cells, entries = self.cells
-        first, last = (np.searchsorted(cells, cell[near], side=side) for side in ("left", "right"))
-        low, high = self.faces
-        for turn in range(int((last - first).max(initial=0))):
-            rows = np.flatnonzero(first + turn < last)
-            candidate, colour = entries[first[rows] + turn], rgb[near[rows]]
-            inside = ((colour >= low[candidate]) & (colour <= high[candidate])).all(axis=1)
-            found[rows[inside]] = candidate[inside]
-        hit = found != NO_ENTRY
-        return near[hit], found[hit]
-
-
-class SceneLike(Protocol):
-    """Colours that restrict a build to the nodes that they require."""
-
-    def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
-        """Return the mask (dim³,) of the required nodes, and report events of stage ``"images"``."""
-        ...
-
-    def describe(self) -> list[dict[str, Any]]:
-        """Describe the sources of the colours for the provenance of the cube, in JSON values."""
-        ...

@@ -81,16 +81,11 @@ class Lattice:
         """Linear RGB (n, 3) at fractional positions (n, 3), of the edge for those outside; inverse of `to_steps`."""
         return np.interp(steps, np.arange(self.dim), self.nodes)
 
-    def lowest_corner(self, rgb: Array) -> Indices:
-        """Positions (n, 3), 0 to dim − 2, of the lowest corners of the cells around linear RGB (n, 3).
-
-        Colours outside the lattice belong to the nearest cell.
-        """
-        return np.clip(np.searchsorted(self.nodes, rgb, side="right") - 1, 0, self.dim - 2)
-
     def cell(self, rgb: Array) -> tuple[Indices, Array]:
-        """Find the cells around linear RGB (n, 3): `lowest_corner`, and fractions (n, 3) of the way across the cell."""
-        low = self.lowest_corner(rgb)
+        """Find the cells around linear RGB (n, 3): positions (n, 3), 0 to dim − 2, of their lowest corners,
+        and fractions (n, 3) of the way across them. Colours outside the lattice belong to the nearest cell.
+        """
+        low = np.clip(np.searchsorted(self.nodes, rgb, side="right") - 1, 0, self.dim - 2)
         start = self.nodes[low]
         return low, (rgb - start) / (self.nodes[low + 1] - start)
 

@@ -59,11 +59,8 @@ class PointTable:
     round: NDArray[np.int16] | None = None
     standard_error: NDArray[np.float32] | None = None
 
-    def __len__(self) -> int:
-        return len(self.status)
-
     def __repr__(self) -> str:
-        return f"PointTable({len(self)} points, {self.coefficients.shape[-1]} coefficients each)"
+        return f"PointTable({len(self.status)} points, {self.coefficients.shape[-1]} coefficients each)"
 
     @cached_property
     def present(self) -> Mask:
@@ -72,7 +69,7 @@ class PointTable:
 
     def restricted_to(self, points: Indices) -> PointTable:
         """Return the table with all nodes but some (k,) absent."""
-        absent = np.ones(len(self), dtype=bool)
+        absent = np.ones(len(self.status), dtype=bool)
         absent[points] = False
         columns = {key.name: getattr(self, key.name) for key in fields(self)}
         for name, column in columns.items():

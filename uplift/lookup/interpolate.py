@@ -80,7 +80,7 @@ def around(data: CubeData, rgb: Array) -> Nodes:
     # The cell of each colour: its lowest corner and the fractions along the axes.
     low, fraction = lattice.cell(rgb)
     # In an entry box the lattice is evaluated on the face instead, in the cell in which the ray leaves the box.
-    hits = data.entry_boxes.find_in_cells(rgb, lattice.index(low))
+    hits = data.entry_boxes.find(rgb, lattice.index(low))
     low[hits.rows], fraction[hits.rows] = lattice.cell(hits.exit_rgb)
     if data.complete_cells is not None:
         require_covered(data.complete_cells[lattice.index(low)], rgb)
@@ -91,9 +91,9 @@ def around(data: CubeData, rgb: Array) -> Nodes:
 def cells(data: CubeData, rgb: Array) -> Indices:
     """Return the numbers (n,) of the cells in which the lattice is evaluated for linear RGB (n, 3) in [0, 1]."""
     lattice = data.lattice
-    low = lattice.lowest_corner(rgb)
-    hits = data.entry_boxes.find_in_cells(rgb, lattice.index(low))
-    low[hits.rows] = lattice.lowest_corner(hits.exit_rgb)
+    low = lattice.cell(rgb)[0]
+    hits = data.entry_boxes.find(rgb, lattice.index(low))
+    low[hits.rows] = lattice.cell(hits.exit_rgb)[0]
     return lattice.index(low)
 
 

@@ -6,14 +6,15 @@ import os
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
 
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
-from uplift.common.arrays import StrPath
+from uplift.colorimetry.sensor import Sensor
+from uplift.common.arrays import Mask, StrPath
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.threads import single_threaded_blas
 from uplift.common.version import VERSION
@@ -26,7 +27,7 @@ from uplift.fit.prior import fit_prior
 from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.seeds import FULL_ENTRY, InitialGuess, half_widths, learnt_blend, seed
 from uplift.fit.store import store
-from uplift.lattice import EntryBoxes, Lattice, SceneLike
+from uplift.lattice import EntryBoxes, Lattice
 from uplift.lookup import Cube
 from uplift.models.moments import MAX_COUNT
 from uplift.pipeline import entries as spectra
@@ -37,6 +38,18 @@ from uplift.pipeline.problem import choose_dim, problem_of
 if TYPE_CHECKING:
     from uplift.fit.optimistix_solvers import Solver
     from uplift.pipeline.look import LooksLike
+
+
+class SceneLike(Protocol):
+    """Colours that restrict a build to the nodes that they require."""
+
+    def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
+        """Return the mask (dim³,) of the required nodes, and report events of stage ``"images"``."""
+        ...
+
+    def describe(self) -> list[dict[str, Any]]:
+        """Describe the sources of the colours for the provenance of the cube, in JSON values."""
+        ...
 
 
 def build(
