@@ -80,7 +80,7 @@ def check_plan(folder: Path, case: Case) -> CheckedPlan:
     seconds = _cpu() - begin
     plan = json.loads((folder / f"{stem}.plan.json").read_text(encoding="utf-8"))
     print(f"{stem}: planned in {seconds:.0f} s of CPU time", file=sys.stderr)
-    build, _, texture = plan["lines"]
+    build, texture = plan["lines"]
     _run(folder, f"{build} --force")
     _run(folder, f"{texture} --force")
     reference = _reference(folder, case)

@@ -19,17 +19,16 @@ from uplift.scene.quadrature import QuadratureRule, UndefinedRule, gauss_rule
 from uplift.scene.wavelengths import METHODS, ColourErrors, choose, grid, make_setup
 from uplift.scene.wavelengths.meyer import (
     POINTS,
+    XYZ,
     Allocation,
     ChannelRules,
     ChannelSpace,
-    OpponentSpace,
     allocations,
     channel_functions,
     cone_space,
     four_wavelength_rule,
     opponent_space,
     quadrature_rules,
-    xyz_space,
 )
 from uplift.scene.wavelengths.sampling import RenderSetup, evaluate
 from uplift.viz.figure import GREY, INK, STYLE, new_figure, style_axes, write_png
@@ -146,23 +145,23 @@ STEPS = {"100 steps of 3.9 nm": POINTS, "1 nm": np.arange(380.0, 771.0), "5 nm":
 Row = dict[str, Any]
 
 
-def compare_meyer(setup: RenderSetup, opponent: OpponentSpace) -> dict[str, Any]:
+def compare_meyer(setup: RenderSetup, opponent: ChannelSpace) -> dict[str, Any]:
     """Recompute the matrices, tables 1a and 1b, and table 2."""
-    rules = quadrature_rules(opponent.space, setup.wavelengths, setup.cmfs)
+    rules = quadrature_rules(opponent, setup.wavelengths, setup.cmfs)
     factor = weight_factor(rules)
     return {
         "opponent": matrices(setup, opponent),
-        "summation": {name: summation(setup, opponent.space, points) for name, points in STEPS.items()},
+        "summation": {name: summation(setup, opponent, points) for name, points in STEPS.items()},
         "weight_factor": factor,
         "nodes": nodes(rules),
         "weights": weights(rules, factor),
-        "four": four_wavelengths(setup, opponent.space, rules, factor),
+        "four": four_wavelengths(setup, opponent, rules, factor),
     }
 
 
-def matrices(setup: RenderSetup, opponent: OpponentSpace) -> list[Row]:
+def matrices(setup: RenderSetup, opponent: ChannelSpace) -> list[Row]:
     """Return each channel as a sum of X, Y and Z."""
-    spaces = {"SML": cone_space(setup.wavelengths, setup.cmfs), "AC1C2": opponent.space}
+    spaces = {"SML": cone_space(setup.wavelengths, setup.cmfs), "AC1C2": opponent}
     rows = []
     for row in read_reference("meyer1988_matrices.csv"):
         space = spaces[row["space"]]
@@ -456,7 +455,7 @@ def main() -> None:
     checker = make_setup(on_grid(uplift.read_atlas(MACBETH), grid()), ["C"])
     opponent = opponent_space(checker.wavelengths, checker.cmfs)
     PICTURES.mkdir(exist_ok=True)
-    spaces = (opponent.space, cone_space(checker.wavelengths, checker.cmfs), xyz_space())
+    spaces = (opponent, cone_space(checker.wavelengths, checker.cmfs), XYZ)
     trials = [run_trials(checker, space) for space in spaces]
     figure_6(trials, PICTURES / "figure-6.png")
     figure_7(trials[0], PICTURES / "figure-7.png")

@@ -91,9 +91,6 @@ def test_commands_are_accepted_by_the_command_line(planned, tmp_path):
     assert cube_name(path) == "my plan.uplift"
     for line in commands(plan, path):
         parse(line)
-    words = shlex.split(commands(plan, path)[1])
-    assert words[words.index("--dim") + 1] == str(plan.options["dim"])
-    assert words[words.index("--coefficients") + 1] == str(plan.options["coefficients"])
 
 
 def test_options_of_candidates_are_accepted_by_the_command_line(planned):

@@ -14,7 +14,8 @@ from uplift.common.errors import OptionError, UnknownNameError
 from uplift.scene.quadrature import UndefinedRule
 from uplift.scene.wavelengths import choose, choose_orders, grid, make_setup
 from uplift.scene.wavelengths.meyer import (
-    OpponentSpace,
+    XYZ,
+    ChannelSpace,
     allocations,
     channel_functions,
     combine_rules,
@@ -23,7 +24,6 @@ from uplift.scene.wavelengths.meyer import (
     meyer,
     opponent_space,
     quadrature_rules,
-    xyz_space,
 )
 from uplift.scene.wavelengths.sampling import RenderSetup, balanced, evaluate
 
@@ -39,7 +39,7 @@ def cmfs() -> Array:
 
 
 @pytest.fixture(scope="module")
-def opponent(cmfs: Array) -> OpponentSpace:
+def opponent(cmfs: Array) -> ChannelSpace:
     return opponent_space(grid(), cmfs)
 
 
@@ -48,25 +48,25 @@ def setting_c(checker: Array) -> RenderSetup:
     return make_setup(checker, ["C"])
 
 
-def test_matrices_equal_the_printed_ones(cmfs: Array, opponent: OpponentSpace) -> None:
+def test_matrices_equal_the_printed_ones(cmfs: Array, opponent: ChannelSpace) -> None:
     np.testing.assert_allclose(cone_space(grid(), cmfs).matrix, _matrix("SML"), atol=1.5e-4)
-    np.testing.assert_allclose(opponent.space.matrix, _matrix("AC1C2"), atol=1.5e-4)
+    np.testing.assert_allclose(opponent.matrix, _matrix("AC1C2"), atol=1.5e-4)
 
 
-def test_eigenvalues_equal_the_printed_ones(opponent: OpponentSpace) -> None:
+def test_eigenvalues_equal_the_printed_ones(opponent: ChannelSpace) -> None:
     printed = [float(row["eigenvalue"]) for row in read_reference("meyer1988_matrices.csv") if row["eigenvalue"]]
     np.testing.assert_allclose(opponent.eigenvalues, printed, rtol=3e-3)
 
 
-def test_opponent_channels_are_uncorrelated(cmfs: Array, opponent: OpponentSpace) -> None:
+def test_opponent_channels_are_uncorrelated(cmfs: Array, opponent: ChannelSpace) -> None:
     """Karhunen–Loève channels are orthogonal, and scaling each channel keeps them so."""
-    channels = cmfs @ opponent.space.matrix.T
+    channels = cmfs @ opponent.matrix.T
     gram = channels.T @ channels
     assert np.abs(gram - np.diag(np.diag(gram))).max() < 1e-9 * gram.max()
 
 
-def test_rules_equal_tables_1a_and_1b(cmfs: Array, opponent: OpponentSpace) -> None:
-    rules = quadrature_rules(opponent.space, grid(), cmfs)
+def test_rules_equal_tables_1a_and_1b(cmfs: Array, opponent: ChannelSpace) -> None:
+    rules = quadrature_rules(opponent, grid(), cmfs)
     printed = read_reference("meyer1988_table1.csv")
     pairs, undefined = [], []
     for channel, orders in zip(CHANNELS, rules, strict=True):
@@ -85,9 +85,9 @@ def test_rules_equal_tables_1a_and_1b(cmfs: Array, opponent: OpponentSpace) -> N
     np.testing.assert_allclose(factor * weights, as_printed, atol=4e-4)
 
 
-def test_four_wavelength_rule_equals_table_2(cmfs: Array, opponent: OpponentSpace, setting_c: RenderSetup) -> None:
-    rules = quadrature_rules(opponent.space, grid(), cmfs)
-    shared = four_wavelength_rule(rules, channel_functions(opponent.space, grid(), cmfs))
+def test_four_wavelength_rule_equals_table_2(cmfs: Array, opponent: ChannelSpace, setting_c: RenderSetup) -> None:
+    rules = quadrature_rules(opponent, grid(), cmfs)
+    shared = four_wavelength_rule(rules, channel_functions(opponent, grid(), cmfs))
     table = [row for row in read_reference("meyer1988_table2.csv") if row["row"] == "2"]
     nodes = np.concatenate([rule.nodes for rule in shared])
     weights = np.concatenate([rule.weights for rule in shared])
@@ -97,28 +97,28 @@ def test_four_wavelength_rule_equals_table_2(cmfs: Array, opponent: OpponentSpac
     # Our ColorChecker is another measurement than the paper's.
     for allocation, row in ((shared, "2"), ((rules[0][3], rules[1][2], rules[2][1]), "1")):
         expected = next(float(r["error"]) for r in read_reference("meyer1988_table2.csv") if r["row"] == row)
-        assert allocation_error(setting_c, opponent.space, allocation) == pytest.approx(expected, rel=0.03)
+        assert allocation_error(setting_c, opponent, allocation) == pytest.approx(expected, rel=0.03)
 
 
 def test_figure_6_opponent_space_needs_the_fewest_wavelengths(
-    cmfs: Array, opponent: OpponentSpace, setting_c: RenderSetup
+    cmfs: Array, opponent: ChannelSpace, setting_c: RenderSetup
 ) -> None:
     """Averaged over all allocations of a total, as in the paper."""
-    spaces = (opponent.space, cone_space(grid(), cmfs), xyz_space())
+    spaces = (opponent, cone_space(grid(), cmfs), XYZ)
     curves = [dict(zip(*run_trials(setting_c, space).by_total, strict=True)) for space in spaces]
     for total in range(4, 31):
         assert curves[0][total] < min(curves[1][total], curves[2][total]), total
 
 
 @pytest.mark.parametrize("count", [4, 5, 12])
-def test_meyer_takes_the_best_allocation(smooth: RenderSetup, count: int, opponent: OpponentSpace, cmfs: Array) -> None:
+def test_meyer_takes_the_best_allocation(smooth: RenderSetup, count: int, opponent: ChannelSpace, cmfs: Array) -> None:
     chosen = meyer(smooth, count)
     assert len(chosen) == count
     np.testing.assert_allclose((chosen.powers @ chosen.to_xyz)[:, 1], 1, rtol=1e-12)
     reached = evaluate(smooth, chosen).mean
-    for allocation in allocations(quadrature_rules(opponent.space, grid(), cmfs), count):
+    for allocation in allocations(quadrature_rules(opponent, grid(), cmfs), count):
         assert sum(map(len, allocation)) == count
-        assert evaluate(smooth, balanced(combine_rules(smooth, opponent.space, allocation))).mean >= reached
+        assert evaluate(smooth, balanced(combine_rules(smooth, opponent, allocation))).mean >= reached
 
 
 def test_given_orders_have_the_wavelengths_of_the_paper(setting_c: RenderSetup) -> None:

@@ -152,7 +152,7 @@ class Trial:
     """A candidate and its measured error: that of the chain up to this decision, with all earlier ones applied.
 
     Candidates are ordered by ``cost``. ``cli_args`` are the options of the command line that select the candidate,
-    ``choice`` is the candidate in JSON values.
+    ``choice`` is the candidate in JSON values, ``result`` the object that it stands for, if there is one.
     """
 
     name: str
@@ -161,6 +161,7 @@ class Trial:
     cli_args: str
     choice: Mapping[str, Any]
     error: ErrorSummary
+    result: Any = None
 
 
 @dataclass(frozen=True)

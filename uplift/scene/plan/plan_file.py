@@ -25,7 +25,7 @@ from uplift.lookup import Cube
 from uplift.pipeline.build import build
 from uplift.pipeline.options import Options, recorded_options
 from uplift.scene.plan.decisions import wavelength_args
-from uplift.scene.plan.evaluation import Decision, ErrorSummary
+from uplift.scene.plan.evaluation import Decision
 from uplift.scene.plan.planning import Plan
 from uplift.scene.plan.scene_file import SceneFile
 
@@ -66,8 +66,10 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
             "powers": dict(zip(plan.sampling.lights, plan.sampling.powers.tolist(), strict=True)),
         },
         "error": {
-            "predicted": _error_json(plan.predicted),
-            "confirmed": _error_json(plan.confirmed),
+            **{
+                name: {**asdict(error.worst), "parts": [asdict(part) for part in error.parts]}
+                for name, error in (("predicted", plan.predicted), ("confirmed", plan.confirmed))
+            },
             "within": plan.within_tolerance,
             "expected_of_measurements": plan.expected_error,
         },
@@ -89,10 +91,6 @@ def _sources(paths: Iterable[Path], plan: Path) -> list[dict[str, str]]:
     ]
 
 
-def _error_json(error: ErrorSummary) -> dict[str, Any]:
-    return {**asdict(error.worst), "parts": [asdict(part) for part in error.parts]}
-
-
 def _decision_json(decision: Decision) -> dict[str, Any]:
     trials = [
         {
@@ -105,15 +103,8 @@ def _decision_json(decision: Decision) -> dict[str, Any]:
         }
         for trial in decision.trials
     ]
-    return {
-        "key": decision.key,
-        "title": decision.title,
-        "unit": decision.unit,
-        "limit": decision.limit,
-        "trials": trials,
-        "taken": decision.selected,
-        "kept": decision.within_limit,
-    }
+    header = {name: getattr(decision, name) for name in ("key", "title", "unit", "limit")}
+    return {**header, "trials": trials, "taken": decision.selected, "kept": decision.within_limit}
 
 
 def cube_name(plan_path: StrPath) -> str:
@@ -122,38 +113,16 @@ def cube_name(plan_path: StrPath) -> str:
     return f"{name.removesuffix(SUFFIX) if name.endswith(SUFFIX) else Path(name).stem}.uplift"
 
 
-def commands(plan: Plan, path: Path) -> tuple[str, str, str]:
-    """Command lines for a plan at ``path``: its build, the same build without the plan file, and all its textures."""
-    scene, options, storage = plan.scene, plan.options, plan.storage
-    encoding = [] if scene.encoding == SceneFile.encoding else ["--encoding", scene.encoding]
-
-    build = [*_repeat("--atlas", scene.atlases), "--dim", options["dim"], "--axis", options["axis"]]
-    build += ["--coefficients", options["coefficients"], *_repeat("--light", options["lights"])]
-    for field in fields(Options):
-        if field.name in ("space", "illuminant", "observer") and options[field.name] != field.default:
-            build += [f"--{field.name}", options[field.name]]
-    if plan.final_build.is_sparse:
-        build += [*_repeat("--scene", scene.textures), *encoding]
-
+def commands(plan: Plan, path: Path) -> tuple[str, str]:
+    """Command lines for a plan at ``path``: its build, and all its textures."""
+    scene, storage = plan.scene, plan.storage
     target = f"{scene.textures[0].stem}-uplifted.exr" if len(scene.textures) == 1 else "uplifted"
-    texture = [*scene.textures, "-o", target, "--cube", cube_name(path), *storage.cli_args.split()]
+    words = [*map(str, scene.textures), "-o", target, "--cube", cube_name(path), *storage.cli_args.split()]
     if storage.form == Spectrum.name:
-        texture += wavelength_args(plan.sampling.wavelengths).split()
-    return (
-        _join("uplift build --plan", [path]),
-        _join("uplift build", [*build, "-o", cube_name(path)]),
-        _join("uplift texture", [*texture, *encoding]),
-    )
-
-
-def _repeat(option: str, values: Iterable[object]) -> list[object]:
-    """Words that give an option once for each value."""
-    return [word for value in values for word in (option, value)]
-
-
-def _join(command: str, words: Iterable[object]) -> str:
-    """Command line of a command and its words, quoted for a shell."""
-    return f"{command} {shlex.join(map(str, words))}"
+        words += wavelength_args(plan.sampling.wavelengths).split()
+    if scene.encoding != SceneFile.encoding:
+        words += ["--encoding", scene.encoding]
+    return f"uplift build --plan {shlex.quote(str(path))}", f"uplift texture {shlex.join(words)}"
 
 
 @dataclass(frozen=True)

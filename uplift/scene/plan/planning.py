@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,25 +20,29 @@ from uplift.pipeline.build import build
 from uplift.scene.plan.context import PlanContext, SearchGrid, prepare_context, quiet_warnings
 from uplift.scene.plan.decisions import (
     Storage,
-    choose_coefficients,
-    choose_lattice,
-    choose_representation,
-    choose_storage,
-    choose_wavelengths,
+    coefficient_trials,
+    lattice_trials,
+    representation_trials,
+    storage_trials,
+    wavelength_trials,
 )
-from uplift.scene.plan.evaluation import Decision, ErrorSummary, EvaluationSet, Preview, make_previews
+from uplift.scene.plan.evaluation import Decision, ErrorSummary, Preview, Trial, decide, make_previews
 from uplift.scene.plan.scene_file import SceneFile
 from uplift.scene.wavelengths import Sampling
 from uplift.viz.format import format_error
 
-BUDGET = {"coefficients": 0.4, "lattice": 0.55, "wavelengths": 0.9, "storage": 1.0, "representation": 0.9}
-"""Share of the tolerance that the chain may use up to each decision. What one does not use, the next may.
+DECISIONS = {
+    "coefficients": ("Coefficients per spectrum", "coefficients", 0.4),
+    "lattice": ("Lattice", "lattice points that the textures need", 0.55),
+    "wavelengths": ("Wavelengths", "wavelengths", 0.9),
+    "storage": ("Texture pixel", "bytes per pixel", 1.0),
+    "representation": ("Alternative representation", "floats per surface", 0.9),
+}
+"""Title, unit of the cost, and share of the tolerance that the chain may use up to each decision.
 
 Errors of independent origin add up like their squares. That leaves 0.4, 0.38, 0.71 and 0.44 of the tolerance to each
 decision alone: most to the wavelengths, as every ray pays for them. A representation takes their place.
 """
-
-
 MIN_SAVING = 1e6
 """Bytes that a sparse cube must save, as it cannot answer other colours."""
 
@@ -148,25 +152,38 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
             path=scene.path,
             hint=f"set tolerance = {np.ceil(worst.quantile * 110) / 100:g} or more",
         )
-    limits = {key: share * scene.tolerance for key, share in BUDGET.items()}
 
-    coefficients = choose_coefficients(context, tests, limits["coefficients"])
+    def decided(key: str, trials: Iterable[Trial]) -> Decision:
+        title, unit, share = DECISIONS[key]
+        return decide(key, title, unit, share * scene.tolerance, trials)
+
+    coefficients = decided("coefficients", coefficient_trials(context, tests))
     count = int(coefficients.trial.choice["coefficients"])
-    lattice = choose_lattice(context, tests, limits["lattice"], count)
+    lattice = decided("lattice", lattice_trials(context, tests, count))
     options = {**context.options, **coefficients.trial.choice, **lattice.trial.choice}
     cube = context.cube(tests.rgb, **options)
-    wavelengths, sampling = choose_wavelengths(context, tests, limits["wavelengths"], cube)
-    pixel = choose_storage(context, tests, limits["storage"], cube, sampling)
-    storage = Storage(pixel.trial.choice["as"], pixel.trial.choice["depth"])
-
+    wavelengths = decided("wavelengths", wavelength_trials(context, tests, cube))
+    sampling: Sampling = wavelengths.trial.result
+    pixel = decided("storage", storage_trials(context, tests, cube, sampling))
+    storage: Storage = pixel.trial.result
     decisions = [coefficients, lattice, wavelengths, pixel]
     if scene.observer == DEFAULT_OBSERVER:  # the only one that representations support
-        decisions.append(choose_representation(context, tests, limits["representation"], cube))
+        limit = DECISIONS["representation"][-1] * scene.tolerance
+        decisions.append(decided("representation", representation_trials(context, tests, limit, cube)))
 
     progress(Progress("final build", 0, 1))
     final_build = build_final(context, options)
     progress(Progress("verification", 0, 1))
-    confirmed, previews = _confirm(context, final_build, options, sampling, storage)
+    # The chain on the second sample of pixels.
+    confirming, _ = context.evaluation_set(context.colours.confirming)
+    nm, planned = sampling.wavelengths, final_build.cube
+    spectra = [storage.decoded_reflectance(planned, confirming.groups[0].rgb, nm)]
+    if len(context.materials):  # a sparse cube need not have points for the colours of materials
+        of_materials = context.cube(context.materials, **options)
+        spectra.append(storage.decoded_reflectance(of_materials, context.materials, nm))
+    xyz = sampling.xyz(np.concatenate(spectra))
+    textures = tests.groups[0]
+    expected_error = planned.standard_error(textures.rgb)
     return Plan(
         scene=scene,
         decisions=tuple(decisions),
@@ -175,54 +192,30 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         storage=storage,
         final_build=final_build,
         predicted=pixel.trial.error,
-        confirmed=confirmed,
-        expected_error=_expected_error(final_build, tests),
-        previews=previews,
+        confirmed=confirming.error_of_xyz(xyz),
+        expected_error=None if expected_error is None else float(expected_error @ textures.weights),
+        previews=make_previews(confirming, xyz, scene.observer),
     )
 
 
 def build_final(context: PlanContext, options: Mapping[str, Any]) -> FinalBuild:
     """Build the cube for the textures, or with all cells unless that saves enough, with the warnings of `build`."""
     scene = context.scene
-    cube, seconds = _timed_build(context, options, Images(scene.textures, scene.encoding))
-    sparse_size = _file_size(cube)
+    cube, seconds, sparse_size = _build(context, options, Images(scene.textures, scene.encoding))
     full_size = sparse_size * cube.data.lattice.size / int(cube.data.points.present.sum())
     if full_size - sparse_size >= MIN_SAVING:
         return FinalBuild(cube, sparse_size, seconds, full_size, sparse_size)
     with quiet_warnings():  # the sparse build has issued all of them
-        cube, seconds = _timed_build(context, options)
-    size = _file_size(cube)
+        cube, seconds, size = _build(context, options)
     return FinalBuild(cube, size, seconds, size, sparse_size)
 
 
-def _timed_build(context: PlanContext, options: Mapping[str, Any], scene: Images | None = None) -> tuple[Cube, float]:
+def _build(context: PlanContext, options: Mapping[str, Any], scene: Images | None = None) -> tuple[Cube, float, int]:
+    """Build a cube; also return the CPU time in seconds, and the bytes of its file."""
     begin = time.process_time()
     cube = build(context.atlas, scene=scene, **options)
-    return cube, time.process_time() - begin
-
-
-def _file_size(cube: Cube) -> int:
+    seconds = time.process_time() - begin
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.uplift"
         cube.save(path)
-        return path.stat().st_size
-
-
-def _confirm(
-    context: PlanContext, final_build: FinalBuild, options: Mapping[str, Any], sampling: Sampling, storage: Storage
-) -> tuple[ErrorSummary, tuple[Preview, ...]]:
-    """Error and previews of the final cube on the second sample of pixels."""
-    tests, _ = context.evaluation_set(context.colours.confirming)
-    wavelengths = sampling.wavelengths
-    spectra = [storage.decoded_reflectance(final_build.cube, tests.groups[0].rgb, wavelengths)]
-    if len(context.materials):  # a sparse cube need not have points for the colours of materials
-        cube = context.cube(context.materials, **options)
-        spectra.append(storage.decoded_reflectance(cube, context.materials, wavelengths))
-    xyz = sampling.xyz(np.concatenate(spectra))
-    return tests.error_of_xyz(xyz), make_previews(tests, xyz, context.scene.observer)
-
-
-def _expected_error(final_build: FinalBuild, tests: EvaluationSet) -> float | None:
-    textures = tests.groups[0]
-    errors = final_build.cube.standard_error(textures.rgb)
-    return None if errors is None else float(errors @ textures.weights)
+        return cube, seconds, path.stat().st_size

@@ -96,11 +96,32 @@ def choose(
         raise unknown_name(method, METHODS, "method")
     if measure not in MEASURES:
         raise unknown_name(measure, MEASURES, "measure")
-    if count is not None and target is None:
-        return _with_count(setup, method, count)
-    if target is not None and count is None:
-        return _with_target(setup, method, target, measure)
-    raise OptionError("exactly one of count and target is required", hint="give one of them")
+    if (count is None) == (target is None):
+        raise OptionError("exactly one of count and target is required", hint="give one of them")
+    if count is not None and not 1 <= count <= MAX_COUNT:
+        raise OptionError(f"count must be in [1, {MAX_COUNT}], got {count}", hint="tables at 10 nm have 40")
+    if target is not None and not target > 0:
+        raise OptionError(
+            f"target must be positive, got {target:g}",
+            code="target-not-positive",
+            hint="give a tolerated ΔE00, such as 1",
+        )
+    for number in range(1, MAX_COUNT + 1) if count is None else (count,):
+        try:
+            sampling = ordered(METHODS[method](setup, number))
+        except OptionError as problem:
+            if count is not None or problem.code != "undefined-rule":
+                raise
+            continue
+        choice = Choice(method, sampling, evaluate(setup, sampling))
+        error = getattr(choice.errors, measure)
+        if target is None or error <= target:
+            return choice
+    raise OptionError(
+        f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method '{method}'; "
+        f"{len(choice.sampling)} wavelengths reach {error:.3g}",
+        hint="raise the target or choose another method",
+    )
 
 
 def fit_weights(setup: RenderSetup, wavelengths: ArrayLike) -> Choice:
@@ -158,34 +179,3 @@ def choose_orders(setup: RenderSetup, orders: tuple[int, int, int], channels: st
     space = CHANNELS[channels](setup.wavelengths, setup.cmfs)
     sampling = ordered(meyer_orders(setup, orders, space))
     return Choice("meyer", sampling, evaluate(setup, sampling))
-
-
-def _with_count(setup: RenderSetup, method: str, count: int) -> Choice:
-    if not 1 <= count <= MAX_COUNT:
-        raise OptionError(f"count must be in [1, {MAX_COUNT}], got {count}", hint="tables at 10 nm have 40")
-    sampling = ordered(METHODS[method](setup, count))
-    return Choice(method, sampling, evaluate(setup, sampling))
-
-
-def _with_target(setup: RenderSetup, method: str, target: float, measure: str) -> Choice:
-    if not target > 0:
-        raise OptionError(
-            f"target must be positive, got {target:g}",
-            code="target-not-positive",
-            hint="give a tolerated ΔE00, such as 1",
-        )
-    for count in range(1, MAX_COUNT + 1):
-        try:
-            choice = _with_count(setup, method, count)
-        except OptionError as problem:
-            if problem.code != "undefined-rule":
-                raise
-            continue
-        error = getattr(choice.errors, measure)
-        if error <= target:
-            return choice
-    raise OptionError(
-        f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method '{method}'; "
-        f"{len(choice.sampling)} wavelengths reach {error:.3g}",
-        hint="raise the target or choose another method",
-    )

@@ -29,24 +29,18 @@ S_TO_ML_AT_BLUE, L_TO_M_AT_YELLOW = 1 / 16, 2.0
 
 @dataclass(frozen=True, eq=False)
 class ChannelSpace:
-    """Three channels that are linear in XYZ: a ``name``, the names of the channels, the matrix (3, 3) from XYZ."""
+    """Three channels that are linear in XYZ: a ``name``, the names of the channels, the matrix (3, 3) from XYZ.
+
+    The ``eigenvalues`` (3,) of the opponent space are the squared errors of omitting a channel.
+    """
 
     name: str
     channels: tuple[str, str, str]
     matrix: Array
+    eigenvalues: Array | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class OpponentSpace:
-    """The opponent space, and the eigenvalue (3,) of each channel: the squared error of omitting it."""
-
-    space: ChannelSpace
-    eigenvalues: Array
-
-
-def xyz_space() -> ChannelSpace:
-    """CIE XYZ."""
-    return ChannelSpace("XYZ", ("X", "Y", "Z"), np.eye(3))
+XYZ = ChannelSpace("XYZ", ("X", "Y", "Z"), np.eye(3))
 
 
 def cone_space(wavelengths: Array, cmfs: Array) -> ChannelSpace:
@@ -68,7 +62,7 @@ def cone_space(wavelengths: Array, cmfs: Array) -> ChannelSpace:
     return ChannelSpace("SML", ("S", "M", "L"), np.array([short, medium, long])[:, None] * unscaled)
 
 
-def opponent_space(wavelengths: Array, cmfs: Array) -> OpponentSpace:
+def opponent_space(wavelengths: Array, cmfs: Array) -> ChannelSpace:
     """Karhunen–Loève transform of the cones for spectra with uncorrelated wavelengths (eq. 3–10).
 
     Channels are ordered by descending eigenvalue. Each peaks at 1 or −1, with signs such that A and C1 increase with
@@ -81,13 +75,13 @@ def opponent_space(wavelengths: Array, cmfs: Array) -> OpponentSpace:
     matrix = vectors[:, ::-1].T @ fundamentals
     matrix /= np.abs(cmfs @ matrix.T).max(axis=0)[:, None]
     matrix *= np.sign(matrix[[0, 1, 2], [1, 1, 2]])[:, None]
-    return OpponentSpace(ChannelSpace("AC1C2", ("A", "C1", "C2"), matrix), values[::-1])
+    return ChannelSpace("AC1C2", ("A", "C1", "C2"), matrix, values[::-1])
 
 
 CHANNELS: dict[str, Callable[[Array, Array], ChannelSpace]] = {
-    "opponent": lambda wavelengths, cmfs: opponent_space(wavelengths, cmfs).space,
+    "opponent": opponent_space,
     "cones": cone_space,
-    "xyz": lambda wavelengths, cmfs: xyz_space(),
+    "xyz": lambda wavelengths, cmfs: XYZ,
 }
 """Channel spaces of the paper by name: functions of wavelengths (N,) in nm and colour-matching functions (N, 3)."""
 
@@ -182,7 +176,7 @@ def meyer(setup: RenderSetup, count: int) -> Sampling:
     Raises `OptionError` if no allocation of orders 1 to 10 has ``count`` wavelengths.
     """
     nm, cmfs = setup.wavelengths, setup.cmfs
-    space = opponent_space(nm, cmfs).space
+    space = opponent_space(nm, cmfs)
     rules = quadrature_rules(space, nm, cmfs)
     candidates = list(allocations(rules, count))
     if count == 4:
