@@ -20,13 +20,13 @@ OPPONENT = (POINTS - 545) * BELL
 """Masses of both signs."""
 
 
-def _rule(points: np.ndarray, masses: np.ndarray, order: int) -> QuadratureRule:
+def _rule(points, masses, order):
     result = gauss_rule(points, masses, order)
     assert isinstance(result, QuadratureRule), result
     return result
 
 
-def _moment_error(rule: QuadratureRule, points: np.ndarray, masses: np.ndarray, degree: int) -> float:
+def _moment_error(rule, points, masses, degree):
     """Largest error over Legendre polynomials up to ``degree``, relative to the sum of the absolute masses."""
     middle, half = (points[0] + points[-1]) / 2, (points[-1] - points[0]) / 2
     exact = masses @ legendre.legvander((points - middle) / half, degree)
@@ -35,7 +35,7 @@ def _moment_error(rule: QuadratureRule, points: np.ndarray, masses: np.ndarray, 
 
 
 @pytest.mark.parametrize("order", [1, 2, 5, 16, 40])
-def test_legendre_rule_as_masses_gives_the_smaller_legendre_rule(order: int) -> None:
+def test_legendre_rule_as_masses_gives_the_smaller_legendre_rule(order):
     points, masses = legendre.leggauss(100)
     nodes, weights = legendre.leggauss(order)
     rule = _rule(points, masses, order)
@@ -44,7 +44,7 @@ def test_legendre_rule_as_masses_gives_the_smaller_legendre_rule(order: int) -> 
 
 
 @pytest.mark.parametrize("order", [1, 3, 8, 20])
-def test_rule_is_exact_to_degree_2n_minus_1_and_no_further(order: int) -> None:
+def test_rule_is_exact_to_degree_2n_minus_1_and_no_further(order):
     rule = _rule(POINTS, BELL, order)
     assert len(rule) == order
     assert (rule.weights > 0).all()
@@ -53,7 +53,7 @@ def test_rule_is_exact_to_degree_2n_minus_1_and_no_further(order: int) -> None:
         assert _moment_error(rule, POINTS, BELL, 2 * order) > 1e-9
 
 
-def _exact_nodes(points: list[int], masses: list[int], order: int) -> np.ndarray:
+def _exact_nodes(points, masses, order):
     """Roots of the orthogonal polynomial from its moments, by elimination in fractions."""
     moments = [sum(m * Fraction(p) ** k for p, m in zip(points, masses, strict=True)) for k in range(2 * order)]
     rows = [[moments[i + j] for j in range(order)] + [-moments[i + order]] for i in range(order)]
@@ -68,7 +68,7 @@ def _exact_nodes(points: list[int], masses: list[int], order: int) -> np.ndarray
 
 
 @given(st.lists(st.integers(-9, 9), min_size=6, max_size=12).filter(lambda m: sum(map(bool, m)) > 4), st.integers(1, 4))
-def test_nodes_agree_with_elimination_in_fractions(masses: list[int], order: int) -> None:
+def test_nodes_agree_with_elimination_in_fractions(masses, order):
     points = list(range(len(masses)))
     result = gauss_rule(points, masses, order)
     if isinstance(result, UndefinedRule):
@@ -88,7 +88,7 @@ def test_nodes_agree_with_elimination_in_fractions(masses: list[int], order: int
         ([-4, -12, 12, -2], 2, "coincide"),
     ],
 )
-def test_undefined_order_states_its_reason(masses: list[int], order: int, reason: str) -> None:
+def test_undefined_order_states_its_reason(masses, order, reason):
     result = gauss_rule(range(len(masses)), masses, order)
     assert isinstance(result, UndefinedRule)
     assert result.order == order
@@ -96,13 +96,13 @@ def test_undefined_order_states_its_reason(masses: list[int], order: int, reason
 
 
 @pytest.mark.parametrize("nodes", [[560.0], [631.4, 490.9, 557.7], np.linspace(400, 700, 12)])
-def test_interpolatory_rule_is_exact_below_its_number_of_nodes(nodes: list[float]) -> None:
+def test_interpolatory_rule_is_exact_below_its_number_of_nodes(nodes):
     rule = interpolatory_rule(nodes, POINTS, BELL)
     np.testing.assert_array_equal(rule.nodes, np.sort(nodes))
     assert _moment_error(rule, POINTS, BELL, len(nodes) - 1) < 1e-12
 
 
-def test_rule_is_equivariant_to_scale_and_shift() -> None:
+def test_rule_is_equivariant_to_scale_and_shift():
     rule, moved = _rule(POINTS, OPPONENT, 4), _rule(POINTS * 1e-9 - 1, OPPONENT * 1e6, 4)
     np.testing.assert_allclose(moved.nodes, rule.nodes * 1e-9 - 1, rtol=1e-12)
     np.testing.assert_allclose(moved.weights, rule.weights * 1e6, rtol=1e-6)
@@ -120,7 +120,7 @@ def test_rule_is_equivariant_to_scale_and_shift() -> None:
         ([1, 2, 3], [1, 0, 1], 3),
     ],
 )
-def test_invalid_measures_and_orders_raise(points: list[float], masses: list[float], order: int) -> None:
+def test_invalid_measures_and_orders_raise(points, masses, order):
     with raises(OptionError):
         gauss_rule(points, masses, order)
     with raises(OptionError):

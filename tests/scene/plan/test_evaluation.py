@@ -78,22 +78,12 @@ def test_previews_have_the_errors_of_their_shares(tests):
         assert preview.reference != preview.planned
 
 
-def trial(name, error):
-    return Trial(name, 1.0, "", "", {}, ErrorSummary((GroupError("textures", "D65", 0.0, error, error),)))
-
-
-def test_the_first_sufficient_candidate_is_selected_and_later_ones_are_not_measured():
-    measured = []
-
-    def trials():
-        for number, error in enumerate((3.0, 0.9, 0.1)):
-            measured.append(number)
-            yield trial(str(number), error)
-
-    decision = decide("a", "A", "things", 1.0, trials())
-    assert (decision.trial.name, decision.within_limit, measured) == ("1", True, [0, 1])
-
-
-def test_the_smallest_error_is_selected_if_no_candidate_is_sufficient():
-    decision = decide("a", "A", "things", 1.0, [trial("a", 5), trial("b", 2), trial("c", 3)])
-    assert (decision.trial.name, decision.within_limit) == ("b", False)
+@pytest.mark.parametrize(
+    ("errors", "selected", "measured"), [((3.0, 0.9, 0.1), 1, 2), ((5, 2, 3), 1, 3)], ids=["sufficient", "none"]
+)
+def test_the_first_sufficient_candidate_or_else_the_best_is_selected(errors, selected, measured):
+    parts = [(GroupError("textures", "D65", 0.0, error, error),) for error in errors]
+    trials = iter([Trial(str(number), 1.0, "", "", {}, ErrorSummary(part)) for number, part in enumerate(parts)])
+    decision = decide("a", "A", "things", 1.0, trials)
+    assert (decision.selected, len(decision.trials), len(list(trials))) == (selected, measured, len(errors) - measured)
+    assert decision.within_limit == (errors[selected] <= 1)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import json
 import shutil
-import warnings
 from dataclasses import replace
 
 import colour
@@ -87,35 +87,27 @@ def test_a_tolerance_below_the_error_of_the_reference_cube_is_refused(kitchen):
     assert caught.value.path == kitchen
 
 
-def test_the_plan_file_builds_the_same_cube(planned, kitchen, tmp_path):
-    found, _ = planned
-    shutil.copytree(kitchen.parent, tmp_path / "moved")
-    path = tmp_path / "moved" / "kitchen.plan.json"
-    write(path, to_json(found, kitchen.parent / "kitchen.plan.json"))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
-        cube = read_plan(path).build()
-    np.testing.assert_array_equal(cube.data.points.coefficients, found.final_build.cube.data.points.coefficients)
-    assert (cube.data.complete_cells is not None) == found.final_build.is_sparse
-
-
-def write(path, values):
-    from uplift_cli.output.console import json_text
-
-    path.write_text(json_text(values), encoding="utf-8")
-
-
 @pytest.fixture
 def plan_file(planned, kitchen, tmp_path):
-    """Path of a plan file in a copy of the scene's folder, and its values."""
-    shutil.copytree(kitchen.parent, tmp_path / "copy")
-    values = to_json(planned[0], kitchen.parent / "kitchen.plan.json")
-    return tmp_path / "copy" / "kitchen.plan.json", values
+    """Path of a plan file in a copy of the scene's folder, its values, and a function that writes them."""
+    path = tmp_path / "copy" / "kitchen.plan.json"
+    shutil.copytree(kitchen.parent, path.parent)
+    values = to_json(planned[0], kitchen.parent / path.name)
+    return path, values, lambda: path.write_text(json.dumps(values), encoding="utf-8")
+
+
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+def test_the_plan_file_builds_the_same_cube(planned, plan_file):
+    path, _, write = plan_file
+    write()
+    cube, final = read_plan(path).build(), planned[0].final_build
+    np.testing.assert_array_equal(cube.data.points.coefficients, final.cube.data.points.coefficients)
+    assert (cube.data.complete_cells is not None) == final.is_sparse
 
 
 def test_changed_and_missing_sources_are_refused(plan_file):
-    path, values = plan_file
-    write(path, values)
+    path, _, write = plan_file
+    write()
     assert read_plan(path).textures == (path.parent / "wood.exr",)
     with (path.parent / "macbeth.txt").open("a", encoding="utf-8") as file:
         file.write("\n")
@@ -144,9 +136,9 @@ def test_changed_and_missing_sources_are_refused(plan_file):
     ],
 )
 def test_an_invalid_plan_is_refused_with_its_key(plan_file, spoil, code, start):
-    path, values = plan_file
+    path, values, write = plan_file
     spoil(values)
-    write(path, values)
+    write()
     with raises(PlanFileError, code) as caught:
         read_plan(path)
     assert caught.value.problem.startswith(start)

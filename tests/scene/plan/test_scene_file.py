@@ -53,17 +53,13 @@ TEXTURES = "textures = 'a.png'\n"
     [
         ("lights = ['D65']", None, "textures"),
         ("\ntextures = [", 2, ""),
-        ("textures = " + "[" * 50_000, 1, ""),
         (TEXTURES + "\nlight = 'A'", 3, "light"),
         ("textures = 'x.*.png'", 1, "textures"),
-        ("textures = ['a.png', '" + "x" * 300 + "']", 1, "textures[1]"),
         ('textures = ["x\\u0000*"]', 1, "textures[0]"),
         (TEXTURES + "lights = ['D65', 'FL99']", 2, "lights[1]"),
         (TEXTURES + "tolerance = nan", 2, "tolerance"),
-        (TEXTURES + "tolerance = 0x1" + "0" * 9000, 2, "tolerance"),
         (TEXTURES + "quantile = 97.5", 2, "quantile"),
         (TEXTURES + "encoding = 'gamma'", 2, ""),
-        (TEXTURES + 'space = "' + "x" * 5000 + '"', 2, "space"),
         (TEXTURES + '"a\\nb" = 3', None, "a b"),
         (TEXTURES + "illuminant = 'D66'", 2, "illuminant"),
     ],
@@ -76,15 +72,3 @@ def test_an_invalid_file_is_refused_with_line_and_key(read, text, line, key):
     assert error.problem.startswith(key)
     assert len(error.problem) < 500
     assert "\n" not in str(error)
-
-
-def test_a_missing_or_binary_file_is_refused(tmp_path):
-    with raises(PlanFileError, "file-not-found"):
-        read_scene_file(tmp_path / "none.toml")
-    with raises(PlanFileError, "not-a-regular-file"):
-        read_scene_file(tmp_path)
-    with raises(PlanFileError, "file-unreadable"):
-        read_scene_file(tmp_path / "a\0b.toml")
-    (tmp_path / "bytes.toml").write_bytes(b"\xff\xfe\x00")
-    with raises(PlanFileError, "file-unreadable"):
-        read_scene_file(tmp_path / "bytes.toml")

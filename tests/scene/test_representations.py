@@ -1,0 +1,282 @@
+"""Representations: laws of all of them, and each against direct computations or its paper."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from tests.lab.comparison_scenes import colorchecker
+from uplift.colorimetry import observer
+from uplift.colorimetry.observer import grid
+from uplift.lab.study.moments import Technique
+from uplift.models import Sigmoid
+from uplift.models.model import evaluate
+from uplift.scene.representations import SIZES, all_representations
+from uplift.scene.representations.composite import enhanced_riemann, fourier_coefficients, split_spikes, sun_composite
+from uplift.scene.representations.filters import Filter, resampling_matrix
+from uplift.scene.representations.models import fit_sigmoids, hero_wavelengths, linear_model, trigonometric_moments
+from uplift.scene.representations.samples import (
+    gauss_samples,
+    hat_functions,
+    point_samples,
+    riemann_sums,
+    sample_points,
+    wavelengths,
+    xyz_weights,
+)
+
+
+@pytest.fixture(scope="session")
+def checker():
+    return colorchecker()
+
+
+@pytest.fixture(scope="session")
+def every(checker):
+    """Every representation by name."""
+    return {one.name: one for one in all_representations(checker.powers, checker.surfaces)}
+
+
+@pytest.fixture
+def light_powers(checker):
+    """Function of the name of a light that returns its powers (24, 401), one row per patch."""
+
+    def light_powers(name):
+        part = next(part for part in checker.sets if name in part.lights)
+        power = part.powers[part.lights.index(name)]
+        return np.tile(power, (len(checker.surfaces), 1))
+
+    return light_powers
+
+
+NAMES = [
+    *(f"{family}{count}" for family in ("PS", "PF", "RS", "RE", "GQ") for count in (4, 32)),
+    *("CS5", "CS15", "TM5", "TM17", "SG3", "LM4", "LM16", "HW4", "HW256"),
+]
+EXACT = [name for name in NAMES if not name.startswith(("LM", "HW", "PF"))]
+"""All but linear models of a scene, random hero wavelengths, and filters that count values past the ends as 0."""
+
+
+@pytest.mark.parametrize("name", EXACT)
+def test_grey_under_constant_light_is_exact(every, name):
+    one = every[name]
+    greys = np.array([[0.2], [0.5], [0.9]]) * np.ones(401)
+    light = one.encode_light(np.full((3, 401), 2.0))
+    actual = one.xyz(one.multiply(light, one.encode_surface(greys)))
+    np.testing.assert_allclose(actual, 2 * greys @ xyz_weights(), rtol=2e-4)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_colour_is_linear_in_the_light_and_products_can_be_multiplied_again(every, checker, light_powers, name):
+    one, surfaces = every[name], every[name].encode_surface(checker.surfaces)
+    products = [one.multiply(one.encode_light(factor * light_powers("FL11")), surfaces) for factor in (1, 2)]
+    np.testing.assert_allclose(one.xyz(products[1]), 2 * one.xyz(products[0]), rtol=1e-9)
+    again = one.xyz(one.multiply(one.multiply(one.encode_light(light_powers("A")), surfaces), surfaces))
+    assert np.isfinite(again).all()
+    if name in ("PS32", "PF32", "RS32", "RE32", "GQ32", "TM17", "LM16"):
+        np.testing.assert_allclose(again, (light_powers("A") * checker.surfaces**2) @ xyz_weights(), atol=0.01)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_number_in_the_name_is_the_storage_of_a_smooth_spectrum(every, name):
+    stored = every[name].storage(every[name].encode_surface(np.full((2, 401), 0.4)))
+    count = int(name[2:])
+    np.testing.assert_array_equal(stored, count**2 if name.startswith("LM") else count)
+
+
+@pytest.mark.parametrize("family", ["PS", "PF", "RS", "GQ"])
+def test_error_falls_with_size_under_smooth_light(every, checker, light_powers, family):
+    dense = (light_powers("A") * checker.surfaces) @ xyz_weights()
+    worst = []
+    for count in SIZES:
+        one = every[f"{family}{count}"]
+        actual = one.xyz(one.multiply(one.encode_light(light_powers("A")), one.encode_surface(checker.surfaces)))
+        worst.append(np.abs(actual - dense).max())
+    assert worst == sorted(worst, reverse=True)
+    assert worst[0] > 30 * worst[3]
+
+
+RANDOM = np.random.default_rng(5).random((3, 401))
+
+
+@pytest.mark.parametrize("count", [4, 9, 32])
+def test_point_samples_are_linear_interpolation_both_ways(count):
+    samples, places = point_samples(count), np.linspace(380, 780, count)
+    assert sample_points(count)[[0, -1]].tolist() == [380, 780]
+    taken = samples.encode_light(RANDOM)
+    np.testing.assert_allclose(taken, [np.interp(places, wavelengths(), row) for row in RANDOM], rtol=1e-12)
+    back = np.array([np.interp(wavelengths(), places, row) for row in taken])
+    np.testing.assert_allclose(samples.xyz(taken), back @ xyz_weights(), rtol=1e-12)
+
+
+@pytest.mark.parametrize("count", [4, 16])
+def test_riemann_sums_are_means_of_cells(count):
+    fine = np.repeat(RANDOM, 16 * count, axis=1)  # 401 · 16 · count samples fill the cells evenly
+    means = fine.reshape(len(RANDOM), count, -1).mean(axis=2)
+    np.testing.assert_allclose(riemann_sums(count).encode_surface(RANDOM), means, rtol=1e-12)
+    weights = np.repeat(xyz_weights(), 16 * count, axis=0).reshape(count, -1, 3).sum(axis=1) / (16 * count)
+    np.testing.assert_allclose(riemann_sums(count).weights, weights, rtol=1e-12)
+
+
+@pytest.mark.parametrize("count", [4, 8, 16])
+def test_quadrature_is_exact_for_polynomials(count):
+    x = (wavelengths() - 580) / 200
+    rule = gauss_samples(count)
+    for degree in range(count):
+        power = np.polynomial.chebyshev.chebval(x, np.eye(degree + 1)[-1])[None]
+        # Spectra are linear between dense samples, so the rule is only approximate.
+        np.testing.assert_allclose(rule.xyz(rule.encode_light(power)), power @ xyz_weights(), atol=1e-3)
+
+
+SOME = [Filter("box", 5), Filter("gaussian", 7, (0.5,)), Filter("mitchell", 19, (-0.4, 1.0)), Filter("hann", 9)]
+
+
+def reference_conversion(taps, up, down, count, spectrum):
+    """Conversion as in the listing of the thesis: insert zeros, filter, keep every M-th sample."""
+    dense = np.zeros((len(spectrum) - 1) * up + 1)
+    dense[::up] = spectrum
+    smoothed = np.convolve(dense, taps * up, mode="full")[len(taps) // 2 :]
+    return smoothed[: (count - 1) * down + 1 : down]
+
+
+@pytest.mark.parametrize("low_pass", SOME, ids=lambda one: one.kind)
+@pytest.mark.parametrize(("count", "up", "down"), [(4, 3, 80), (8, 7, 80), (16, 3, 16)])
+def test_resampling_equals_the_listing_of_the_thesis(low_pass, count, up, down):
+    spectrum = np.random.default_rng(8).random(81)
+    expected = reference_conversion(low_pass.taps(up), up, down, count, spectrum)
+    np.testing.assert_allclose(resampling_matrix(low_pass, count) @ spectrum, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("low_pass", "formula"),
+    [
+        (Filter("welch", 9), lambda x: 1 - x**2),
+        (Filter("gaussian", 9, (0.7,)), lambda x: np.exp(-0.7 * 4 * x**2) - np.exp(-0.7 * 4)),
+        (Filter("hann", 9), lambda x: 0.5 + 0.5 * np.cos(np.pi * x)),
+        (Filter("lanczos", 9, (2.0,)), lambda x: np.sinc(2 * x) * np.sinc(x)),
+    ],
+)
+def test_windows_equal_the_formulas_of_the_thesis(low_pass, formula):
+    taps = low_pass.taps(3)
+    x = np.linspace(-1, 1, len(taps) + 2)[1:-1]
+    np.testing.assert_allclose(taps, formula(x) / formula(x).sum(), atol=1e-12)
+
+
+@pytest.mark.parametrize(("b", "c"), [(1 / 3, 1 / 3), (1, 0), (0, 0.5), (-0.4, 1)])
+def test_pieces_of_the_mitchell_filter_meet_and_sum_to_one(b, c):
+    taps = Filter("mitchell", 21, (b, c)).taps(31)
+    scaled = taps / taps.sum() * len(taps) / 4
+    assert np.abs(np.diff(scaled)).max() < 0.05 * (1 + abs(b) + abs(c))
+    assert scaled[len(taps) // 2] == pytest.approx((6 - 2 * b) / 6, rel=0.02)
+
+
+TABLES = arrays(float, (2, 81), elements=st.floats(0, 100, width=32))
+
+
+def dense(table):
+    return table @ hat_functions(observer.grid())
+
+
+@settings(max_examples=25)
+@given(TABLES, st.sampled_from([0.1, 0.2, 0.3]))
+def test_smooth_part_is_the_largest_with_limited_gradient(table, threshold):
+    rest, spikes = split_spikes(dense(table), threshold)
+    distance = np.abs(np.arange(81)[:, None] - np.arange(81))
+    steepest = threshold * table.max(axis=1)[:, None, None]
+    oracle = (table[:, None, :] + steepest * distance).min(axis=2)
+    scale = max(table.max(), 1)
+    np.testing.assert_allclose(rest[:, ::5], oracle, atol=2e-9 * scale)
+    whole = rest[:, ::5].copy()
+    whole[:, spikes.positions] += spikes.heights
+    np.testing.assert_allclose(whole, table, atol=1e-12 * scale)
+    assert (spikes.heights >= 0).all()
+    np.testing.assert_array_equal(spikes.storage, 2 * (spikes.heights > 0).sum(axis=1))
+
+
+@pytest.mark.parametrize("count", [1, 5, 15])
+def test_fourier_coefficients_equal_equation_4_7(count):
+    table = np.random.default_rng(6).random((2, 81))
+    phase = np.arange(1, 81) * 2 * np.pi / 80
+    actual = fourier_coefficients(count).encode_light(dense(table))
+    table[:, 80] = (table[:, 0] + table[:, 80]) / 2
+    np.testing.assert_allclose(actual[:, 0], table[:, 1:].mean(axis=1))  # ã_0 / 2 of eq. 4.7
+    for order in range(1, count // 2 + 1):
+        for place, wave in ((2 * order - 1, np.cos), (2 * order, np.sin)):
+            np.testing.assert_allclose(actual[:, place], (table[:, 1:] @ wave(order * phase)) * 2 / 80, atol=1e-12)
+
+
+@pytest.mark.parametrize("count", [3, 7])
+def test_product_of_fourier_series_is_not_aliased(count):
+    one, rng = fourier_coefficients(count), np.random.default_rng(7)
+    first, second = rng.random((2, 4, count))
+    whole = (first @ one.waves) * (second @ one.waves)
+    table = np.concatenate([np.ones((1, 400)), one.waves[1:, :400]])
+    kept = (whole[:, :400] @ table.T) / (table**2).sum(axis=1)
+    np.testing.assert_allclose(one.multiply(first, second), kept, atol=1e-12)
+
+
+@pytest.mark.parametrize("make", [sun_composite, enhanced_riemann])
+def test_spikes_multiply_exactly_on_constant_spectra(make):
+    one = replace(make(7), threshold=1e-9)  # all of a spike belongs to the spikes
+    light, surface = np.full((1, 81), 2.0), np.full((1, 81), 0.25)
+    light[0, 40] += 30.0
+    surface[0, 60] += 0.5
+    surface[0, 40] += 0.6
+    actual = one.multiply(one.encode_light(dense(light)), one.encode_surface(dense(surface)))
+    assert actual.spikes.positions.tolist() == [40, 60]
+    np.testing.assert_allclose(one.xyz(actual), dense(light * surface) @ xyz_weights(), rtol=1e-6)
+    assert one.storage(actual).tolist() == [7 + 4]
+
+
+def test_moments_equal_the_integrals(checker):
+    actual = trigonometric_moments(9).encode_surface(checker.surfaces)
+    exact = Technique(mirrored=True, warped=False).moments(checker.surfaces, wavelengths(), 8)
+    np.testing.assert_allclose(actual, exact, atol=2e-5)
+
+
+def test_fit_recovers_sigmoids_and_approaches_black_and_white():
+    known = np.array([[-1.0, 2.0, 0.5], [3.0, -1.0, -2.0], [0.3, 0.2, 0.1]])
+    table = np.concatenate([evaluate(Sigmoid(), known, grid()), np.zeros((1, 81)), np.ones((1, 81))])
+    fitted = evaluate(Sigmoid(), fit_sigmoids(Sigmoid(), table), grid())
+    np.testing.assert_allclose(fitted[:3], table[:3], atol=1e-6)
+    np.testing.assert_allclose(fitted[3:], table[3:], atol=0.01)
+
+
+def test_linear_model_of_all_components_is_exact(checker, light_powers):
+    power, surfaces = checker.powers[:1], checker.surfaces[:5]
+    model = linear_model(6, power, surfaces)  # five products and the light
+    light = model.encode_light(np.tile(power, (5, 1)))
+    actual = model.xyz(model.multiply(light, model.encode_surface(surfaces)))
+    np.testing.assert_allclose(actual, (power * surfaces) @ xyz_weights(), rtol=1e-6)
+    np.testing.assert_allclose(model.basis.T @ model.basis, np.eye(6), atol=1e-12)
+
+
+@pytest.mark.parametrize("paths", [1, 8])
+def test_hero_wavelengths_are_a_quarter_apart_and_stratified(paths):
+    drawn = hero_wavelengths(paths).wavelengths(500)
+    assert drawn.shape == (500, 4 * paths)
+    assert drawn.min() >= 380
+    assert drawn.max() <= 780
+    low, high = np.tanh(0.0072 * (np.array([380, 780]) - 538))
+    shares = (np.tanh(0.0072 * (drawn - 538)) - low) / (high - low)
+    # Each row has equal numbers in each quarter, and so in each stratum of a quarter.
+    strata = np.floor(shares * 4 * paths + 1e-9).clip(0, 4 * paths - 1).astype(int)
+    quarters = np.sort(strata // paths, axis=1)
+    np.testing.assert_array_equal(quarters, np.tile(np.repeat(range(4), paths), (500, 1)))
+
+
+def test_hero_wavelengths_are_unbiased_and_variance_falls_with_paths(checker):
+    power = checker.powers[:1] * checker.surfaces[:1]
+    spread = []
+    for paths in (1, 8):
+        hero = hero_wavelengths(paths)
+        actual = hero.xyz(hero.encode_light(np.tile(power, (4000, 1))))
+        error = actual.std(axis=0) / np.sqrt(len(actual))
+        assert (np.abs(actual.mean(axis=0) - power @ xyz_weights()) < 4 * error + 1e-5).all()
+        spread.append(actual.std(axis=0).max())
+    assert spread[1] < spread[0] / 8**0.5

@@ -1,0 +1,181 @@
+"""Wavelengths on the ColorChecker: setups, the methods against references and each other, and invalid input."""
+
+from __future__ import annotations
+
+import colour
+import numpy as np
+import pytest
+
+from tests.helpers import raises
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.common.errors import OptionError, UnknownNameError
+from uplift.scene.wavelengths import METHODS, choose, choose_orders, fit_weights, grid, make_setup
+from uplift.scene.wavelengths.optimise import MAX_FITTED_PAIRS, FitProblem, delta_e_factors, fit_at, optimise
+from uplift.scene.wavelengths.sampling import evaluate, midpoints, prefiltered, prefiltered_uniform
+
+
+def test_colours_agree_with_observer_light_on_its_grid():
+    reflectances = np.random.default_rng(1).uniform(0, 1, (5, 81))
+    setup = make_setup(reflectances, ["A"], wavelengths=observer.grid())
+    light = observer.light("A")
+    np.testing.assert_allclose(setup.whites[:, 1], 1, rtol=1e-12)
+    np.testing.assert_allclose(setup.xyz[0], reflectances @ light.xyz.T, rtol=1e-12)
+    np.testing.assert_allclose(setup.lab[0], lab(reflectances @ light.xyz.T, light.white), rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("reflectances", "nm"),
+    [
+        (np.ones(391), grid()),
+        (np.ones((0, 391)), grid()),
+        (np.full((1, 391), np.nan), grid()),
+        (np.full((1, 391), -0.1), grid()),
+        (np.ones((1, 391)), np.geomspace(380, 770, 391)),
+        (np.ones((1, 391)), grid()[::-1]),
+        (np.ones((1, 3)), [400, 500, 600]),
+    ],
+)
+def test_invalid_materials_or_grids_raise(reflectances, nm):
+    with raises(OptionError):
+        make_setup(reflectances, ["A"], wavelengths=nm)
+    with raises(OptionError):
+        make_setup(np.ones((1, 391)), [])
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_errors_are_those_of_a_renderer_with_count_wavelengths(smooth, method):
+    choice = choose(smooth, count=5, method=method)
+    sampling = choice.sampling
+    assert len(sampling) == 5
+    assert (np.diff(sampling.wavelengths) > 0).all()
+    assert sampling.to_xyz[:, 1].sum() == pytest.approx(1)
+    # Reference: trace every light at every wavelength, sum with the weights.
+    for light, name in enumerate(smooth.lights):
+        for material in (0, 13):
+            radiance = [
+                sampling.powers[light, i] * float(smooth.curves(nm)[material])
+                for i, nm in enumerate(sampling.wavelengths)
+            ]
+            seen = colour.XYZ_to_Lab(np.array(radiance) @ sampling.to_xyz, colour.XYZ_to_xy(smooth.whites[light]))
+            delta_e = colour.delta_E(smooth.lab[light, material], seen, method="CIE 2000")
+            assert choice.errors.delta_e[light, material] == pytest.approx(delta_e, abs=1e-6), name
+
+
+def test_target_is_met_and_one_wavelength_less_misses_it(spiky):
+    choice = choose(spiky, target=1.5)
+    assert choice.errors.max <= 1.5
+    assert choose(spiky, count=len(choice.sampling) - 1).errors.max > 1.5
+
+
+def test_target_skips_counts_without_a_rule(smooth):
+    """Meyer's rules have at least four wavelengths."""
+    choice = choose(smooth, target=100, method="meyer")
+    assert len(choice.sampling) == 4
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [
+        ({}, "option"),
+        ({"count": 4, "target": 1.0}, "option"),
+        ({"count": 0}, "option"),
+        ({"count": 41}, "option"),
+        ({"target": 0.0}, "target-not-positive"),
+        ({"target": float("nan")}, "target-not-positive"),
+    ],
+)
+def test_invalid_options_raise(smooth, options, code):
+    with raises(OptionError, code):
+        choose(smooth, **options)
+
+
+@pytest.mark.parametrize(
+    ("call", "code", "nearest"),
+    [
+        (lambda setup: choose(setup, count=4, method="unform"), "unknown-method", "'uniform'"),
+        (lambda setup: choose(setup, target=1, measure="p90"), "unknown-measure", "'p95'"),
+        (lambda setup: make_setup(np.ones((1, 391)), ["D 65"]), "unknown-illuminant", "D65"),
+        (lambda setup: choose_orders(setup, (3, 2, 1), "rgb"), "unknown-channels", "xyz"),
+    ],
+)
+def test_unknown_names_raise_with_the_nearest_name(smooth, call, code, nearest):
+    with raises(UnknownNameError, code) as caught:
+        call(smooth)
+    assert nearest in caught.value.hint
+
+
+def test_metric_is_delta_e_of_close_colours(spiky):
+    change = np.random.default_rng(4).normal(0, 1e-6, spiky.xyz.shape)
+    approximate = np.linalg.norm(np.einsum("kmij,kmj->kmi", delta_e_factors(spiky), change), axis=-1)
+    exact = delta_e_2000(spiky.lab, spiky.to_lab(spiky.xyz + change))
+    np.testing.assert_allclose(approximate, exact, rtol=0.02)
+
+
+def test_jacobian_agrees_with_central_differences(spiky):
+    small = FitProblem(spiky.only(range(0, 24, 5)))
+    start = prefiltered_uniform(small.setup, 3)
+    unknowns = small.pack(start)
+    result = small.jacobian(unknowns)
+    for column, step in enumerate(np.maximum(1e-6 * np.abs(unknowns), 1e-9)):
+        up, down = (unknowns + sign * step * np.eye(len(unknowns))[column] for sign in (1, -1))
+        slope = (small.residuals(up) - small.residuals(down)) / (2 * step)
+        np.testing.assert_allclose(result[:, column], slope, rtol=1e-4, atol=1e-4 * np.abs(result).max())
+
+
+@pytest.mark.parametrize("light", ["A", "FL11"])
+def test_prefiltering_keeps_white_and_ramps_exact(checker, light):
+    """Both hold even if lines of the light lie between the wavelengths."""
+    setup = make_setup(checker, [light])
+    sampling = prefiltered(setup, midpoints(6))
+    np.testing.assert_allclose(sampling.powers @ sampling.to_xyz, setup.whites, rtol=1e-12)
+    nm = np.clip(setup.wavelengths, midpoints(6)[0], midpoints(6)[-1])
+    ramp = setup.powers * (nm - 400) @ setup.cmfs
+    np.testing.assert_allclose(sampling.powers * (midpoints(6) - 400) @ sampling.to_xyz, ramp, rtol=1e-12)
+
+
+@pytest.mark.parametrize("count", [1, 4, 9])
+def test_fit_is_not_negative_and_powers_are_proportional_to_the_lights(spiky, count):
+    result = optimise(spiky, count)
+    assert len(result) == count
+    assert result.to_xyz.min() >= 0
+    assert result.powers.min() >= 0
+    assert (np.diff(result.wavelengths) > 0).all()
+    nearby = prefiltered(spiky, result.wavelengths).powers.sum(axis=0)
+    ratio = result.powers.sum(axis=0) / nearby
+    assert np.ptp(ratio) < 1e-9 * ratio.max()
+
+
+@pytest.mark.parametrize("count", [4, 8])
+def test_fit_beats_other_methods_on_unseen_materials(smooth, spiky, count):
+    odd = np.arange(24) % 2 == 1
+    for setup, factor in ((smooth, 1.5), (spiky, 3.0)):
+        unseen = setup.only(odd)
+        error = evaluate(unseen, optimise(setup.only(~odd), count)).mean
+        for method in ("meyer", "uniform", "bins"):
+            assert factor * error < choose(unseen, count=count, method=method).errors.mean, method
+
+
+def test_one_material_and_more_materials_than_are_fitted(checker):
+    one = choose(make_setup(checker[:1], ["FL11"]), count=4)
+    assert one.errors.max < 0.2
+    shades = np.concatenate([checker * shade for shade in np.linspace(0.05, 1, MAX_FITTED_PAIRS // 24 + 2)])
+    many = choose(make_setup(shades, ["D65"]), count=4)
+    assert many.errors.delta_e.shape == (1, len(shades))
+    assert len(shades) > MAX_FITTED_PAIRS
+    assert many.errors.mean < 2
+
+
+def test_weights_for_given_wavelengths_beat_prefiltering(spiky):
+    nm = midpoints(7)
+    result = fit_at(spiky, nm[::-1])
+    np.testing.assert_array_equal(result.wavelengths, nm)
+    assert min(result.to_xyz.min(), result.powers.min()) >= 0
+    error = evaluate(spiky, result).mean
+    assert evaluate(spiky, optimise(spiky, 7)).mean < error < evaluate(spiky, prefiltered_uniform(spiky, 7)).mean / 1.5
+
+
+@pytest.mark.parametrize("nm", [[], [500, 500], [300, 500], [500, 800], [[500]], [np.nan]])
+def test_invalid_wavelengths_raise(smooth, nm):
+    with raises(OptionError, "invalid-wavelengths"):
+        fit_weights(smooth, nm)
