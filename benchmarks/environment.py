@@ -21,7 +21,7 @@ from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.observer import lamps
 from uplift.common.arrays import Array
-from uplift.io.texture.pixel_encoding import SPECTRAL_LAYOUT, spectral_channels
+from uplift.io.texture.uplifter import SPECTRAL_LAYOUT, spectral_channels
 
 VARIANT = "llvm_ad_spectral"
 TRUE, MITSUBA, KNOWN, UNKNOWN = "measured spectra", "Mitsuba 3", "table, lamps known", "table, lamps left out"

@@ -99,7 +99,7 @@ def _textures(folder: Path) -> dict[str, dict[str, Any]]:
     import mitsuba
 
     from uplift.io import texture
-    from uplift.io.texture.pixel_encoding import PixelEncoding
+    from uplift.io.texture.uplifter import PixelEncoding
 
     image = _image(SIZE)
     mitsuba.Bitmap(image).write(str(folder / "image.exr"))

@@ -22,7 +22,7 @@ from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.io import texture
 from uplift.io.mitsuba.texture_file import multipliers_of_rounded
-from uplift.io.texture.pixel_encoding import PixelEncoding
+from uplift.io.texture.uplifter import PixelEncoding
 from uplift.lab.timing import time_process
 from uplift.lookup import Cube
 from uplift.models import Moments, evaluate

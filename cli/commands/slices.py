@@ -34,7 +34,7 @@ def command(cube: str, out: str | None, sheet: str | None, force: bool) -> None:
         raise click.UsageError("Nothing to write: give --output FILE, --plot FILE, or both.")
     from uplift.common.files import check_outputs
     from uplift.cube import read
-    from uplift.io.slices import check_slices, write_slices
+    from uplift.io.exr import check_slices, write_slices
     from uplift.viz.sheet import check_sheet, write_sheet
 
     check_outputs((out, sheet), inputs=[cube], force=force)

@@ -39,7 +39,7 @@ from ..startup import enable_jit_cache
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.io.texture import Conversion, Failure, Job, TextureSettings
-    from uplift.io.texture.pixel_encoding import PixelEncoding
+    from uplift.io.texture.uplifter import PixelEncoding
 
 
 def image_options(function: Callable[..., Any]) -> Callable[..., Any]:

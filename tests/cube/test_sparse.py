@@ -12,7 +12,7 @@ from tests.sparse_cubes import near_black, with_absent_points
 from uplift.common.errors import CubeFileError
 from uplift.cube import digest, read, write
 from uplift.cube.file import POINTS
-from uplift.io.slices import channels, write_slices
+from uplift.io.exr import channels, write_slices
 from uplift.lattice import Lattice, Status
 from uplift.viz.sheet import BACKGROUND, panels, write_sheet
 

@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from uplift.io.slices import channels
+from uplift.io.exr import channels
 from uplift.lookup.interpolate import MODES
 from uplift.models import evaluate
 

@@ -18,7 +18,7 @@ from tests.helpers import raises
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import OutputError
 from uplift.cube import digest, write
-from uplift.io.slices import write_slices
+from uplift.io.exr import write_slices
 
 
 def parts(path: Path) -> list[OpenEXR.Part]:
@@ -123,7 +123,7 @@ def test_invalid_paths_raise(tmp_path, name, code):
 def test_writing_images_does_not_import_the_fit(tmp_path):
     write(hand_made(), tmp_path / "small.uplift")
     script = (
-        "import sys; from uplift.cube import read; from uplift.io.slices import write_slices; "
+        "import sys; from uplift.cube import read; from uplift.io.exr import write_slices; "
         "from uplift.viz.sheet import write_sheet\n"
         "early = {'OpenEXR', 'matplotlib'} & set(sys.modules)\n"
         "data = read('small.uplift'); write_slices(data, 'a.exr'); write_sheet(data, 'a.png')\n"

@@ -17,8 +17,7 @@ from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback
-from uplift.io.texture.channels import coloured_parts
-from uplift.io.texture.colours import check_encoding, make_decoder, space_warnings
+from uplift.io.texture.colours import check_encoding, coloured_parts, make_decoder, space_warnings
 from uplift.io.texture.image import open_image
 from uplift.lattice import CORNERS, EntryBoxes, Lattice
 from uplift.lattice.entry_boxes import MARGIN

@@ -24,7 +24,7 @@ from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write, check_output
 from uplift.cube.data import CubeData
 from uplift.io import exr
-from uplift.io.slices import blue_slices
+from uplift.io.exr import blue_slices
 from uplift.viz.figure import figure_text
 from uplift.viz.format import pluralise
 

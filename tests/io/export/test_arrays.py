@@ -13,7 +13,7 @@ from tests.helpers import raises
 from tests.sparse_cubes import near_black, with_absent_points
 from uplift.common.errors import ColourError, OptionError
 from uplift.cube import contents
-from uplift.io.export import csv_points, write_coeff, write_csv, write_npz, write_program
+from uplift.io.export import arrays, write_coeff, write_csv, write_npz, write_program
 from uplift.lab.study.sensitivity import study_sensitivity
 from uplift.lattice import Status
 from uplift.models import evaluate, reflectance
@@ -50,7 +50,7 @@ def column(rows, *names):
 
 
 def test_csv_has_a_line_per_node_in_full_precision(tmp_path, monkeypatch):
-    monkeypatch.setattr(csv_points, "BLOCK", 5)
+    monkeypatch.setattr(arrays, "BLOCK", 5)
     data = hand_made()
     assert write_csv(data, tmp_path / "points.csv") == data.lattice.size
     rows = read(tmp_path / "points.csv")

@@ -10,7 +10,7 @@ from tests.io.texture.conftest import WAVELENGTHS, channels, planes, read_channe
 from uplift.io import texture
 from uplift.io.mitsuba.texture_file import read_colours
 from uplift.io.scene_colours import Images
-from uplift.io.texture.channels import ColourChannels
+from uplift.io.texture.colours import ColourChannels
 from uplift.io.texture.picture import read_picture
 
 CHANNELS = ColourChannels((0, 1, 2), 3)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from uplift.io.export.arrays import write_csv, write_npz
 from uplift.io.export.coeff import write_coeff
-from uplift.io.export.csv_points import write_csv
 from uplift.io.export.lights import write_light_program
-from uplift.io.export.npz import write_npz
 from uplift.io.export.program import LANGUAGES, write_program
 
 __all__ = ["LANGUAGES", "write_coeff", "write_csv", "write_light_program", "write_npz", "write_program"]

@@ -14,12 +14,12 @@ from uplift.colorimetry.gamut import METHODS, check_method, map_to_gamut
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftError, UpliftWarning
-from uplift.io.mitsuba.environment import make_environment
 from uplift.io.mitsuba.texels import Placement, Texels, light_texels, uplift_texels
-from uplift.io.mitsuba.texture import make_texture
+from uplift.io.mitsuba.texture import make_environment, make_texture
 from uplift.io.mitsuba.texture_file import read_colours, read_lights, read_texels
 from uplift.io.texture.colours import Decoder
 from uplift.io.texture.exr_file import is_exr
+from uplift.io.texture.image import Values
 from uplift.lights.lookup import EmissionTable, load_emission
 from uplift.lookup import Cube, load
 
@@ -76,28 +76,22 @@ def _make_plugin(make: Callable[[Any], Any], props: Any) -> Any:
 
 
 def _make(props: Any) -> Any:
-    source = _source(props, SOURCES)
-    if props.get("emission", False):
-        return _make_light(props, source)
-    if source == "rgb":
+    is_light = props.get("emission", False)
+    if _source(props, SOURCES) == "rgb":
+        rgb, at = _parse_rgb(props["rgb"]), np.arange(START, END + 1)
+        if is_light:
+            return _constant(_table(props).spectrum(rgb, at))
         cube, method = _cube(props), str(props.get("out_of_gamut", "error"))
-        rgb = map_to_gamut(_parse_rgb(props["rgb"]), cube.data.sensor, method).rgb
-        return _constant(cube.reflectance(rgb, np.arange(START, END + 1)))
-    texels = read_texels(_resolve(props["filename"])) if source == "filename" else None
-    return _texture(props, _uplifted(props) if texels is None else texels)
-
-
-def _make_light(props: Any, source: str) -> Any:
-    if source == "rgb":
-        power = _table(props).spectrum(_parse_rgb(props["rgb"]), np.arange(START, END + 1))
-        return _constant(power)
-    return _texture(props, _light_texels(props))
+        return _constant(cube.reflectance(map_to_gamut(rgb, cube.data.sensor, method).rgb, at))
+    texels, placement = _texels(props, is_light=is_light), Placement.read(props)
+    _warn_in_scalar_variants("texture")
+    return make_texture(props, texels, placement)
 
 
 def _make_environment(props: Any) -> Any:
     _source(props, IMAGES)
     _warn_in_scalar_variants("environment")
-    return make_environment(props, _light_texels(props))
+    return make_environment(props, _texels(props, is_light=True))
 
 
 def _warn_in_scalar_variants(name: str) -> None:
@@ -119,41 +113,35 @@ def _source(props: Any, names: tuple[str, ...]) -> str:
     return sources[0]
 
 
-def _texture(props: Any, texels: Texels) -> Any:
-    placement = Placement.read(props)
-    _warn_in_scalar_variants("texture")
-    return make_texture(props, texels, placement)
-
-
-def _uplifted(props: Any) -> Texels:
-    """Uplift an image of colours. Those outside [0, 1] are mapped, with a warning."""
-    cube, method = _cube(props), str(props.get("out_of_gamut", "clip"))
-    check_method(method)
-    path = _resolve(props["filename"]) if "filename" in props else None
-    if path is not None and path.is_file() and is_exr(path):
-        rgb, found = read_colours(path, cube.data.sensor, method)
-    else:
-        rgb, counts = Decoder(np.asarray, False, False, None, cube.data.sensor, method)(
-            _linear(lambda codes: cube.decode(255 * codes), _bitmap(props, path))
-        )
-        found = counts.warnings(method, path)
-    for warning in found:
-        warnings.warn(warning, stacklevel=2)
-    return uplift_texels(cube, rgb.astype(float))
-
-
-def _light_texels(props: Any) -> Texels:
-    """Read the spectra of lights, or uplift the colours of lights."""
+def _texels(props: Any, *, is_light: bool) -> Texels:
+    """Read the spectra of a spectral texture, or uplift an image; colours outside [0, 1] are mapped, with a warning."""
     path = _resolve(props["filename"]) if "filename" in props else None
     if path is not None and (texels := read_texels(path)) is not None:
         return texels
-    table = _table(props)
-    if path is None:
-        return light_texels(table, _linear(decode, props["bitmap"]))
-    rgb, found = read_lights(path, table)
+    uplift: Callable[[Array], Texels]
+    rgb: Values
+    found: tuple[UpliftWarning, ...] = ()
+    if is_light:
+        table = _table(props)
+        uplift = partial(light_texels, table)
+        if path is None:
+            rgb = _linear(decode, props["bitmap"])
+        else:
+            rgb, found = read_lights(path, table)
+    else:
+        cube, method = _cube(props), str(props.get("out_of_gamut", "clip"))
+        check_method(method)
+        sensor, uplift = cube.data.sensor, partial(uplift_texels, cube)
+        if path is not None and path.is_file() and is_exr(path):
+            rgb, found = read_colours(path, sensor, method)
+        else:
+            bitmap = props["bitmap"] if path is None else _bitmap(path)
+            encoded = _linear(lambda codes: cube.decode(255 * codes), bitmap)
+            rgb, counts = Decoder(np.asarray, False, False, None, sensor, method)(encoded)
+            found = counts.warnings(method, path)
     for warning in found:
         warnings.warn(warning, stacklevel=2)
-    return light_texels(table, rgb.astype(float))
+    return uplift(rgb.astype(float))
 
 
 def _table(props: Any) -> EmissionTable:
@@ -199,10 +187,10 @@ def _constant(values: Array) -> Any:
     return mitsuba.load_dict({"type": "regular", "wavelength_min": START, "wavelength_max": END, "values": text})
 
 
-def _bitmap(props: Any, path: Path | None) -> Any:
+def _bitmap(path: Path) -> Any:
     import mitsuba
 
-    return props["bitmap"] if path is None else mitsuba.Bitmap(str(path))
+    return mitsuba.Bitmap(str(path))
 
 
 def _linear(decoding: Callable[[Array], Array], bitmap: Any) -> Array:

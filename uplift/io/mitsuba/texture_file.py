@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,8 +18,7 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import TextureError, UpliftError, UpliftWarning
 from uplift.io.mitsuba.texels import THREADS, Samples, Texels, model_texels
 from uplift.io.texture import exr_file
-from uplift.io.texture.channels import ColourChannels, colour_channels_by_part
-from uplift.io.texture.colours import Counts, Floats, make_decoder, space_warnings
+from uplift.io.texture.colours import ColourChannels, Counts, Floats, coloured_parts, make_decoder, space_warnings
 from uplift.io.texture.image import Image, Part, open_image
 from uplift.io.texture.lights import prepare_lights
 from uplift.io.texture.uplifter import ReadColours
@@ -31,6 +31,7 @@ QUANTITIES = ("T", "S0")
 """Beginnings of the names of channels of reflectance and of power in the layout of Fichet et al. 2021."""
 WAVELENGTH = re.compile(r"(\d+)(?:,(\d+))?nm")
 NUMBERED = re.compile(r"(moment|multiplier)\.\d+")
+Colours = tuple[Floats, tuple[UpliftWarning, ...]]
 GREY_SHARES = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
 EVEN = 1e-3
 """Tolerance of equidistant wavelengths in nm."""
@@ -61,42 +62,34 @@ def read_texels(path: Path) -> Texels | None:
     return model_texels(model, numbers)
 
 
-def read_colours(path: Path, sensor: Sensor, method: str) -> tuple[Floats, tuple[UpliftWarning, ...]]:
+def read_colours(path: Path, sensor: Sensor, method: str) -> Colours:
     """Read linear RGB (h, w, 3) in [0, 1] of an OpenEXR image, as `uplift texture` does, and its warnings.
 
     The first part with colours counts, other channels do not. Raises `TextureError` and `ColourError`.
     """
     with open_image(path) as image:
-        part, channels = _first_colours(image)
-        rgb, counts = _decoded(image, part, channels, make_decoder(sensor, part, "auto", method))
-        return rgb, (*space_warnings(image, sensor), *counts.warnings(method, path))
+        part, channels = coloured_parts(image)[0]
+        return _decoded(image, part, channels, make_decoder(sensor, part, "auto", method), sensor, method)
 
 
-def read_lights(path: Path, table: EmissionTable) -> tuple[Floats, tuple[UpliftWarning, ...]]:
+def read_lights(path: Path, table: EmissionTable) -> Colours:
     """Read linear RGB (h, w, 3) of the lights in an image, as `uplift lights texture` does, and its warnings.
 
     Raises `TextureError` and `OptionError`.
     """
     converter = prepare_lights(table, threads=THREADS)
     with open_image(path) as image:
-        part, found = _first_colours(image)
-        rgb, counts = _decoded(image, part, converter.colour_channels(found), converter.decoder(part))
-        return rgb, (*space_warnings(image, converter.sensor), *counts.warnings(path=path))
+        part, channels = coloured_parts(image)[0]
+        channels = converter.colour_channels(channels)
+        return _decoded(image, part, channels, converter.decoder(part), converter.sensor, "clip")
 
 
-def _first_colours(image: Image) -> tuple[Part, ColourChannels]:
-    """Return the first part with colours."""
-    parts = colour_channels_by_part(image)
-    return next((part, channels) for part, channels in parts if channels is not None)
-
-
-def _decoded(image: Image, part: Part, channels: ColourChannels, decode: ReadColours) -> tuple[Floats, Counts]:
-    bands, counts = [], Counts()
-    for _, rows in image.bands(part):
-        rgb, changed = decode(channels.straight(rows))
-        bands.append(rgb)
-        counts += changed
-    return np.concatenate(bands), counts
+def _decoded(
+    image: Image, part: Part, channels: ColourChannels, decode: ReadColours, sensor: Sensor, method: str
+) -> Colours:
+    bands, counts = zip(*(decode(channels.straight(rows)) for _, rows in image.bands(part)), strict=True)
+    total = sum(counts, Counts())
+    return np.concatenate(bands), (*space_warnings(image, sensor), *total.warnings(method, image.path))
 
 
 def _read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -142,32 +135,26 @@ def _samples(path: Path, wavelengths: Array) -> Samples:
 
 
 def _model(path: Path, header: dict[str, Any], count: int) -> Model:
-    try:
+    with contextlib.suppress(KeyError, TypeError, ValueError, UpliftError):
         model = from_description(json.loads(header["uplift.model"]))
-    except (KeyError, TypeError, ValueError, UpliftError) as error:
-        raise _missing_model(path) from error
-    if model.count != count:
-        raise _missing_model(path)
-    return model
-
-
-def _missing_model(path: Path) -> TextureError:
-    return TextureError(
+        if model.count == count:
+            return model
+    raise TextureError(
         "the header of a texture must describe the model of its channels in uplift.model",
         path=path,
         hint="write the texture with 'uplift texture', and keep its header in other programs",
     )
 
 
-def multipliers_of_rounded(model: Moments, moments: Array, shares: Sequence[float] = GREY_SHARES) -> tuple[Array, Mask]:
+def multipliers_of_rounded(model: Moments, moments: Array) -> tuple[Array, Mask]:
     """Return multipliers (n, C) of moments (n, C) that were rounded or filtered, and their validity (n,).
 
     Rounding can move moments of saturated colours out of the moment space. They are mixed with the least of
-    ``shares`` of grey that returns them.
+    `GREY_SHARES` of grey that returns them.
     """
     multipliers, valid = model.try_from_storage(moments)
     grey = np.eye(model.count)[0] / 2
-    for share in shares:
+    for share in GREY_SHARES:
         if valid.all():
             break
         mixed = (1 - share) * moments[~valid] + share * grey

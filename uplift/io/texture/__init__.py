@@ -16,9 +16,9 @@ from __future__ import annotations
 from uplift.io.texture.colours import Counts
 from uplift.io.texture.conversion import Conversion, convert
 from uplift.io.texture.lights import prepare_lights
-from uplift.io.texture.pixel_encoding import PIXEL_ENCODINGS, Moments, Multipliers, Spectrum
+from uplift.io.texture.mask import prepare_masked
 from uplift.io.texture.sequence import Failure, Job, TextureSettings, convert_all, pending
-from uplift.io.texture.uplifter import prepare, prepare_masked
+from uplift.io.texture.uplifter import PIXEL_ENCODINGS, Moments, Multipliers, Spectrum, prepare
 
 __all__ = [
     "PIXEL_ENCODINGS",

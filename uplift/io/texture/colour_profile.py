@@ -6,6 +6,7 @@ primaries, but evaluates curves with 8 bits only: they are read here. Profiles w
 
 from __future__ import annotations
 
+import contextlib
 import io
 import struct
 from collections.abc import Callable
@@ -83,7 +84,11 @@ def read_profile(spec: Any) -> Profile | None:
     """Return the profile in an `OpenImageIO.ImageSpec`, None if the file states no colour space."""
     interop = str(spec.get_string_attribute("colorInteropID"))
     if interop not in NOT_STATED:
-        return _by_interop_id(interop)
+        # A name of the Color Interop Forum, which the configuration of OpenColorIO has as alias.
+        found = None
+        with contextlib.suppress(OptionError):
+            found = find_ocio_space(interop)
+        return Profile(interop, None if found is None else from_ocio(found))
     if (chromaticities := spec.getattribute("chromaticities")) is not None:
         primaries = _primaries(chromaticities)
         name = "chromaticities"
@@ -97,23 +102,11 @@ def read_profile(spec: Any) -> Profile | None:
     return None
 
 
-def _by_interop_id(name: str) -> Profile:
-    """Return the space of a name of the Color Interop Forum, which the configuration of OpenColorIO has as alias."""
-    try:
-        found = find_ocio_space(name)
-    except OptionError:
-        found = None
-    return Profile(name, None if found is None else from_ocio(found))
-
-
 def _by_code_points(points: Any) -> Profile:
-    if not isinstance(points, tuple) or len(points) < 2:
-        return Profile("CICP", None)
-    name = f"CICP {points[0]}, {points[1]}"
-    primaries, transfer = H273_PRIMARIES.get(points[0]), H273_TRANSFERS.get(points[1])
-    if primaries is None or transfer is None:
-        return Profile(name, None)
-    return Profile(name, ImageSpace(name, primaries, transfer))
+    pair = points[:2] if isinstance(points, tuple) and len(points) > 1 else (0, 0)
+    name = f"CICP {pair[0]}, {pair[1]}"
+    primaries, transfer = H273_PRIMARIES.get(pair[0]), H273_TRANSFERS.get(pair[1])
+    return Profile(name, None if primaries is None or transfer is None else ImageSpace(name, primaries, transfer))
 
 
 def _primaries(numbers: Any) -> Primaries | None:
@@ -180,7 +173,7 @@ def _tone_curve(tag: bytes) -> Curve:
 
 def _parametric(parameters: list[float]) -> Curve:
     """Return Y = (aX + b)^g + e for X ≥ d, else cX + f; the function type follows from the number of parameters."""
-    a, b, c, d, e, f = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    g, a, b, c, d, e, f = 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
     match parameters:
         case [g]:
             pass
@@ -188,10 +181,8 @@ def _parametric(parameters: list[float]) -> Curve:
             d = -b / a if a else 0.0
         case [g, a, b, e]:
             d, f = -b / a if a else 0.0, e
-        case [g, a, b, c, d]:
-            pass
-        case [g, a, b, c, d, e, f]:
-            pass
+        case _:
+            g, a, b, c, d, e, f = (*parameters, e, f)[:7]
 
     def evaluate(codes: Array) -> Array:
         with np.errstate(all="ignore"):

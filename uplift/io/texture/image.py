@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import itertools
 import os
-import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -146,12 +145,11 @@ class Image:
 
         window, kind = part.window, OpenImageIO.TypeDesc(dtype)
         channels = (0, len(part.channels)) if channel is None else (channel, channel + 1)
-        with _silence(is_png=self.handle.format_name() == "png"):
-            if part.is_tiled:
-                columns = (window.x, window.x + window.width)
-                rows = self.handle.read_tiles(*columns, first, end, 0, 1, *channels, kind)
-            else:
-                rows = self.handle.read_scanlines(first, end, 0, *channels, kind)
+        if part.is_tiled:
+            columns = (window.x, window.x + window.width)
+            rows = self.handle.read_tiles(*columns, first, end, 0, 1, *channels, kind)
+        else:
+            rows = self.handle.read_scanlines(first, end, 0, *channels, kind)
         problem = read_error(self.handle)  # the only sign of a truncated JPEG
         if rows is None or problem:
             raise TextureError(
@@ -174,94 +172,46 @@ def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
     """
     import OpenImageIO
 
-    path, config = Path(path), OpenImageIO.ImageSpec()
+    path, config, handle = Path(path), OpenImageIO.ImageSpec(), None
     config["oiio:UnassociatedAlpha"] = 1  # keep colours as stored, not multiplied by alpha
-    if not path.is_file():
-        raise TextureError("no such file", code="file-not-found", path=path, hint=FORMAT_HINT)
     OpenImageIO.attribute("limits:imagesize_MB", 0)  # bands are read, which `_check_memory` compares with memory
-    with _with_path(path):
+    try:
         start = _read_start(path)
         if start.startswith(exr_file.MAGIC):
             exr_file.check_size(path)
-        with _silence(is_png=start.startswith(PNG_SIGNATURE)):
-            handle = OpenImageIO.ImageInput.open(utf8_name(path, TextureError), config)
+        handle = OpenImageIO.ImageInput.open(utf8_name(path, TextureError), config)
         if handle is None:
             problem = read_error(OpenImageIO) or UNKNOWN_PROBLEM
             raise TextureError(problem, code="unreadable-image", hint=FORMAT_HINT)
-        try:
-            parts = tuple(_parts(handle))
-            for part in parts:
-                _check_names(part)
-                _check_memory(part, is_interlaced=_is_interlaced(start))
-            yield Image(path, parts, handle)
-        finally:
-            handle.close()
-
-
-@contextlib.contextmanager
-def _with_path(path: Path) -> Iterator[None]:
-    """Add the path to errors of the block that have none."""
-    try:
-        yield
+        parts = tuple(_parts(handle))
+        for part in parts:
+            for name in (part.name, *part.channels):
+                if not _is_text(name):
+                    raise TextureError(f"names of parts and channels must be UTF-8, got {name!a}", hint="rename it")
+            is_interlaced = start.startswith(PNG_SIGNATURE) and start[PNG_INTERLACE:] == b"\1"
+            _check_memory(part, part.window.height if is_interlaced else part.rows_per_block)
+        yield Image(path, parts, handle)
     except (TextureError, ColourError) as error:
         error.path = path if error.path is None else error.path
         raise
+    finally:
+        if handle is not None:
+            handle.close()
 
 
 def _read_start(path: Path) -> bytes:
+    if not path.is_file():
+        raise TextureError("no such file", code="file-not-found", hint=FORMAT_HINT)
     try:
         with path.open("rb") as file:
             return file.read(PNG_INTERLACE + 1)
     except OSError as error:
-        problem = f"cannot be read: {error.strerror}"
-        raise TextureError(problem, code="unreadable-image", hint=FORMAT_HINT) from error
-
-
-def _is_interlaced(start: bytes) -> bool:
-    return start.startswith(PNG_SIGNATURE) and start[PNG_INTERLACE:] == b"\1"
-
-
-class _Silence:
-    """Standard error of the process, closed while any thread reads a PNG file: libpng prints a line per error.
-
-    OpenImageIO returns the same text as an error.
-    """
-
-    def __init__(self) -> None:
-        self._lock, self._count, self._saved = threading.Lock(), 0, -1
-
-    def __enter__(self) -> None:
-        with self._lock:
-            self._count += 1
-            if self._count > 1:
-                return
-            with contextlib.suppress(OSError):  # no standard error
-                self._saved = os.dup(2)
-                null = os.open(os.devnull, os.O_WRONLY)
-                os.dup2(null, 2)
-                os.close(null)
-
-    def __exit__(self, *_: object) -> None:
-        with self._lock:
-            self._count -= 1
-            if self._count == 0 and self._saved >= 0:
-                os.dup2(self._saved, 2)
-                os.close(self._saved)
-                self._saved = -1
-
-
-_PNG_SILENCE = _Silence()
-
-
-def _silence(*, is_png: bool) -> contextlib.AbstractContextManager[None]:
-    """Return a context in which libpng does not print its errors; an empty one for other formats."""
-    return _PNG_SILENCE if is_png else contextlib.nullcontext()
+        raise TextureError(f"cannot be read: {error.strerror}", code="unreadable-image", hint=FORMAT_HINT) from error
 
 
 def _parts(handle: Any) -> Iterator[Part]:
     if handle.format_name() not in FORMATS:
-        problem = f"unsupported image format {handle.format_name()}"
-        raise TextureError(problem, hint=FORMAT_HINT)
+        raise TextureError(f"unsupported image format {handle.format_name()}", hint=FORMAT_HINT)
     number = 0
     while handle.seek_subimage(number, 0):
         yield _part(handle.spec(), number)
@@ -276,6 +226,7 @@ def _part(spec: Any, number: int) -> Part:
     formats = spec.channelformats or (spec.format,) * spec.nchannels
     display = (spec.full_x, spec.full_y, spec.full_width, spec.full_height)
     aspect = spec.get_float_attribute("PixelAspectRatio", 1.0)
+    date = str(spec.get_string_attribute("DateTime"))
     return Part(
         number=number,
         name=spec.get_string_attribute("oiio:subimagename"),
@@ -285,7 +236,7 @@ def _part(spec: Any, number: int) -> Part:
         rows_per_block=spec.tile_height or max(spec.get_int_attribute("oiio:RowsPerChunk", 1), 1),
         is_tiled=bool(spec.tile_width),
         profile=read_profile(spec),
-        date=_text(spec, "DateTime") or None,
+        date=date if _is_text(date) and date else None,
         metadata=_metadata(spec),
         has_associated_alpha=not spec.get_int_attribute("oiio:UnassociatedAlpha"),
     )
@@ -293,43 +244,23 @@ def _part(spec: Any, number: int) -> Part:
 
 def _metadata(spec: Any) -> dict[str, Attribute]:
     """Return the attributes that are not about how the image is stored."""
-    found = (
-        each
-        for each in spec.extra_attribs
-        if _is_environment(each) or (_is_kept_name(each.name) and _is_kept_value(each.value))
-    )
-    return {each.name: Attribute(each.type, each.value) for each in itertools.islice(found, MAX_METADATA)}
+    kept = (each for each in spec.extra_attribs if _is_kept(each.name, each.value))
+    return {each.name: Attribute(each.type, each.value) for each in itertools.islice(kept, MAX_METADATA)}
 
 
-def _is_environment(attribute: Any) -> bool:
-    return attribute.name == "textureformat" and attribute.value in ENVIRONMENTS
-
-
-def _is_kept_name(name: str) -> bool:
+def _is_kept(name: str, value: Any) -> bool:
+    if name == "textureformat":
+        return value in ENVIRONMENTS
     is_own = name in FILM or not set(name) & set(":.")
-    return is_own and name not in TECHNICAL and _is_text(name)
+    return is_own and name not in TECHNICAL and _is_text(name) and _is_kept_value(value)
 
 
 def _is_kept_value(value: Any) -> bool:
     """Return whether a value is text, a number, or a tuple of either, and neither empty nor long. Bytes are not."""
-    if isinstance(value, tuple):
-        return 0 < len(value) <= MAX_METADATA_LENGTH and all(map(_is_kept_value, value))
-    if isinstance(value, str):
-        return 0 < len(value) <= MAX_METADATA_LENGTH and _is_text(value)
+    if isinstance(value, str | tuple):
+        parts = all(map(_is_kept_value, value)) if isinstance(value, tuple) else _is_text(value)
+        return 0 < len(value) <= MAX_METADATA_LENGTH and parts
     return isinstance(value, int | float)
-
-
-def _text(spec: Any, name: str) -> str:
-    """Return a text attribute, empty if it is missing or not UTF-8."""
-    text = str(spec.get_string_attribute(name))
-    return text if _is_text(text) else ""
-
-
-def _check_names(part: Part) -> None:
-    """Raise `TextureError` for names of the part or its channels that are not UTF-8."""
-    for name in (part.name, *part.channels):
-        if not _is_text(name):
-            raise TextureError(f"names of parts and channels must be UTF-8, got {name!a}", hint="rename it")
 
 
 def _is_text(name: str) -> bool:
@@ -337,9 +268,9 @@ def _is_text(name: str) -> bool:
     return not any("\ud800" <= letter <= "\udfff" for letter in name)
 
 
-def _check_memory(part: Part, *, is_interlaced: bool) -> None:
-    """Raise `TextureError` if the rows that must be decoded together do not fit into memory."""
-    rows = part.window.height if is_interlaced else min(part.rows_per_block, part.window.height)
+def _check_memory(part: Part, rows: int) -> None:
+    """Raise `TextureError` if rows that must be decoded together do not fit into memory."""
+    rows = min(rows, part.window.height)
     needed, total = rows * part.window.width * len(part.channels) * 4, total_memory()
     if total is not None and needed > total:
         raise TextureError(

@@ -6,6 +6,7 @@ import json
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from uplift.colorimetry.gamut import conversion
 from uplift.colorimetry.observer import sensor
@@ -13,11 +14,17 @@ from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.io import exr
-from uplift.io.texture.channels import ColourChannels
-from uplift.io.texture.colours import Counts, Floats, check_encoding, linear_reader, reads_codes, source_space
+from uplift.io.texture.colours import (
+    ColourChannels,
+    Counts,
+    Floats,
+    check_encoding,
+    linear_reader,
+    reads_codes,
+    source_space,
+)
 from uplift.io.texture.image import Part, Values
-from uplift.io.texture.pixel_encoding import SPECTRAL_LAYOUT, spectral_channels
-from uplift.io.texture.uplifter import Converted, Converter, ReadColours
+from uplift.io.texture.uplifter import SPECTRAL_LAYOUT, Converted, Converter, ReadColours, spectral_channels
 from uplift.lights.lookup import MAX_VALUE, EmissionTable
 from uplift.lights.table import emission_digest
 from uplift.lookup.validation import as_wavelengths
@@ -78,7 +85,7 @@ class LightUplifter(Converter):
 
 def prepare_lights(
     table: EmissionTable,
-    wavelengths: Values | None = None,
+    wavelengths: ArrayLike | None = None,
     *,
     depth: str | None = None,
     encoding: str = "auto",

@@ -2,49 +2,41 @@
 
 A grey mask holds the numbers of the cubes, 0 for the first; or, for two cubes, weights: black is the first, white the
 second, and grey mixes. A coloured mask holds the weights of three cubes in R, G and B.
+
+Spectra and moments of a mixture of cubes are those of its parts, weighted: moments are linear in the reflectance, so
+the mixture of two reflectances of one colour has this colour, and stays in [0, 1]. Multipliers are mixed as moments.
 """
 
 from __future__ import annotations
 
 import contextlib
-import os
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+import hashlib
+import json
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uplift.common.errors import TextureError
-from uplift.io.texture.channels import colour_channels
-from uplift.io.texture.colours import Floats
+from uplift.common.arrays import StrPath
+from uplift.common.errors import OptionError, TextureError
+from uplift.common.files import check_regular
+from uplift.io.texture.colours import Counts, Floats, colour_channels, coloured_parts
 from uplift.io.texture.image import Image, Part, Values, open_image
+from uplift.io.texture.uplifter import Converted, Converter, ConvertRows, Uplifter
+from uplift.lookup.cube import common_sensor
+from uplift.lookup.refine import refine_to_rgb
 
 MIN_WHITE = 0.5
 """Share of white that the largest weight of an integer mask has; smaller ones may be numbers of too many cubes."""
 HINT = "paint a grey mask with the numbers of the cubes, or with weights of the second of two cubes up to white"
 
-ToWeights = Callable[[Values], Floats]
-"""From the numbers (…, 3) of a mask to the weights (…, n) of n cubes."""
-
-
-@dataclass(frozen=True, eq=False)
-class Mask:
-    """An open mask: its first part, the channels that hold R, G and B, and the meaning of their numbers."""
-
-    image: Image
-    part: Part
-    channels: tuple[int, int, int]
-    to_weights: ToWeights
-
-    def rows(self, first: int, count: int) -> Floats:
-        """Read weights (count, width, n) of the n cubes, whose sum is 1, from row ``first`` on, counted from 0."""
-        band = self.image.rows(self.part, first, count)
-        return self.to_weights(band[..., self.channels])
+ReadWeights = Callable[[int, int], Floats]
+"""From the first row, counted from 0, and the number of rows k to weights (k, width, n) of n cubes, of sum 1."""
 
 
 @contextlib.contextmanager
-def open_mask(path: str | os.PathLike[str], cubes: int, window: tuple[int, int]) -> Iterator[Mask]:
+def open_mask(path: StrPath, cubes: int, window: tuple[int, int]) -> Iterator[ReadWeights]:
     """Open a mask of at least two cubes, for an image of this width and height.
 
     Its rows are read once to find out what its numbers are. Raises `TextureError` for a file that cannot be read or has
@@ -56,67 +48,137 @@ def open_mask(path: str | os.PathLike[str], cubes: int, window: tuple[int, int])
         if size != window:
             raise TextureError(
                 f"a mask must have the size of its image, {window[0]} × {window[1]}, got {size[0]} × {size[1]}",
-                path=path,
                 hint="scale the mask",
             )
         found = colour_channels(part)
-        channels = (0, 0, 0) if found is None and len(part.channels) == 1 else found and found.rgb
-        if not channels:
-            raise TextureError(f"no mask among the channels {', '.join(part.channels)}", path=path, hint=HINT)
-        summary = _summarise(image, part, channels)
-        yield Mask(image, part, channels, _to_weights(Path(path), part.max_code, cubes, summary))
+        if found is None and len(part.channels) > 1:
+            raise TextureError(f"no mask among the channels {', '.join(part.channels)}", hint=HINT)
+        rgb = (0, 0, 0) if found is None else found.rgb
+        to_weights = _interpret(image, part, rgb, cubes)
+        yield lambda first, count: to_weights(image.rows(part, first, count)[..., rgb])
 
 
-@dataclass(frozen=True)
-class _Summary:
-    """Range of all numbers of a mask, whether its channels are equal, and whether a pixel is black."""
-
-    low: float
-    high: float
-    is_grey: bool
-    has_black: bool
-
-
-def _summarise(image: Image, part: Part, channels: tuple[int, int, int]) -> _Summary:
+def _interpret(image: Image, part: Part, rgb: tuple[int, int, int], cubes: int) -> Callable[[Values], Floats]:
+    """Return the function from the numbers (…, 3) of a mask to weights (…, n). Raises `TextureError` for others."""
     low, high, is_grey, has_black = np.inf, -np.inf, True, False
     for _, band in image.bands(part):
-        colours = band[..., channels]
+        colours = band[..., rgb]
         low, high = min(low, np.min(colours)), max(high, np.max(colours))  # NaN remains NaN
         is_grey &= bool((colours == colours[..., :1]).all())
         has_black |= bool((colours == 0).all(axis=-1).any())
-    return _Summary(float(low), float(high), is_grey, has_black)
-
-
-def _to_weights(path: Path, max_code: int, cubes: int, found: _Summary) -> ToWeights:
-    """Choose the meaning of a mask. Raises `TextureError` if it has none."""
-    if max_code and found.is_grey and found.high < cubes:
-        return lambda numbers: _one_hot(numbers[..., 0], cubes)
-    scale = max_code or 1
-    is_in_range = found.low >= 0 and found.high <= scale
-    if found.is_grey and cubes == 2 and is_in_range and (not max_code or found.high >= MIN_WHITE * scale):
-        return lambda numbers: _two_weights(numbers[..., 0] / np.float32(scale))
-    if not found.is_grey and cubes == 3 and is_in_range and not found.has_black:
+    is_integer, white = part.max_code > 0, part.max_code or 1
+    is_weight = low >= 0 and high <= white
+    if is_integer and is_grey and high < cubes:
+        return lambda numbers: np.asarray(numbers[..., :1] == np.arange(cubes), dtype=np.float32)
+    if is_weight and is_grey and cubes == 2 and (not is_integer or high >= MIN_WHITE * white):
+        return lambda numbers: _pair(np.asarray(numbers[..., 0] / np.float32(white), dtype=np.float32))
+    if is_weight and not is_grey and cubes == 3 and not has_black:
         return _normalised
-    kind = "grey" if found.is_grey else "coloured"
-    black = " with black pixels" if not found.is_grey and found.has_black else ""
     meanings = {2: "0 and 1, or weights up to white", 3: "0 to 2, or weights in R, G and B that are not all 0"}
     raise TextureError(
-        f"a mask of {cubes} cubes must hold {meanings.get(cubes, f'0 to {cubes - 1}')}, got {kind} values "
-        f"from {found.low:g} to {found.high:g}{f' of {max_code}' if max_code else ''}{black}",
-        path=path,
+        f"a mask of {cubes} cubes must hold {meanings.get(cubes, f'0 to {cubes - 1}')}, "
+        f"got {'grey' if is_grey else 'coloured'} values from {low:g} to {high:g}"
+        + (f" of {white}" if is_integer else "")
+        + (" with black pixels" if has_black and not is_grey else ""),
         hint=HINT,
     )
 
 
-def _one_hot(numbers: NDArray[np.generic], cubes: int) -> Floats:
-    return np.asarray(numbers[..., None] == np.arange(cubes), dtype=np.float32)
-
-
-def _two_weights(second: NDArray[np.generic]) -> Floats:
-    second = np.asarray(second, dtype=np.float32)
+def _pair(second: Floats) -> Floats:
     return np.stack([1 - second, second], axis=-1)
 
 
 def _normalised(numbers: Values) -> Floats:
     weights = np.asarray(numbers, dtype=np.float32)
     return weights / weights.sum(axis=-1, keepdims=True)
+
+
+@dataclass(frozen=True, eq=False)
+class MaskedUplifter(Converter):
+    """A converter of colours to the spectra of n cubes, chosen by an image, made by `prepare_masked`."""
+
+    uplifters: tuple[Uplifter, ...]
+    mask: Path
+
+    @contextlib.contextmanager
+    def opened(self, image: Image) -> Iterator[ConvertRows]:
+        sizes = dict.fromkeys((part.window.width, part.window.height) for part, _ in coloured_parts(image))
+        with contextlib.ExitStack() as stack:  # a mask that fits one size only is an error for the other
+            weights, *_ = [stack.enter_context(open_mask(self.mask, len(self.uplifters), size)) for size in sizes]
+            yield lambda part, first, rgb: self.mix(rgb, weights(first - part.window.y, len(rgb)))
+
+    def convert(self, rgb: Floats) -> Converted:
+        return self.uplifters[0].convert(rgb)
+
+    def mix(self, rgb: Floats, weights: Floats) -> Converted:
+        """Uplift linear RGB (k, width, 3) in [0, 1] by the cubes, with weights (k, width, n) of sum 1."""
+        first = self.uplifters[0]
+        is_mixed = weights.max(axis=-1) < 1 if not first.is_linear else np.zeros(rgb.shape[:2], dtype=bool)
+        values = np.zeros((*rgb.shape[:2], len(self.channels)), dtype=np.float32)
+        moments = np.zeros((np.count_nonzero(is_mixed), len(self.channels)))
+        counts = Counts()
+        for uplifter, weight in zip(self.uplifters, np.moveaxis(weights, -1, 0), strict=True):
+            rows = weight > 0
+            if not rows.any():
+                continue
+            (_, found), counted = uplifter.convert(rgb[rows])
+            counts += counted
+            mixed, shared = is_mixed[rows], rows[is_mixed]
+            values[rows & ~is_mixed] += weight[rows & ~is_mixed][:, None] * found[~mixed]
+            if mixed.any():
+                parts = uplifter.cube.data.model.to_storage(found[mixed].astype(float))
+                moments[shared] += weight[is_mixed][shared][:, None] * parts
+        if len(moments):
+            data = first.cube.data
+            start = data.model.from_storage(moments)
+            values[is_mixed] = refine_to_rgb(data, data.model, start, rgb[is_mixed].astype(float))
+        return (rgb, values), counts
+
+    def multiply(self, values: tuple[Floats, ...], opacity: Floats) -> tuple[Floats, ...]:
+        return self.uplifters[0].multiply(values, opacity)
+
+
+def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
+    """Prepare several cubes for textures.
+
+    Parameters
+    ----------
+    uplifters : sequence of Uplifter
+        Uplifters of at least two cubes, with the same pixel encoding.
+    mask : Path
+        Image of which cube a pixel belongs to; see `uplift.io.texture.mask`.
+
+    Returns
+    -------
+    MaskedUplifter
+        The converter to pass to `convert`.
+
+    Raises
+    ------
+    OptionError
+        One cube only, cubes of different spaces, or with different channels or, for moments and multipliers, models.
+    TextureError
+        The mask cannot be read.
+    """
+    if len(uplifters) < 2:
+        raise OptionError(
+            f"a mask chooses among at least two cubes, got {len(uplifters)}",
+            hint="name the cubes in the order of the numbers in the mask",
+        )
+    first = uplifters[0]
+    common_sensor(each.cube for each in uplifters)
+    is_model_stored = first.channels[0][:1].islower()
+    models = {json.dumps(each.cube.data.model.describe(), sort_keys=True) for each in uplifters}
+    if len({each.channels for each in uplifters}) > 1 or (is_model_stored and len(models) > 1):
+        raise OptionError(
+            "cubes of one texture must have the same wavelengths or, for moments and multipliers, the same model",
+            hint="write spectra at given wavelengths, or build the cubes with the same options",
+        )
+    check_regular(mask, TextureError, hint="name an image")
+    with mask.open("rb") as file:
+        mask_digest = hashlib.file_digest(file, "sha256").hexdigest()
+    digests = [each.header["uplift.cube"] for each in uplifters]
+    description = json.loads(first.header["uplift.texture"]) | {"cubes": digests, "mask": mask_digest}
+    header = {**first.header, "uplift.cube": ", ".join(digests), "uplift.texture": json.dumps(description)}
+    settings = {each.name: getattr(first, each.name) for each in fields(Converter)}
+    return MaskedUplifter(**settings | {"header": header}, uplifters=tuple(uplifters), mask=mask)

@@ -10,8 +10,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import StrPath
 from uplift.common.errors import UpliftWarning
-from uplift.io.texture.channels import coloured_parts
-from uplift.io.texture.colours import Counts, Floats, check_encoding, make_decoder, space_warnings
+from uplift.io.texture.colours import Counts, Floats, check_encoding, coloured_parts, make_decoder, space_warnings
 from uplift.io.texture.image import Part, Values, open_image
 
 

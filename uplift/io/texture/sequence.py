@@ -12,8 +12,6 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from uplift.common.errors import OptionError, TextureError, UpliftError
 from uplift.common.files import check_outputs, remove_stale
 from uplift.common.processes import tied_processes
@@ -22,13 +20,11 @@ from uplift.io.texture import exr_file
 from uplift.io.texture.conversion import Conversion, convert
 from uplift.io.texture.image import open_image
 from uplift.io.texture.lights import prepare_lights
-from uplift.io.texture.pixel_encoding import PixelEncoding, Spectrum
-from uplift.io.texture.uplifter import Converter, prepare, prepare_masked
+from uplift.io.texture.mask import prepare_masked
+from uplift.io.texture.uplifter import Converter, PixelEncoding, Spectrum, prepare
 from uplift.lights.lookup import load_emission
 from uplift.lookup import load
 
-MAX_NAMES = 4
-"""Finished textures that an error names."""
 DASK_TIMEOUT = "10s"
 DASK_CLOSE_SECONDS = 2
 
@@ -80,20 +76,14 @@ class TextureSettings:
         Converter
             The converter to pass to `convert`.
         """
-        shared: dict[str, Any] = {
-            "depth": self.depth,
-            "encoding": self.encoding,
-            "space": self.space,
-            "threads": self.threads,
-        }
+        shared: dict[str, Any] = {name: getattr(self, name) for name in ("depth", "encoding", "space", "threads")}
         if self.emission:
             at = self.pixel_encoding.wavelengths if isinstance(self.pixel_encoding, Spectrum) else None
-            return prepare_lights(load_emission(self.cubes[0]), None if at is None else np.array(at), **shared)
+            return prepare_lights(load_emission(self.cubes[0]), at, **shared)
         cubes = [load(path) for path in self.cubes]
         if self.fill_missing:
             cubes = [cube.fill_missing(threads=self.threads) for cube in cubes]
-        shared["out_of_gamut"] = self.out_of_gamut
-        uplifters = [prepare(cube, self.pixel_encoding, **shared) for cube in cubes]
+        uplifters = [prepare(cube, self.pixel_encoding, out_of_gamut=self.out_of_gamut, **shared) for cube in cubes]
         return uplifters[0] if self.mask is None else prepare_masked(uplifters, Path(self.mask))
 
 
@@ -146,8 +136,7 @@ def run(job: Job, progress: ProgressCallback = ignore_progress) -> Conversion | 
     except UpliftError as error:
         return Failure(job.source, error)
     except MemoryError:
-        problem, hint = "not enough memory", "use fewer processes"
-        return Failure(job.source, TextureError(problem, code="out-of-memory", path=job.source, hint=hint))
+        return Failure(job.source, TextureError("not enough memory", path=job.source, hint="use fewer processes"))
 
 
 def convert_all(
@@ -177,8 +166,8 @@ def convert_all(
     OptionError
         The number of processes is below 1, Dask is not installed, or no scheduler responds.
     TextureError
-        The workers ended before all images were converted. The error lists the textures that are finished; no other
-        file remains.
+        The workers ended before all images were converted. Textures that are finished stay; no other file
+        remains.
     """
     if processes < 1:
         raise OptionError(f"the number of processes must be at least 1, got {processes}", hint="use 1 or more")
@@ -206,11 +195,8 @@ def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
         if job.target not in finished:
             with contextlib.suppress(OSError):
                 remove_stale(job.target, seconds=0)
-    names = ", ".join(target.name for target in finished[:MAX_NAMES])
-    more = f" and {len(finished) - MAX_NAMES} more" if len(finished) > MAX_NAMES else ""
     return TextureError(
-        f"the workers ended unexpectedly; {len(finished)} of {len(jobs)} textures are finished"
-        + (f" ({names}{more})" if finished else ""),
+        f"the workers ended unexpectedly; {len(finished)} of {len(jobs)} textures are finished",
         code="workers-lost",
         hint="resume with the others, with fewer processes if memory ran out",
     )
@@ -218,7 +204,7 @@ def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
 
 @contextlib.contextmanager
 def _dask_executor(address: str) -> Iterator[Executor]:
-    """Connect to a cluster. Dask does not log lost connections, which are raised as errors. Raises `OptionError`."""
+    """Connect to a cluster. Raises `OptionError`."""
     try:
         import distributed
     except ImportError as error:
@@ -227,26 +213,20 @@ def _dask_executor(address: str) -> Iterator[Executor]:
             code="dask-not-installed",
             hint="install it: pip install 'spectral-uplift[cluster]'",
         ) from error
-    levels = {handler: handler.level for handler in logging.getLogger("distributed").handlers}
-    try:
-        for handler in levels:
+    with contextlib.ExitStack() as stack:
+        for handler in logging.getLogger("distributed").handlers:  # lost connections are raised as errors
+            stack.callback(handler.setLevel, handler.level)
             handler.setLevel(logging.CRITICAL + 1)
         try:
             client = distributed.Client(address, timeout=DASK_TIMEOUT)
         except Exception as error:  # each protocol has its own, such as RuntimeError for missing certificates
-            reason = " ".join(str(error).split())
-            raise OptionError(
-                f"no Dask scheduler can be used at '{address}'" + (f": {reason}" if reason else ""),
-                hint="start one: dask scheduler",
-            ) from error
+            problem = f"no Dask scheduler can be used at '{address}': {' '.join(str(error).split())}"
+            raise OptionError(problem, hint="start one: dask scheduler") from error
         try:
             yield client.get_executor()
         finally:
             with contextlib.suppress(Exception):  # of a scheduler that has ended
                 client.close(timeout=DASK_CLOSE_SECONDS)
-    finally:
-        for handler, level in levels.items():
-            handler.setLevel(level)
 
 
 def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:

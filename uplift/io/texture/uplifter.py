@@ -1,38 +1,38 @@
-"""Converters, which `uplift.io.texture.convert` applies to an image: a cube, or several cubes chosen by a mask.
+"""Converters, which `uplift.io.texture.convert` applies to an image, and the numbers that a pixel of a texture holds.
 
-Spectra and moments of a mixture of cubes are those of its parts, weighted: moments are linear in the reflectance, so
-the mixture of two reflectances of one colour has this colour, and stays in [0, 1]. Multipliers are mixed as moments.
+A pixel holds a reflectance spectrum, moments, or multipliers.
 """
 
 from __future__ import annotations
 
 import contextlib
-import hashlib
 import json
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any, ClassVar
 
 import numpy as np
 
+from uplift import models
 from uplift.colorimetry.gamut import check_method
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace, find_space
-from uplift.common.errors import OptionError, TextureError
-from uplift.common.files import check_regular
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
 from uplift.io import exr
-from uplift.io.texture.channels import ColourChannels, coloured_parts
-from uplift.io.texture.colours import Counts, Floats, check_encoding, make_decoder
+from uplift.io.texture.colours import ColourChannels, Counts, Floats, check_encoding, make_decoder
 from uplift.io.texture.image import Image, Part, Values
-from uplift.io.texture.mask import open_mask
-from uplift.io.texture.pixel_encoding import PixelEncoding, Sampler, Spectrum
 from uplift.lattice import Status
 from uplift.lookup import Cube
-from uplift.lookup.cube import common_sensor
-from uplift.lookup.refine import refine_to_rgb
+from uplift.lookup.blocks import blockwise
+from uplift.lookup.interpolate import refined_multipliers
 
+Sampler = Callable[[Floats], Floats]
+"""From linear RGB (…, 3) in [0, 1] to numbers (…, N)."""
+SPECTRAL_LAYOUT = {"spectralLayoutVersion": "1.0"}
+"""Attribute of files in the layout of Fichet et al. 2021."""
 ReadColours = Callable[[Values], tuple[Floats, Counts]]
 """From the numbers of an image (…, 3) to linear RGB (…, 3), and counts of unusual pixels."""
 Converted = tuple[tuple[Floats, ...], Counts]
@@ -77,6 +77,124 @@ class Converter(ABC):
     def opened(self, image: Image) -> Iterator[ConvertRows]:
         """Yield the conversion of rows of an image: by default `convert`, wherever they are."""
         yield lambda part, first, rgb: self.convert(rgb)
+
+
+class PixelEncoding(ABC):
+    """The numbers of a pixel, the channels for them, and their description in the header."""
+
+    name: ClassVar[str]
+    """Name of the encoding."""
+    depths: ClassVar[tuple[str, ...]]
+    """Channel types that are precise enough, the default first."""
+    is_linear: ClassVar[bool] = True
+    """Whether the numbers are linear in the spectrum, and so can be filtered and multiplied by alpha."""
+    header: ClassVar[dict[str, str]] = {}
+    """Attributes that the layout requires."""
+
+    @abstractmethod
+    def channels(self, cube: Cube) -> tuple[str, ...]:
+        """Names of the channels, one per number. Raises `OptionError` if the cube has no such numbers."""
+
+    @abstractmethod
+    def make_sampler(self, cube: Cube, threads: int) -> Sampler:
+        """The function that computes the numbers."""
+
+    def describe(self, cube: Cube) -> dict[str, Any]:
+        """The encoding as JSON values: ``as``, its name, and the wavelengths of a spectrum."""
+        return {"as": self.name}
+
+
+@dataclass(frozen=True)
+class Spectrum(PixelEncoding):
+    """Reflectance at wavelengths, a channel ``T.550,000000nm`` each.
+
+    Parameters
+    ----------
+    wavelengths : tuple of float, optional
+        Ascending wavelengths in nm, by default those of the cube's sensor.
+
+    References
+    ----------
+    A. Fichet, R. Pacanowski, A. Wilkie, "An OpenEXR Layout for Spectral Images", JCGT 10(3), 2021.
+    """
+
+    wavelengths: tuple[float, ...] | None = None
+    name = "spectrum"
+    depths = ("half", "float")
+    header = SPECTRAL_LAYOUT
+
+    def channels(self, cube: Cube) -> tuple[str, ...]:
+        return spectral_channels("T", cube.resolve_wavelengths(self.wavelengths))
+
+    def describe(self, cube: Cube) -> dict[str, Any]:
+        return {"as": self.name, "wavelengths": cube.resolve_wavelengths(self.wavelengths).tolist()}
+
+    def make_sampler(self, cube: Cube, threads: int) -> Sampler:
+        from uplift.lookup import bulk
+
+        return bulk.spectra(cube, self.wavelengths, threads=threads)
+
+
+@dataclass(frozen=True)
+class Moments(PixelEncoding):
+    """Coefficients of a moments cube. They are linear in the spectrum, so textures can be filtered and mip-mapped."""
+
+    name = "moments"
+    depths = ("float", "half")
+
+    def channels(self, cube: Cube) -> tuple[str, ...]:
+        model = cube.data.model
+        if not isinstance(model, models.Moments):
+            raise OptionError(
+                f"moments need a moments cube, got a {model.name} cube",
+                code="no-moments",
+                hint="write multipliers, or use a moments cube",
+            )
+        return tuple(f"moment.{index:02}" for index in range(model.count))
+
+    def make_sampler(self, cube: Cube, threads: int) -> Sampler:
+        from uplift.lookup import bulk
+
+        return bulk.coefficients(cube, threads=threads)
+
+
+@dataclass(frozen=True)
+class Multipliers(PixelEncoding):
+    """Multipliers, from which spectra are evaluated at once. They are refined to the pixel's exact colour.
+
+    Every model has them. They do not interpolate, so textures must not be filtered.
+    """
+
+    name = "multipliers"
+    depths = ("float",)
+    is_linear = False
+
+    def channels(self, cube: Cube) -> tuple[str, ...]:
+        return tuple(f"multiplier.{index:02}" for index in range(cube.data.model.count))
+
+    def make_sampler(self, cube: Cube, threads: int) -> Sampler:
+        refined = partial(refined_multipliers, cube.data)
+        width = cube.data.model.count
+        return lambda rgb: blockwise(refined, rgb.astype(float), width, np.float32, threads)
+
+
+PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {each.name: each for each in (Spectrum, Moments, Multipliers)}
+"""Pixel encodings with their defaults, by name."""
+
+
+def spectral_channels(quantity: str, wavelengths: Array) -> tuple[str, ...]:
+    """Name the channels of ascending wavelengths (N,) in nm, such as ``T.550,000000nm``.
+
+    The layout is that of Fichet et al. 2021: the quantity is T, reflectance, or S0, power that is not polarised. Raises
+    `OptionError` for wavelengths that do not ascend.
+    """
+    names = tuple(f"{quantity}." + f"{wavelength:.6f}nm".replace(".", ",") for wavelength in wavelengths)
+    if (np.diff(wavelengths) <= 0).any() or len(set(names)) < len(names):
+        raise OptionError(
+            "wavelengths of a spectral image must ascend in steps of at least 1e-6 nm",
+            hint="sort them and remove duplicates",
+        )
+    return names
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,94 +297,3 @@ def _rgb_error(cube: Cube, threads: int) -> Sampler | None:
 
     has_unrealisable = (cube.data.points.status == Status.UNREALISABLE).any()
     return bulk.max_rgb_error(cube, threads=threads) if has_unrealisable else None
-
-
-@dataclass(frozen=True, eq=False)
-class MaskedUplifter(Converter):
-    """A converter of colours to the spectra of n cubes, chosen by an image, made by `prepare_masked`."""
-
-    uplifters: tuple[Uplifter, ...]
-    mask: Path
-
-    @contextlib.contextmanager
-    def opened(self, image: Image) -> Iterator[ConvertRows]:
-        sizes = dict.fromkeys((part.window.width, part.window.height) for part, _ in coloured_parts(image))
-        with contextlib.ExitStack() as stack:  # a mask that fits one size only is an error for the other
-            mask, *_ = [stack.enter_context(open_mask(self.mask, len(self.uplifters), size)) for size in sizes]
-            yield lambda part, first, rgb: self.mix(rgb, mask.rows(first - part.window.y, len(rgb)))
-
-    def convert(self, rgb: Floats) -> Converted:
-        return self.uplifters[0].convert(rgb)
-
-    def mix(self, rgb: Floats, weights: Floats) -> Converted:
-        """Uplift linear RGB (k, width, 3) in [0, 1] by the cubes, with weights (k, width, n) of sum 1."""
-        first = self.uplifters[0]
-        is_mixed = weights.max(axis=-1) < 1 if not first.is_linear else np.zeros(rgb.shape[:2], dtype=bool)
-        values = np.zeros((*rgb.shape[:2], len(self.channels)), dtype=np.float32)
-        moments = np.zeros((np.count_nonzero(is_mixed), len(self.channels)))
-        counts = Counts()
-        for uplifter, weight in zip(self.uplifters, np.moveaxis(weights, -1, 0), strict=True):
-            rows = weight > 0
-            if not rows.any():
-                continue
-            (_, found), counted = uplifter.convert(rgb[rows])
-            counts += counted
-            mixed, shared = is_mixed[rows], rows[is_mixed]
-            values[rows & ~is_mixed] += weight[rows & ~is_mixed][:, None] * found[~mixed]
-            if mixed.any():
-                parts = uplifter.cube.data.model.to_storage(found[mixed].astype(float))
-                moments[shared] += weight[is_mixed][shared][:, None] * parts
-        if len(moments):
-            data = first.cube.data
-            start = data.model.from_storage(moments)
-            values[is_mixed] = refine_to_rgb(data, data.model, start, rgb[is_mixed].astype(float))
-        return (rgb, values), counts
-
-    def multiply(self, values: tuple[Floats, ...], opacity: Floats) -> tuple[Floats, ...]:
-        return self.uplifters[0].multiply(values, opacity)
-
-
-def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
-    """Prepare several cubes for textures.
-
-    Parameters
-    ----------
-    uplifters : sequence of Uplifter
-        Uplifters of at least two cubes, with the same pixel encoding.
-    mask : Path
-        Image of which cube a pixel belongs to; see `uplift.io.texture.mask`.
-
-    Returns
-    -------
-    MaskedUplifter
-        The converter to pass to `convert`.
-
-    Raises
-    ------
-    OptionError
-        One cube only, cubes of different spaces, or with different channels or, for moments and multipliers, models.
-    TextureError
-        The mask cannot be read.
-    """
-    if len(uplifters) < 2:
-        raise OptionError(
-            f"a mask chooses among at least two cubes, got {len(uplifters)}",
-            hint="name the cubes in the order of the numbers in the mask",
-        )
-    first = uplifters[0]
-    common_sensor(each.cube for each in uplifters)
-    is_model_stored = first.channels[0][:1].islower()
-    models = {json.dumps(each.cube.data.model.describe(), sort_keys=True) for each in uplifters}
-    if len({each.channels for each in uplifters}) > 1 or (is_model_stored and len(models) > 1):
-        raise OptionError(
-            "cubes of one texture must have the same wavelengths or, for moments and multipliers, the same model",
-            hint="write spectra at given wavelengths, or build the cubes with the same options",
-        )
-    check_regular(mask, TextureError, hint="name an image")
-    with mask.open("rb") as file:
-        mask_digest = hashlib.file_digest(file, "sha256").hexdigest()
-    digests = [each.header["uplift.cube"] for each in uplifters]
-    description = json.loads(first.header["uplift.texture"]) | {"cubes": digests, "mask": mask_digest}
-    header = {**first.header, "uplift.cube": ", ".join(digests), "uplift.texture": json.dumps(description)}
-    settings = {each.name: getattr(first, each.name) for each in fields(Converter)}
-    return MaskedUplifter(**settings | {"header": header}, uplifters=tuple(uplifters), mask=mask)

@@ -17,7 +17,7 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import PlanFileError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.scene_colours import Images, cells_touched
-from uplift.io.texture.channels import coloured_parts
+from uplift.io.texture.colours import coloured_parts
 from uplift.io.texture.image import open_image
 from uplift.lattice import Lattice
 from uplift.lattice.entry_boxes import EntryBoxes

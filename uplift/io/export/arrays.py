@@ -1,7 +1,8 @@
-"""The nodes of a cube as CSV, one line per node."""
+"""Cubes as arrays and tables: the contents of a cube file as npz, and its nodes as CSV."""
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterator
 from itertools import chain
@@ -11,11 +12,30 @@ import numpy as np
 from uplift.common.arrays import Indices
 from uplift.common.csv import CsvWriter
 from uplift.common.files import atomic_write
-from uplift.cube import CubeData
+from uplift.cube import CubeData, contents
 from uplift.lattice import Status
 
 BLOCK = 1 << 12
 """Nodes converted to text at a time."""
+
+
+def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
+    """Write a cube as an ``.npz`` file without pickled objects; return the number of arrays.
+
+    The file has the arrays of docs/cube-file.md under their names. In addition, it has ``multipliers`` (n, C) of the
+    nodes in ``model`` and ``atlas.multipliers`` (E, K) of the entries in ``entry_model``, from which spectra are
+    evaluated directly, ``atlas.names`` (E,), and ``metadata``, the JSON text with both models.
+    """
+    tensors, metadata = contents(data)
+    arrays = tensors | {
+        "multipliers": data.model.from_storage(data.points.coefficients[data.points.present]),
+        "atlas.multipliers": data.entry_spectra.multipliers,
+        "atlas.names": np.array(data.atlas.names, dtype=np.str_),
+        "metadata": np.array(json.dumps(metadata, ensure_ascii=False, allow_nan=False)),
+    }
+    with atomic_write(path, force=force) as temporary, temporary.open("wb") as file:
+        np.savez(file, allow_pickle=False, **arrays)
+    return len(arrays)
 
 
 def write_csv(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
