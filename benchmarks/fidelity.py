@@ -39,8 +39,17 @@ from uplift.cube import contents
 from uplift.fit.families import LENGTH, NUGGET, shipped_library
 from uplift.lab.chart.method import make_task
 from uplift.lab.chart.methods import mallett2019, otsu2018, smits1999
-from uplift.lab.study.baselines import NEIGHBOURS, mismatch_centroids
-from uplift.lab.study.held_out import CENTROID, HALF, LOCAL_LINEAR, NO_ATLAS, SIGMOID, HoldoutSplit, holdout
+from uplift.lab.study.held_out import (
+    CENTROID,
+    HALF,
+    LOCAL_LINEAR,
+    NEIGHBOURS,
+    NO_ATLAS,
+    SIGMOID,
+    HoldoutSplit,
+    holdout,
+    mismatch_centroids,
+)
 from uplift.lattice import Status
 from uplift.lookup import Cube
 from uplift.report.measures import check_calibration, compute_smoothness

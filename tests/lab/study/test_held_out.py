@@ -14,16 +14,19 @@ from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS, SCENE_LIGHTS
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress
-from uplift.lab.study import baselines
-from uplift.lab.study import held_out as module
-from uplift.lab.study.baselines import centroid, local_linear, mismatch_centroids
+from uplift.lab.study import held_out
 from uplift.lab.study.held_out import (
     HoldoutSplit,
     SpectrumErrors,
+    centroid,
     holdout,
-    pooled_calibration,
+    local_linear,
+    mismatch_centroids,
+    mixtures,
     spectrum_errors,
+    split_records,
 )
+from uplift.lookup.refine import with_colours
 from uplift.pipeline.build import build
 
 GRID = observer.grid()
@@ -32,30 +35,20 @@ GRID = observer.grid()
 @pytest.fixture(scope="module")
 def family():
     """24 spectra of similar colours that share ripples which a smooth spectrum does not have."""
-    levels = np.linspace(0.3, 0.6, 24)
     ripple = np.cos((GRID - 380) / 400 * 6 * np.pi)
-    return Atlas(tuple(Entry(f"{level:.3f}", GRID, level * (1 + 0.3 * ripple)) for level in levels))
+    return Atlas(tuple(Entry(f"{level:.3f}", GRID, level * (1 + 0.3 * ripple)) for level in np.linspace(0.3, 0.6, 24)))
 
 
-@pytest.fixture(scope="module")
-def splits(family):
+def test_half_an_atlas_of_similar_spectra_predicts_the_other(family):
     events = []
-    results = holdout(family, 2, events.append, dim=8)
+    splits = holdout(family, 2, events.append, dim=8)
     assert events == [Progress("builds", done, 4) for done in (2, 3, 4)]
-    return results
-
-
-def test_half_an_atlas_of_similar_spectra_predicts_the_other(splits):
     for split in splits:
         means = {method: errors.means() for method, errors in split.errors.items()}
         assert (means["half the atlas"] < 0.5 * means["without an atlas"]).all()
         assert (means["half the atlas"] < 0.5 * means["sigmoid"]).all()
-
-
-def test_every_split_predicts_another_half(splits):
-    assert [len(split.actual) for split in splits] == [12, 12]
+        assert split.errors["sigmoid"].delta_e.shape == (12, len(HELD_OUT_LIGHTS))
     assert not np.array_equal(splits[0].actual, splits[1].actual)
-    assert splits[0].errors["sigmoid"].delta_e.shape == (12, len(HELD_OUT_LIGHTS))
 
 
 def test_the_prior_does_not_know_the_atlas(monkeypatch):
@@ -65,12 +58,11 @@ def test_the_prior_does_not_know_the_atlas(monkeypatch):
         known.append(options["leave_out"])
         return build(*args, **options)
 
-    monkeypatch.setattr(module, "build", recorded)
+    monkeypatch.setattr(held_out, "build", recorded)
     atlas = read_atlas(ATLASES / "tcs.txt")
     holdout(atlas, 1, dim=4, coefficients=4)
-    assert known == [("tcs",)] * 3
     holdout(atlas, 1, dim=4, coefficients=4, leave_out=("vs",))
-    assert known[3:] == [("vs",)] * 3
+    assert known == [("tcs",)] * 3 + [("vs",)] * 3
 
 
 def test_spectrum_errors_equal_their_definitions():
@@ -85,17 +77,16 @@ def test_spectrum_errors_equal_their_definitions():
     assert errors.means() == pytest.approx([errors.rms.mean(), *errors.delta_e.mean(axis=0)])
 
 
-def test_calibration_pools_splits_with_standard_errors():
-    nothing = SpectrumErrors(np.zeros(2), np.zeros((2, 1)))
-    result = pooled_calibration(
-        [
-            HoldoutSplit({"": nothing}, np.array([1.0, 3.0]), np.array([2.0, 2.0]), np.array([5.0, 5.0])),
-            HoldoutSplit({"": nothing}, np.array([5.0, 9.0]), None, None),
-        ]
-    )
-    assert (result.count, result.predicted, result.within_error, result.within_bound) == (2, 2, 0.5, 1)
-    assert result.actual == pytest.approx(2 * (0.5 + 0.68))
-    assert pooled_calibration([HoldoutSplit({"": nothing}, np.zeros(2), None, None)]) is None
+def test_records_pool_splits_with_standard_errors():
+    errors = {"": SpectrumErrors(np.ones(2), np.zeros((2, 7)))}
+    known = HoldoutSplit(errors, np.array([1.0, 3.0]), np.array([2.0, 2.0]), np.array([5.0, 5.0]))
+    unknown = HoldoutSplit(errors, np.array([5.0, 9.0]), None, None)
+    (record,) = split_records([known, unknown])
+    found = record["standard_error"]
+    assert (found["stated"], found["within_error"], found["within_bound"]) == (2, 0.5, 1)
+    assert found["real"] == pytest.approx(2 * (0.5 + 0.68))
+    assert (record["rms"], record["FL11"]) == (1, 0)
+    assert split_records([unknown])[0]["standard_error"] is None
 
 
 def test_small_atlas_raises(family):
@@ -115,35 +106,34 @@ def known(sensor):
 
 
 def test_local_linear_reproduces_spectra_that_are_linear_in_rgb(data):
-    sensor = data.sensor
     spectra = 0.5 + np.random.default_rng(0).uniform(-2, 2, (45, 3)) @ observer.light("A").xyz
     known, queried = spectra[:40], spectra[40:]
-    np.testing.assert_allclose(local_linear(data, known, sensor.rgb(queried)), queried, atol=1e-3)
+    np.testing.assert_allclose(local_linear(data, known, data.sensor.rgb(queried)), queried, atol=1e-3)
 
 
-def test_local_linear_predictions_have_the_queried_colours(data, known):
-    rgb = data.sensor.rgb(known.mean(axis=0)[None]) * [[0.9, 1.0, 1.1]]
-    np.testing.assert_allclose(data.sensor.rgb(local_linear(data, known, rgb)), rgb, atol=1e-6)
-
-
-def test_smoothing_has_the_least_leave_one_out_error(data, known, monkeypatch):
-    """Against leaving out one by one."""
-    monkeypatch.setattr(baselines, "BANDWIDTHS", (10.0, 40.0))
-    monkeypatch.setattr(baselines, "RIDGES", (1e-6, 1e-2))
-    some = known[:20]
+def test_local_linear_has_the_least_leave_one_out_error_and_the_queried_colours(data, known, monkeypatch):
+    """Compared with leaving out one by one."""
+    monkeypatch.setattr(held_out, "BANDWIDTHS", (10.0, 40.0))
+    monkeypatch.setattr(held_out, "RIDGES", (1e-6, 1e-2))
+    some, wavelengths = known[:20], data.sensor.wavelengths
     colours = data.sensor.rgb(some)
-    lights = [observer.light(name) for name in SCENE_LIGHTS]
+
+    def predict(known, rgb, smoothing):
+        spectra = np.clip(held_out.regress(data.sensor, known, rgb, *smoothing), 1e-4, 1 - 1e-4)
+        return with_colours(data, spectra, spectra, rgb, wavelengths)
 
     def slow(smoothing):
-        found = []
-        for row, rest in enumerate(~np.eye(len(some), dtype=bool)):
-            alone = colours[row : row + 1]
-            spectra = baselines._regress(data.sensor, colours[rest], some[rest], alone, smoothing)
-            found.append(baselines._exact(data, spectra, alone)[0])
-        return np.mean([delta_e_spectra(light, np.array(found), some) for light in lights])
+        found = [
+            predict(some[rest], colours[row : row + 1], smoothing)[0]
+            for row, rest in enumerate(~np.eye(len(some), dtype=bool))
+        ]
+        return np.mean([delta_e_spectra(observer.light(name), np.array(found), some) for name in SCENE_LIGHTS])
 
-    every = [baselines.Smoothing(width, ridge) for width in (10.0, 40.0) for ridge in (1e-6, 1e-2)]
-    assert baselines._best_smoothing(data, some, colours) == min(every, key=slow)
+    best = min([(width, ridge) for width in (10.0, 40.0) for ridge in (1e-6, 1e-2)], key=slow)
+    rgb = data.sensor.rgb(some.mean(axis=0)[None]) * [[0.9, 1.0, 1.1]]
+    found = local_linear(data, some, rgb)
+    np.testing.assert_allclose(found, predict(some, rgb, best), atol=1e-12)
+    np.testing.assert_allclose(data.sensor.rgb(found), rgb, atol=1e-6)
 
 
 def test_centroid_of_a_tetrahedron_and_of_a_flat_body():
@@ -156,7 +146,7 @@ def test_centroid_of_a_tetrahedron_and_of_a_flat_body():
 def test_mixtures_have_the_colour_and_their_centroid_too(sensor, known):
     colours = sensor.rgb(known[:10])
     rgb = colours.mean(axis=0)
-    corners, weights = baselines._mixtures(colours, rgb)
+    corners, weights = mixtures(colours, rgb)
     assert len(corners) >= 4
     np.testing.assert_allclose(np.einsum("vk,vkc->vc", weights, colours[corners]), rgb + 0 * corners[:, :3], atol=1e-9)
     own = mismatch_centroids(sensor, known[:10], rgb[None], [sensor.light])
@@ -167,4 +157,3 @@ def test_colours_that_no_mixture_has_are_nan(sensor):
     grey = np.linspace(0.2, 0.6, 6)[:, None] * np.ones(len(sensor.wavelengths))
     red = np.array([[0.6, 0.1, 0.1]])
     assert np.isnan(mismatch_centroids(sensor, grey, red, [observer.light("A")])).all()
-    assert mismatch_centroids(sensor, grey, np.zeros((0, 3)), [observer.light("A")]).shape == (0, 1, 3)

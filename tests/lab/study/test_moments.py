@@ -82,14 +82,6 @@ def test_mirrored_moments_are_those_of_cubes(technique, count):
     np.testing.assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=1e-10)
 
 
-@by_label(TECHNIQUES)
-def test_zeroth_moment_gives_the_mean_over_the_phase(technique):
-    reflectance = bumps(5, fine_grid())
-    mean = np.trapezoid(reflectance, technique.phase(fine_grid())) / np.ptp(technique.phase(fine_grid()))
-    actual = technique.reconstruct(technique.moments(reflectance, fine_grid(), 0), observer.grid())
-    np.testing.assert_allclose(actual, np.repeat(mean[:, None], 81, axis=1), rtol=0, atol=1e-12)
-
-
 def test_symmetric_spectrum_has_zero_odd_mirrored_moments():
     """Its even moments equal those of the full circle."""
     wavelengths = fine_grid()
@@ -114,6 +106,11 @@ MW, MNW, NMW, NMNW = TECHNIQUES
 
 
 @pytest.fixture(scope="module")
+def macbeth_study(repository):
+    return study_moments({"macbeth": read_atlas(repository / "atlases" / "macbeth.txt")})
+
+
+@pytest.fixture(scope="module")
 def full_study(repository):
     """Study of all shipped atlases."""
     with warnings.catch_warnings():
@@ -128,19 +125,13 @@ def errors(request, macbeth_study, full_study):
     return lambda technique, floats, measure=0: study.result(technique, max_moments(technique, floats)).mean[measure]
 
 
-@pytest.mark.parametrize("technique", TECHNIQUES, ids=lambda technique: technique.short)
-@pytest.mark.parametrize("measure", MEASURES)
-def test_error_falls_with_moments(macbeth_study, technique, measure):
-    column = MEASURES.index(measure)
-    means = [macbeth_study.result(technique, count).mean[column] for count in range(16)]
-    assert means[15] < means[4] < means[2] < means[0]
-    assert means[8] < means[4]
-
-
-@pytest.mark.parametrize("technique", TECHNIQUES, ids=lambda technique: technique.short)
-def test_each_of_the_first_eight_moments_reduces_the_error(macbeth_study, technique):
-    means = [macbeth_study.result(technique, count).mean[0] for count in range(9)]
-    assert (np.diff(means) < 0).all()
+@by_label(TECHNIQUES)
+def test_error_falls_with_moments(macbeth_study, technique):
+    means = np.array([macbeth_study.result(technique, count).mean for count in range(16)])
+    assert (means[15] < means[4]).all()
+    assert (means[8] < means[4]).all()
+    assert (means[4] < means[2]).all()
+    assert (np.diff(means[:9, 0]) < 0).all()
 
 
 def test_zero_moments_give_a_grey(macbeth_study):
@@ -158,22 +149,7 @@ def test_mirrored_techniques_have_the_least_error(errors):
         assert min(rms[NMW], rms[NMNW]) > 2.5 * min(rms[MW], rms[MNW])
 
 
-def test_statements_of_the_page_on_warp_and_shape(full_study):
-    warped, unwarped = (
-        np.array([[full_study.result(one, count).mean, full_study.result(one, count).max] for count in range(16)])
-        for one in (MW, MNW)
-    )
-    better = warped < unwarped
-    floats = np.arange(16) + 1
-    assert floats[better[:, 0, 0]].tolist() == [1, 2, 3, 4, 5, 6, 8, 9, 10, 11, 12]
-    assert set(range(2, 15)) == set(floats[better[:, 1, 0]])
-    assert better[8, 0, 1:-1].all()
-    rms = [[full_study.result(one, max_moments(one, floats)).mean[-1] for one in TECHNIQUES] for floats in (9, 13, 16)]
-    assert all(min(row[2:]) > 3 * min(row[:2]) for row in rms)
-    assert not better[[floats - 1 for floats in FLOATS], 0, -1].any()
-
-
-def test_statements_of_the_page_on_the_thesis(full_study):
+def test_errors_agree_with_those_of_the_thesis(full_study):
     thesis = read_thesis()
     assert len(thesis) == 64
     for technique in (MW, MNW):
@@ -195,12 +171,10 @@ def test_groups_partition_the_entries(full_study):
 
 @pytest.mark.parametrize("count", [-1, MAX_MOMENTS + 1])
 def test_moments_out_of_range_raise(count, repository):
-    with raises(OptionError, "moments-out-of-range") as caught:
+    with raises(OptionError, "option"):
         study_moments({"tcs": read_atlas(repository / "atlases" / "tcs.txt")}, count)
-    assert f"[0, {MAX_MOMENTS}], got {count}" in str(caught.value)
 
 
 def test_empty_atlases_raise():
-    for atlases in ({}, {"empty": Atlas()}):
-        with raises(AtlasError, "empty-atlas"):
-            study_moments(atlases)
+    with raises(AtlasError, "too-few-entries"):
+        study_moments({"empty": Atlas()})

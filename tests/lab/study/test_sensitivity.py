@@ -7,19 +7,17 @@ import json
 import numpy as np
 import pytest
 
-from tests.helpers import raises
 from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
-from uplift.common.errors import OptionError
-from uplift.lab.study import sensitivity
-from uplift.lab.study.lipschitz import _cuts, lipschitz_constants
+from uplift.lab.study.lipschitz import face_cuts, lipschitz_constants
 from uplift.lab.study.sensitivity import (
     CONTINUOUS_MODES,
     Change,
-    add_noise,
-    build_baseline,
+    changed_atlases,
+    compare,
     perturb,
-    remove_entry,
+    rebuild,
+    study_sensitivity,
 )
 from uplift.lattice import CORNERS
 from uplift.lookup.interpolate import lattice_spectra
@@ -28,57 +26,53 @@ LIGHT = observer.light("FL11")
 
 
 def test_answers_change_in_proportion_to_the_query(small_cube):
-    result = perturb(small_cube, LIGHT, 200)
-    assert [move.mode for move in result[::3]] == list(CONTINUOUS_MODES)
-    for wide, narrow, rounding in zip(result[::3], result[1::3], result[2::3], strict=True):
-        assert wide.rms_mean == pytest.approx(4 * narrow.rms_mean, rel=0.1)
-        assert wide.own_mean == pytest.approx(4 * narrow.own_mean, rel=0.05)
-        assert 0 < rounding.rms_most < 1e-5
-        assert 0 < rounding.light_most < 1e-2
-        assert wide.rms_mean < wide.rms_most < wide.largest
+    moves = perturb(small_cube, LIGHT, 200)
+    assert [move["mode"] for move in moves[::3]] == list(CONTINUOUS_MODES)
+    for wide, narrow, rounding in zip(moves[::3], moves[1::3], moves[2::3], strict=True):
+        assert wide["rms_mean"] == pytest.approx(4 * narrow["rms_mean"], rel=0.1)
+        assert wide["own_mean"] == pytest.approx(4 * narrow["own_mean"], rel=0.05)
+        assert 0 < rounding["rms_most"] < 1e-5
+        assert 0 < rounding["light_most"] < 1e-2
+        assert wide["rms_mean"] < wide["rms_most"] < wide["largest"]
 
 
-@pytest.fixture(scope="module")
-def base(repository):
-    return build_baseline(read_atlas(repository / "atlases" / "tcs.txt"), LIGHT, dim=8)
+def test_changed_atlases_and_their_effect(repository):
+    """Far nodes move a little: the weights of the families of spectra are learnt from the whole atlas."""
+    entries = read_atlas(repository / "atlases" / "tcs.txt").entries
+    before, name = rebuild(entries, {"dim": 8}), entries[0].name
+    changes = {description: changed for description, _, changed in changed_atlases(entries, [name])}
+    assert list(changes) == [*(f"noise, draw {seed}" for seed in range(3)), f"{name} wrong", f"{name} left out"]
+    noisy, wrong, left_out = (changes[key] for key in ("noise, draw 0", f"{name} wrong", f"{name} left out"))
+    noise = np.array([one.values - other.values for one, other in zip(noisy, entries, strict=True)])
+    assert noise.std() == pytest.approx(0.002, rel=0.1)
+    np.testing.assert_array_equal(wrong[0].values, entries[0].values[::-1])
+    assert wrong[1:] == left_out == list(entries[1:])
 
-
-def test_removing_an_entry_changes_mostly_nearby_points(base):
-    """Far points move a little: the weights of the families of spectra are learnt from the whole atlas."""
-    name = base.data.atlas.names[0]
-    result = remove_entry(base, name)
-    assert result.delta_e[result.lab_distance.argmin()] > 0
-    far = result.lab_distance > 60
+    removed = compare(before, rebuild(left_out, {"dim": 8}), LIGHT, "", name)
+    nearest, (_, lab_distance) = removed.distance.argmin(axis=1), removed.distance
+    assert (removed.delta_e[nearest] > 0).all()
+    far = lab_distance > 60
     assert far.sum() > 100
-    assert result.delta_e[far].mean() < 0.15 * result.delta_e[result.lab_distance < 20].mean()
-    assert 0 < result.moved < 0.02
-    assert 0 < result.radius(result.lab_distance) < 80
-
-
-def test_noise_on_all_entries_has_no_distance(base):
-    result = add_noise(base, 0)
-    assert result.rms.shape == (512,)
-    assert result.rgb_distance.size == 0
-    assert np.isnan(result.radius(result.rgb_distance))
-    assert result.delta_e.mean() < 0.1
+    assert removed.delta_e[far].mean() < 0.15 * removed.delta_e[lab_distance < 20].mean()
+    record = removed.record()
+    assert 0 < record["moved"] < 0.02
+    assert 0 < record["lab_radius"] < 80
+    assert compare(before, before, LIGHT, "").record()["rgb_radius"] is None
 
 
 def test_moved_share_and_radius_by_hand():
-    change = Change("", np.zeros(4), np.array([0.1, 0.6, 2, 0.5]), np.array([0.0, 1, 2, 3]), np.zeros(4))
-    assert change.moved == 0.5
-    assert change.radius(change.rgb_distance) == 2
-    assert Change("", np.zeros(1), np.zeros(1), np.ones(1), np.ones(1)).radius(np.ones(1)) == 0
+    delta_e = np.array([0.1, 0.6, 2, 0.5])
+    record = Change("", np.zeros(4), delta_e, np.array([[0.0, 1, 2, 3], [9, 5, 4, 9]])).record()
+    assert (record["moved"], record["rgb_radius"], record["lab_radius"]) == (0.5, 2, 5)
+    assert Change("", np.zeros(1), np.zeros(1), np.ones((2, 1))).record()["rgb_radius"] == 0
 
 
 def test_cube_without_an_atlas_has_no_changes(plain_cube):
-    result = sensitivity.study_sensitivity(plain_cube, None, 5)
-    assert (result.noise, result.reversed, result.removed) == ([], [], [])
+    result = study_sensitivity(plain_cube, None, 5)
     record = json.loads(json.dumps(result.record()))
-    assert record["changes"] == []
+    assert record["changes"] == result.removed == []
     assert record["lipschitz"]["largest_box"] is None
     assert record["lipschitz"]["largest"] >= record["lipschitz"]["median_cell"]
-    with raises(OptionError, "entries-out-of-range"):
-        sensitivity.study_sensitivity(plain_cube, None, -1)
 
 
 RNG = np.random.default_rng(6)
@@ -130,8 +124,7 @@ def test_constant_of_a_box_is_attained(small_cube, steep):
     entry = steep.boxes.argmax()
     low, high = (face[entry] for face in data.entry_boxes.faces)
     middle = data.atlas.rgb[entry]
-    cuts = [_cuts(data.lattice.nodes, low[axis], high[axis]) for axis in range(3)]
-    corners = np.stack(np.meshgrid(*cuts, indexing="ij"), axis=-1).reshape(-1, 1, 3)
+    corners = np.stack(np.meshgrid(*face_cuts(data, entry), indexing="ij"), axis=-1).reshape(-1, 1, 3)
     nearby = corners + 1e-3 * (high - low) * RNG.normal(size=(len(corners), 200, 3))
     first = (middle + 0.5 * (nearby - middle)).reshape(-1, 3)
     second = first + 1e-5 * (high - low).min() * RNG.normal(size=first.shape)

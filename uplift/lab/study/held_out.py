@@ -1,43 +1,37 @@
-"""Errors on held-out measurements: a cube or a baseline that knows half of an atlas predicts the other half."""
+"""Errors on held-out measurements: cubes and plain baselines that know half of an atlas predict the other half."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations, product
 from typing import Any
 
 import numpy as np
+from scipy.spatial import ConvexHull, Delaunay, QhullError
+from scipy.spatial.distance import cdist
 
 from uplift.atlas import Atlas, resample
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_2000, delta_e_spectra, lab
-from uplift.colorimetry.lights import HELD_OUT_LIGHTS
+from uplift.colorimetry.delta_e import delta_e_2000, delta_e_spectra, lab, rgb_to_lab
+from uplift.colorimetry.lights import HELD_OUT_LIGHTS, SCENE_LIGHTS
+from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.cube import CubeData
 from uplift.fit.families import families_with
-from uplift.lab.study.baselines import local_linear, mismatch_centroids
 from uplift.lookup import Cube
+from uplift.lookup.refine import with_colours
 from uplift.pipeline.build import build
-from uplift.report.measures import Calibration, check_calibration
-
-__all__ = [
-    "HoldoutSplit",
-    "SpectrumErrors",
-    "baseline_errors",
-    "holdout",
-    "pooled_calibration",
-    "spectrum_errors",
-]
+from uplift.report.measures import check_calibration
 
 MIN_ENTRIES = 8
 """Fewest entries within the RGB space of an atlas that is split."""
 HALF, NO_ATLAS, SIGMOID = "half the atlas", "without an atlas", "sigmoid"
-"""Names of the cubes that are compared."""
 LOCAL_LINEAR, CENTROID = "local-linear regression", "centroid of mismatch"
-"""Names of the baselines, which know the same half of the atlas (`uplift.lab.study.baselines`)."""
+"""Names of cubes and of baselines, which know the same half of the atlas."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +46,7 @@ class SpectrumErrors:
     delta_e: Array
 
     def means(self) -> Array:
-        """Average over the spectra. The result has shape (1 + L,)."""
+        """Average over the spectra (1 + L,)."""
         return np.concatenate([[self.rms.mean()], self.delta_e.mean(axis=0)])
 
 
@@ -62,8 +56,7 @@ class HoldoutSplit:
 
     ``errors``: errors by the name of the cube or baseline.
     ``actual`` (n,): ΔE00 of the cube with half the atlas, under its reference illuminant.
-    ``predicted`` (n,): standard errors that this cube predicts, if it has any.
-    ``bound`` (n,): error bounds that it predicts, likewise.
+    ``predicted``, ``bound`` (n,): standard errors and error bounds that this cube predicts, if it has any.
     """
 
     errors: dict[str, SpectrumErrors]
@@ -72,94 +65,184 @@ class HoldoutSplit:
     bound: Array | None
 
 
-def spectrum_errors(predicted: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS) -> SpectrumErrors:
-    """Compare predicted with measured reflectances. Shapes: ``predicted, measured`` (n, N)."""
-    rms = np.sqrt(((predicted - measured) ** 2).mean(axis=1))
-    delta_e = [delta_e_spectra(observer.light(name), predicted, measured) for name in lights]
-    return SpectrumErrors(rms, np.stack(delta_e, axis=1))
-
-
-def baseline_errors(
-    data: CubeData, known: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS
-) -> dict[str, SpectrumErrors]:
-    """Predict measured reflectances from known ones by `local_linear` and `mismatch_centroids`.
-
-    A colour without a centroid, as no mixture of known materials has it, has the error of the regression.
-
-    Shapes: ``known, measured`` (E, N) and (n, N).
-    """
-    sensor = data.sensor
-    rgb = np.clip(sensor.rgb(measured), 0, 1)
-    shine = [observer.light(name) for name in lights]
-    linear = spectrum_errors(local_linear(data, known, rgb), measured, lights)
-    centroids = mismatch_centroids(sensor, known, rgb, shine)
-    without = np.isnan(centroids[:, 0, 0])
-    delta_e = [
-        delta_e_2000(lab(measured @ light.xyz.T, light.white), lab(centroids[:, number], light.white))
-        for number, light in enumerate(shine)
-    ]
-    of_centroids = np.where(without[:, None], linear.delta_e, np.stack(delta_e, axis=1))
-    return {LOCAL_LINEAR: linear, CENTROID: SpectrumErrors(np.full(len(measured), np.nan), of_centroids)}
-
-
 def holdout(
     atlas: Atlas, splits: int = 3, progress: ProgressCallback = ignore_progress, **options: Any
 ) -> tuple[HoldoutSplit, ...]:
-    """Build cubes from random halves of an atlas and predict the other halves. Raises `AtlasError`."""
+    """Build cubes from random halves of an atlas and predict the other halves.
+
+    Unless ``options`` say otherwise, the prior does not know the families that contain spectra of the atlas.
+    """
     total = 2 + splits
     options = {"leave_out": families_with(resample(atlas, observer.grid()).values), **options}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         others = {NO_ATLAS: build(**options), SIGMOID: build(**{**options, "model": "sigmoid"})}
         progress(Progress("builds", 2, total))
-        inside = _entries_in_gamut(atlas, others[SIGMOID])
+        sensor = others[SIGMOID].data.sensor
+        measured = resample(atlas, sensor.wavelengths).values
+        inside = np.flatnonzero(sensor.contains(sensor.rgb(measured)))
+        if len(inside) < MIN_ENTRIES:
+            problem = f"a split needs at least {MIN_ENTRIES} entries within {sensor.space}, got {len(inside)}"
+            raise AtlasError(problem, code="too-few-entries", hint="use a larger atlas")
         results = []
         for seed in range(splits):
-            kept, held_out = np.array_split(np.random.default_rng(seed).permutation(len(inside)), 2)
-            cube = build(_subset(atlas, inside[kept]), **options)
-            known, unknown = (_subset(atlas, inside[rows]) for rows in (kept, held_out))
-            results.append(_evaluate({HALF: cube, **others}, known, unknown))
+            kept, held_out = (inside[rows] for rows in random_halves(len(inside), seed))
+            cube = build(Atlas(tuple(atlas.entries[row] for row in kept)), **options)
+            results.append(_evaluate({HALF: cube, **others}, measured[kept], measured[held_out]))
             progress(Progress("builds", 3 + seed, total))
     return tuple(results)
 
 
-def pooled_calibration(splits: Sequence[HoldoutSplit]) -> Calibration | None:
-    """Compare predicted standard errors with actual errors over all splits."""
-    parts = [(split.actual, split.predicted, split.bound) for split in splits if split.predicted is not None]
-    if not parts:
-        return None
-    return check_calibration(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+def random_halves(count: int, seed: int) -> tuple[Indices, Indices]:
+    """Divide the numbers up to ``count`` at random; the first half is the larger one."""
+    first, second = np.array_split(np.random.default_rng(seed).permutation(count), 2)
+    return first, second
 
 
-def _evaluate(cubes: dict[str, Cube], known: Atlas, held_out: Atlas) -> HoldoutSplit:
+def _evaluate(cubes: dict[str, Cube], known: Array, measured: Array) -> HoldoutSplit:
+    """Predict reflectances (n, N) by cubes, and by baselines that know others (E, N)."""
     cube = cubes[HALF]
     sensor = cube.data.sensor
-    measured = resample(held_out, sensor.wavelengths).values
     rgb = np.clip(sensor.rgb(measured), 0, 1)
     predicted = {name: other.reflectance(rgb) for name, other in cubes.items()}
-    light = observer.light(cube.data.error_illuminant, sensor.observer)
     errors = {name: spectrum_errors(spectra, measured) for name, spectra in predicted.items()}
-    baselines = baseline_errors(cube.data, resample(known, sensor.wavelengths).values, measured)
+    light = observer.light(cube.data.error_illuminant, sensor.observer)
     return HoldoutSplit(
-        errors | baselines,
+        errors | baseline_errors(cube.data, known, measured),
         delta_e_spectra(light, predicted[HALF], measured),
         cube.standard_error(rgb),
         cube.error_bound(rgb),
     )
 
 
-def _entries_in_gamut(atlas: Atlas, cube: Cube) -> Indices:
-    """Indices of the entries within the RGB space of the cube."""
-    sensor = cube.data.sensor
-    rows = np.flatnonzero(sensor.contains(sensor.rgb(resample(atlas, sensor.wavelengths).values)))
-    if len(rows) < MIN_ENTRIES:
-        raise AtlasError(
-            f"a split needs at least {MIN_ENTRIES} entries within {sensor.space}, got {len(rows)}",
-            code="too-few-entries",
-            hint="use a larger atlas",
-        )
-    return rows
+def spectrum_errors(predicted: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS) -> SpectrumErrors:
+    """Compare predicted with measured reflectances (n, N)."""
+    rms = np.sqrt(((predicted - measured) ** 2).mean(axis=1))
+    delta_e = [delta_e_spectra(observer.light(name), predicted, measured) for name in lights]
+    return SpectrumErrors(rms, np.stack(delta_e, axis=1))
 
 
-def _subset(atlas: Atlas, rows: Indices) -> Atlas:
-    return Atlas(tuple(atlas.entries[row] for row in rows))
+def split_records(splits: Sequence[HoldoutSplit]) -> list[dict[str, Any]]:
+    """Return mean errors over the splits by method; that of the cube with half the atlas has its calibration too."""
+    records: list[dict[str, Any]] = []
+    for method in splits[0].errors:
+        rms, *delta_e = np.mean([split.errors[method].means() for split in splits], axis=0).tolist()
+        record = {"cube": method, "colours": len(splits[0].actual), "rms": None if np.isnan(rms) else rms}
+        records.append(record | dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True)))
+    # Over all splits together; small atlases have no standard errors.
+    parts = [(split.actual, split.predicted, split.bound) for split in splits if split.predicted is not None]
+    found = check_calibration(*(np.concatenate(part) for part in zip(*parts, strict=True))) if parts else None
+    records[0]["standard_error"] = found and found.to_json()
+    return records
+
+
+def baseline_errors(data: CubeData, known: Array, measured: Array) -> dict[str, SpectrumErrors]:
+    """Predict measured reflectances (n, N) from known ones (E, N) by `local_linear` and `mismatch_centroids`.
+
+    A colour without a centroid, as no mixture of known materials has it, has the error of the regression.
+    """
+    rgb = np.clip(data.sensor.rgb(measured), 0, 1)
+    lights = [observer.light(name) for name in HELD_OUT_LIGHTS]
+    linear = spectrum_errors(local_linear(data, known, rgb), measured)
+    centroids = mismatch_centroids(data.sensor, known, rgb, lights)
+    pairs = zip(lights, centroids.swapaxes(0, 1), strict=True)
+    delta_e = [delta_e_2000(lab(measured @ light.xyz.T, light.white), lab(xyz, light.white)) for light, xyz in pairs]
+    without = np.isnan(centroids[:, :1, 0])
+    of_centroids = np.where(without, linear.delta_e, np.stack(delta_e, axis=1))
+    return {LOCAL_LINEAR: linear, CENTROID: SpectrumErrors(np.full(len(measured), np.nan), of_centroids)}
+
+
+BANDWIDTHS = (7.0, 10.0, 14.0, 20.0, 28.0, 40.0, 80.0, 1e4)
+"""Standard deviations of the Gaussian weights, in CIE L*a*b*; the last one weighs all materials alike."""
+RIDGES = (1e-6, 1e-4, 1e-3, 1e-2, 1e-1, 1e3)
+"""Weights of small slopes, relative to the sum of the weights; with the last one, predictions are weighted means."""
+LOWEST = 1e-4
+"""Least distance of predicted reflectances from 0 and 1 before they move to their colours."""
+
+
+def local_linear(data: CubeData, known: Array, rgb: Array) -> Array:
+    """Predict reflectances (n, N) of linear RGB (n, 3) by a local-linear regression on known ones (E, N).
+
+    Bandwidth and ridge have the least mean leave-one-out ΔE00 of the known materials under the lights of a build.
+    Predictions are moved to their colours.
+
+    Cleveland & Devlin 1988, "Locally weighted regression", JASA 83(403).
+    """
+    lights = [observer.light(name, data.sensor.observer, *data.sensor.range) for name in SCENE_LIGHTS]
+    colours = np.clip(data.sensor.rgb(known), 0, 1)
+
+    def predict(queries: Array, width: float, ridge: float, leave_out: bool = False) -> Array:
+        spectra = np.clip(regress(data.sensor, known, queries, width, ridge, leave_out), LOWEST, 1 - LOWEST)
+        return with_colours(data, spectra, spectra, queries, data.sensor.wavelengths)
+
+    def error(smoothing: tuple[float, float]) -> float:
+        spectra = predict(colours, *smoothing, leave_out=True)
+        return float(np.mean([delta_e_spectra(light, spectra, known) for light in lights]))
+
+    return predict(rgb, *min(product(BANDWIDTHS, RIDGES), key=error))
+
+
+def regress(sensor: Sensor, known: Array, rgb: Array, width: float, ridge: float, leave_out: bool = False) -> Array:
+    """Local-linear predictions (n, N) at linear RGB (n, 3); ``leave_out`` gives no weight to a query's own row."""
+    colours = np.clip(sensor.rgb(known), 0, 1)
+    squares = cdist(rgb_to_lab(sensor, rgb), rgb_to_lab(sensor, colours), "sqeuclidean")
+    if leave_out:
+        np.fill_diagonal(squares, np.inf)
+    squares -= squares.min(axis=1, keepdims=True)  # far queries keep the weight of the nearest colour
+    weights = np.exp(-squares / (2 * width**2))
+    weights /= weights.sum(axis=1, keepdims=True)
+    offsets = colours[None] - rgb[:, None]
+    terms = np.concatenate([np.ones((*offsets.shape[:2], 1)), offsets], axis=2)
+    weighted = weights[:, :, None] * terms
+    matrix = weighted.mT @ terms + ridge * np.diag([0.0, 1, 1, 1])
+    first = np.linalg.solve(matrix, np.broadcast_to(np.eye(4)[:, :1], (len(rgb), 4, 1)))
+    return np.asarray((weighted @ first)[:, :, 0] @ known)
+
+
+NEIGHBOURS = 14
+"""Nearest measurements that metamers are mixed from."""
+FLAT = 1e-12
+"""Least volume of a tetrahedron of colours whose mixtures are determined."""
+
+
+def mismatch_centroids(sensor: Sensor, known: Array, rgb: Array, lights: Sequence[Light]) -> Array:
+    """Predict XYZ (n, L, 3) of linear RGB (n, 3) under other lights by centroids of metamer mismatch bodies.
+
+    The body of a colour holds the colours, under another light, of all metamers of known materials (E, N). Sets of some
+    hundred measurements have hardly any metamers, so metamers are mixtures: of the nearest measurements, black and
+    white. The corners of a body are mixtures of four of them. Colours that no mixture has are NaN.
+
+    Zhang, Funt & Mirzaei 2016, "Metamer mismatching in practice versus theory", JOSA A 33(3), A238–A247.
+    """
+    distance = cdist(rgb_to_lab(sensor, rgb), rgb_to_lab(sensor, sensor.rgb(known)))
+    nearest = np.argsort(distance, axis=1, kind="stable")[:, :NEIGHBOURS]
+    ends = np.stack([np.zeros(known.shape[1]), np.ones(known.shape[1])])
+    found = np.full((len(rgb), len(lights), 3), np.nan)
+    for row, (colour, neighbours) in enumerate(zip(rgb, nearest, strict=True)):
+        pool = np.concatenate([known[neighbours], ends])
+        corners, weights = mixtures(sensor.rgb(pool), colour)
+        if len(corners):
+            relit = np.stack([pool @ light.xyz.T for light in lights])
+            found[row] = [centroid(body) for body in np.einsum("vk,lvkc->lvc", weights, relit[:, corners])]
+    return found
+
+
+def mixtures(colours: Array, rgb: Array) -> tuple[Indices, Array]:
+    """Rows (V, 4) of linear RGB (P, 3), and the weights (V, 4) of their mixtures that have linear RGB (3,)."""
+    corners = np.array(list(combinations(range(len(colours)), 4)))
+    matrix = np.pad(colours[corners].mT, ((0, 0), (0, 1), (0, 0)), constant_values=1.0)
+    corners, matrix = (array[np.abs(np.linalg.det(matrix)) > FLAT] for array in (corners, matrix))
+    weights = np.linalg.solve(matrix, np.broadcast_to(np.append(rgb, 1.0)[:, None], (len(matrix), 4, 1)))[..., 0]
+    possible = (weights >= 0).all(axis=1)
+    return corners[possible], weights[possible]
+
+
+def centroid(points: Array) -> Array:
+    """Compute the centroid (3,) of the convex hull of points (n, 3); their mean if the hull is flat."""
+    try:
+        hull = points[ConvexHull(points).vertices]
+        tetrahedra = hull[Delaunay(hull).simplices]
+    except QhullError:
+        return np.asarray(points.mean(axis=0))
+    volumes = np.abs(np.linalg.det(tetrahedra[:, 1:] - tetrahedra[:, :1]))
+    return np.asarray(volumes @ tetrahedra.mean(axis=1) / volumes.sum())

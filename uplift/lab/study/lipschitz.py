@@ -1,4 +1,4 @@
-"""Lipschitz constants of mixtures of spectra as functions of the queried colour.
+"""Lipschitz constants of mixtures of spectra as functions of the queried colour (docs/mathematics.md, section 8).
 
 They are those of the answers of mode ``spectra``, except in cells with a corner that has not its own colour
 (`CubeData.inexact_cells`). Steps to the exact colour follow there (`uplift.lookup.refine`) and are not included.
@@ -10,7 +10,6 @@ derivatives are the differences along three edges.
 The box of an entry e is divided into pyramids by its faces. Within a pyramid, the answer is the spectrum of the entry
 plus a homogeneous function of degree one in x − e: the Jacobian is constant along a ray, and on a face linear in each
 of its two coordinates between the nodes of the lattice. The maximum over the cube is one of finitely many values.
-(docs/mathematics.md, section 8)
 """
 
 from __future__ import annotations
@@ -36,8 +35,7 @@ class LipschitzConstants:
     """Largest rms change of the reflectance over wavelength per unit of change of the colour.
 
     ``cells`` (dim − 1, dim − 1, dim − 1): maximum in each cell per unit of linear RGB (Euclidean), without entries.
-    ``codes`` (dim − 1, dim − 1, dim − 1): the same per 8-bit code of the RGB space, at the steepest part of its
-        transfer curve in the cell.
+    ``codes``, of the same shape: per 8-bit code, at the steepest part of the transfer curve in the cell.
     ``wavelengths`` (N,): largest change at each wavelength per unit of linear RGB, over all cells.
     ``boxes`` (E,): maximum in the box of each entry per unit of linear RGB; 0 for an entry without a box.
     """
@@ -57,21 +55,28 @@ def lipschitz_constants(data: CubeData) -> LipschitzConstants:
     """Compute the constants of every cell and box, with two planes of spectra in memory at a time."""
     dim, nodes = data.lattice.dim, data.lattice.nodes
     sides, slope = np.diff(nodes), _largest_slopes(data)
+
+    def plane(red: int) -> Array:
+        """Spectra (dim, dim, N) of the nodes of one red value, by green and blue."""
+        rows = data.points.coefficients[red * dim**2 : (red + 1) * dim**2]
+        return reflectance(data.model, rows, data.sensor.wavelengths).reshape(dim, dim, -1)
+
     cells, codes = np.empty((dim - 1,) * 3), np.empty((dim - 1,) * 3)
-    wavelengths = np.zeros(len(data.sensor.wavelengths))
-    before = _plane(data, 0)
+    wavelengths, after = np.zeros(len(data.sensor.wavelengths)), plane(0)
     for red in range(dim - 1):
-        after = _plane(data, red + 1)
+        before, after = after, plane(red + 1)
         planes = np.stack([before, after])
         jacobians = [_corner_jacobian(planes, corner, red, sides) for corner in CORNERS]
-        scale = np.stack(np.broadcast_arrays(slope[red], slope[:, None], slope[None, :]), axis=-1)
+        scale = np.stack(np.broadcast_arrays(slope[red], slope[:, None], slope[None, :]), axis=-1)[..., None]
         cells[red] = np.max([spectral_norms(columns) for columns in jacobians], axis=0)
-        codes[red] = np.max([spectral_norms(columns * scale[..., None]) for columns in jacobians], axis=0)
+        codes[red] = np.max([spectral_norms(columns * scale) for columns in jacobians], axis=0)
         for columns in jacobians:
             wavelengths = np.maximum(wavelengths, np.linalg.norm(columns, axis=-2).max(axis=(0, 1)))
-        before = after
-    boxes = np.array([_box_constant(data, entry) for entry in range(len(data.atlas.names))])
-    return LipschitzConstants(cells, codes, wavelengths, boxes)
+    boxes = [
+        max((float(spectral_norms(columns).max()) for columns in _box_jacobians(data, entry)), default=0.0)
+        for entry in range(len(data.atlas.names))
+    ]
+    return LipschitzConstants(cells, codes, wavelengths, np.array(boxes))
 
 
 def spectral_norms(columns: Array) -> Array:
@@ -80,18 +85,11 @@ def spectral_norms(columns: Array) -> Array:
     return np.asarray(np.sqrt(np.maximum(np.linalg.eigvalsh(gram)[..., -1], 0)))
 
 
-def _plane(data: CubeData, red: int) -> Array:
-    """Spectra (dim, dim, N) of the lattice points of one red node, by green and blue."""
-    dim = data.lattice.dim
-    rows = data.points.coefficients[red * dim**2 : (red + 1) * dim**2]
-    return reflectance(data.model, rows, data.sensor.wavelengths).reshape(dim, dim, -1)
-
-
 def _corner_jacobian(planes: Array, corner: Array, red: int, sides: Array) -> Array:
     """Derivatives (dim − 1, dim − 1, 3, N) at one corner of every cell between two planes (2, dim, dim, N)."""
-    r, g, b = corner
     low, high = slice(None, -1), slice(1, None)
-    green, blue = (high if step else low for step in (g, b))
+    r = corner[0]
+    green, blue = (high if step else low for step in corner[1:])
     derivatives = (
         (planes[1] - planes[0])[green, blue] / sides[red],
         (planes[r, high] - planes[r, low])[:, blue] / sides[:, None, None],
@@ -102,25 +100,19 @@ def _corner_jacobian(planes: Array, corner: Array, red: int, sides: Array) -> Ar
 
 def _largest_slopes(data: CubeData) -> Array:
     """Largest change (dim − 1,) of linear RGB per 8-bit code between consecutive nodes."""
-    decoding = data.sensor.decoding
-    slopes, nodes = np.diff(decoding), data.lattice.nodes
+    decoding, nodes = data.sensor.decoding, data.lattice.nodes
+    slopes = np.diff(decoding)
     first = np.clip(np.searchsorted(decoding, nodes[:-1], side="right") - 1, 0, len(slopes) - 1)
     last = np.clip(np.searchsorted(decoding, nodes[1:], side="left"), 1, len(slopes))
     return np.array([slopes[low:high].max() for low, high in zip(first, last, strict=True)])
 
 
-def _box_constant(data: CubeData, entry: int) -> float:
-    if not data.atlas.half_width[entry]:
-        return 0.0
-    own = data.entry_spectra.reflectance(np.array([entry]), data.sensor.wavelengths)[0]
-    return max(float(spectral_norms(columns).max()) for columns in _face_jacobians(data, entry, own))
-
-
-def _face_jacobians(data: CubeData, entry: int, own: Array) -> Iterator[Array]:
+def _box_jacobians(data: CubeData, entry: int) -> Iterator[Array]:
     """Yield Jacobians (4, 3, N) at the corners of every patch of the faces of a box between lattice nodes."""
-    low, high = (face[entry] for face in data.entry_boxes.faces)
-    centre, nodes = data.atlas.rgb[entry], data.lattice.nodes
-    cuts = [_cuts(nodes, low[axis], high[axis]) for axis in range(3)]
+    if not data.atlas.half_width[entry]:
+        return
+    centre, cuts = data.atlas.rgb[entry], face_cuts(data, entry)
+    own = data.entry_spectra.reflectance(np.array([entry]), data.sensor.wavelengths)[0]
     points = np.stack(np.meshgrid(*cuts, indexing="ij"), axis=-1)
     spectra = lattice_spectra(data, points.reshape(-1, 3), data.sensor.wavelengths)
     differences = (spectra - own).reshape(*points.shape[:3], -1)
@@ -132,23 +124,26 @@ def _face_jacobians(data: CubeData, entry: int, own: Array) -> Iterator[Array]:
             yield _patch_jacobians(offsets[i : i + 2, j : j + 2], changes[i : i + 2, j : j + 2], axis)
 
 
+def face_cuts(data: CubeData, entry: int) -> list[Array]:
+    """Both ends of the box of an entry along each axis, and the nodes in between."""
+    nodes, bounds = data.lattice.nodes, [face[entry] for face in data.entry_boxes.faces]
+    return [
+        np.array([low, *nodes[(nodes > low + MIN_SIDE) & (nodes < high - MIN_SIDE)], high])
+        for low, high in zip(*bounds, strict=True)
+    ]
+
+
 def _patch_jacobians(offsets: Array, changes: Array, axis: int) -> Array:
     """Jacobians (4, 3, N) at the corners of a patch of the face normal to ``axis``.
 
     ``offsets`` (2, 2, 3) and ``changes`` (2, 2, N) are colours and spectra of the corners minus those of the entry.
     """
     first, second = (other for other in range(3) if other != axis)
-    along_first = np.broadcast_to((changes[1] - changes[0]) / (offsets[1, 0] - offsets[0, 0])[first], changes.shape)
-    steps = (changes[:, 1] - changes[:, 0]) / (offsets[0, 1] - offsets[0, 0])[second]
-    along_second = np.broadcast_to(steps[:, None], changes.shape)
-    radial = changes - offsets[..., [first]] * along_first - offsets[..., [second]] * along_second
-    jacobians = np.empty((4, 3, changes.shape[-1]))
-    columns = {axis: radial / offsets[..., [axis]], first: along_first, second: along_second}
-    for column, values in columns.items():
-        jacobians[:, column] = values.reshape(4, -1)
-    return jacobians
-
-
-def _cuts(nodes: Array, low: float, high: float) -> Array:
-    """Both ends of a side of a face, and the nodes in between."""
-    return np.array([low, *nodes[(nodes > low + MIN_SIDE) & (nodes < high - MIN_SIDE)], high])
+    columns = np.empty((3, *changes.shape))
+    # Along the face, differences of its corners. Along the ray, the homogeneous function is the sum of its derivatives
+    # times the offsets, which gives the third one.
+    columns[first] = (changes[1] - changes[0]) / (offsets[1, 0] - offsets[0, 0])[first]
+    columns[second] = ((changes[:, 1] - changes[:, 0]) / (offsets[0, 1] - offsets[0, 0])[second])[:, None]
+    radial = changes - offsets[..., [first]] * columns[first] - offsets[..., [second]] * columns[second]
+    columns[axis] = radial / offsets[..., [axis]]
+    return columns.reshape(3, 4, -1).swapaxes(0, 1)

@@ -1,23 +1,23 @@
 """Loss of trigonometric moments: four techniques and several counts, measured on atlases.
 
 Every measured spectrum is reduced to its moments, reconstructed, and compared with the measurement, as in Tódová 2020,
-*Constrained Spectral Uplifting*, table 4.1, sections 2.2.1 and 4.1.1, and appendix B.1."""
+*Constrained Spectral Uplifting*, table 4.1, sections 2.2.1 and 4.1.1, and appendix B.1.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, merge, on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_2000, lab
 from uplift.colorimetry.lights import REPORT_LIGHTS
-from uplift.colorimetry.sensor import Light
-from uplift.common.arrays import Array, Complex
+from uplift.common.arrays import Array, Complex, Indices
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.study import complex_moments
@@ -48,31 +48,34 @@ class Technique:
         return f"{'mirrored' if self.mirrored else 'unmirrored'}, {'warped' if self.warped else 'unwarped'}"
 
     def floats(self, moments: int) -> int:
-        """Count the real numbers stored per spectrum."""
+        """Real numbers stored per spectrum."""
         return moments + 1 if self.mirrored else 2 * moments + 1
 
     def phase(self, wavelengths: ArrayLike) -> Array:
-        """Map wavelengths to phases. Shapes: ``wavelengths`` (N,); result (N,)."""
+        """Phases (N,) of wavelengths (N,)."""
         half = Phase(warp="vision" if self.warped else "none")(wavelengths)
         return half if self.mirrored else 2 * half + np.pi
 
     def moments(self, reflectance: Array, wavelengths: ArrayLike, moments: int) -> Complex | Array:
-        """Compute the moments of reflectances.
+        """Moments (n, moments + 1) of reflectances (n, N), exact for the interpolant that is linear in the phase.
 
-        They are exact for the interpolant that is linear in the phase, so samples within [0, 1] have moments of a
-        reflectance.
-
-        Shapes: ``reflectance`` (n, N), ``wavelengths`` (N,); result (n, moments + 1).
+        Samples within [0, 1] have moments of a reflectance.
         """
         phase = self.phase(wavelengths)
-        on_circle = _integrals(reflectance, phase, moments) / np.ptp(phase)
+        # Integrals of g exp(−ijφ) dφ by parts, twice: a term of the two ends, and the slopes of g times the change of
+        # exp(−ijφ) in each interval.
+        orders = np.arange(1, moments + 1)
+        turn = np.exp(-1j * phase[:, None] * orders)
+        ends = reflectance[:, -1:] * turn[-1] - reflectance[:, :1] * turn[0]
+        slopes = np.diff(reflectance, axis=1) / np.diff(phase)
+        integrals = np.empty((len(reflectance), moments + 1), dtype=complex)
+        integrals[:, 0] = np.trapezoid(reflectance, phase, axis=1)
+        integrals[:, 1:] = 1j * ends / orders + slopes @ np.diff(turn, axis=0) / orders**2
+        on_circle = integrals / np.ptp(phase)
         return np.ascontiguousarray(on_circle.real) if self.mirrored else on_circle
 
     def reconstruct(self, moments: Complex | Array, wavelengths: ArrayLike) -> Array:
-        """Compute bounded maximum-entropy reflectances from moments.
-
-        Shapes: ``moments`` (n, C), ``wavelengths`` (N,); result (n, N). Raises `UpliftError`.
-        """
+        """Bounded maximum-entropy reflectances (n, N) of moments (n, C)."""
         solve = duality.try_multipliers if self.mirrored else complex_moments.try_multipliers
         multipliers = duality.multipliers_from_moments(moments, solve)
         waves = complex_moments.fourier_basis(self.phase(wavelengths), moments.shape[1])
@@ -81,21 +84,6 @@ class Technique:
 
 TECHNIQUES = tuple(Technique(mirrored, warped) for mirrored in (True, False) for warped in (True, False))
 """All techniques, in the order of the tables of the thesis."""
-
-
-def _integrals(values: Array, phase: Array, moments: int) -> Complex:
-    """Integrals (n, moments + 1) of g exp(−ijφ) dφ, with g linear between ``values`` (n, N) at phases (N,).
-
-    Integrated by parts twice: a term of the two ends, and the slopes times the change of exp(−ijφ) in each interval.
-    """
-    orders = np.arange(1, moments + 1)
-    turn = np.exp(-1j * phase[:, None] * orders)
-    ends = values[:, -1:] * turn[-1] - values[:, :1] * turn[0]
-    slopes = np.diff(values, axis=1) / np.diff(phase)
-    integrals = np.empty((len(values), moments + 1), dtype=complex)
-    integrals[:, 0] = np.trapezoid(values, phase, axis=1)
-    integrals[:, 1:] = 1j * ends / orders + slopes @ np.diff(turn, axis=0) / orders**2
-    return integrals
 
 
 DEFAULT_MAX_MOMENTS, MAX_MOMENTS = 15, 32
@@ -108,14 +96,21 @@ STEP = 1.0
 """Distance in nm of the samples that moments are computed from."""
 
 
+class MomentsResult(NamedTuple):
+    """Mean and largest errors (len(MEASURES),) of a group, and the entry with the largest ΔE76."""
+
+    mean: Array
+    max: Array
+    worst: int
+
+
 @dataclass(frozen=True, eq=False)
 class MomentsStudy:
     """Errors of every entry for every technique and number of moments.
 
-    ``names``: names of the E entries.
-    ``atlases``: atlas of each entry.
+    ``names``, ``atlases``: names and atlases of the E entries.
     ``measured`` (E, N): reflectances at the wavelengths of `fine_grid`.
-    ``errors`` (4, max_moments + 1, E, len(MEASURES): errors, by the order of `TECHNIQUES` and by moments from 0.
+    ``errors`` (4, max_moments + 1, E, len(MEASURES)): errors, by the order of `TECHNIQUES` and by moments from 0.
     """
 
     names: tuple[str, ...]
@@ -133,51 +128,52 @@ class MomentsStudy:
         """Names of the groups: all entries, and every atlas."""
         return (ALL_ATLASES, *dict.fromkeys(self.atlases))
 
-    def rows(self, group: str = ALL_ATLASES) -> NDArray[np.intp]:
-        """Find the entries of a group."""
+    def rows(self, group: str = ALL_ATLASES) -> Indices:
+        """Entries of a group."""
         return np.array([row for row, atlas in enumerate(self.atlases) if group in (ALL_ATLASES, atlas)])
 
     def result(self, technique: Technique, moments: int, group: str = ALL_ATLASES) -> MomentsResult:
         """Summarise the errors of a group for one technique and number of moments."""
         rows = self.rows(group)
         errors = self.errors[TECHNIQUES.index(technique), moments, rows]
-        worst = int(rows[errors[:, 0].argmax()])
-        return MomentsResult(group, technique, moments, errors.mean(axis=0), errors.max(axis=0), worst)
+        return MomentsResult(errors.mean(axis=0), errors.max(axis=0), int(rows[errors[:, 0].argmax()]))
 
-    def results(self) -> Iterator[MomentsResult]:
-        """Yield the result of every group, technique and number of moments."""
-        for group in self.groups:
-            for technique in TECHNIQUES:
-                for moments in range(self.max_moments + 1):
-                    yield self.result(technique, moments, group)
+    def curves(self) -> dict[Technique, Array]:
+        """Numbers stored, mean and largest ΔE76 (max_moments + 1, 3) of all entries together, by technique."""
+        found = {}
+        for technique in TECHNIQUES:
+            results = [(technique.floats(n), self.result(technique, n)) for n in range(self.max_moments + 1)]
+            found[technique] = np.array([[floats, one.mean[0], one.max[0]] for floats, one in results])
+        return found
 
+    def records(self) -> list[dict[str, Any]]:
+        """Return a flat record for every group, technique and count, with mean and maximum of every measure."""
+        return [
+            self._record(group, technique, moments)
+            for group in self.groups
+            for technique in TECHNIQUES
+            for moments in range(self.max_moments + 1)
+        ]
 
-@dataclass(frozen=True, eq=False)
-class MomentsResult:
-    """Errors of a group for one technique and number of moments.
-
-    ``group``: name of the group.
-    ``technique``: the technique.
-    ``moments``: number of moments above the zeroth.
-    ``mean``, ``max`` (len(MEASURES): mean and largest error.
-    ``worst``: index of the entry with the largest ΔE76.
-    """
-
-    group: str
-    technique: Technique
-    moments: int
-    mean: Array
-    max: Array
-    worst: int
-
-    @property
-    def floats(self) -> int:
-        """Numbers stored per spectrum."""
-        return self.technique.floats(self.moments)
+    def _record(self, group: str, technique: Technique, moments: int) -> dict[str, Any]:
+        result = self.result(technique, moments, group)
+        errors: dict[str, float] = {}
+        for name, mean, largest in zip(MEASURES, result.mean.tolist(), result.max.tolist(), strict=True):
+            errors |= {f"{name}_mean": mean, f"{name}_max": largest}
+        return {
+            "atlas": group,
+            "entries": len(self.rows(group)),
+            "mirrored": technique.mirrored,
+            "warped": technique.warped,
+            "moments": moments,
+            "floats": technique.floats(moments),
+            **errors,
+            "worst": self.names[result.worst],
+        }
 
 
 def fine_grid() -> Array:
-    """Make the wavelengths that moments are computed from. The result has shape (401,)."""
+    """Wavelengths (401,) that moments are computed from."""
     return np.arange(observer.START, observer.END + STEP / 2, STEP)
 
 
@@ -186,68 +182,28 @@ def study_moments(
     max_moments: int = DEFAULT_MAX_MOMENTS,
     progress: ProgressCallback = ignore_progress,
 ) -> MomentsStudy:
-    """Reduce every entry to 0 … ``max_moments`` moments, and reconstruct it, by all four techniques.
-
-    Raises `OptionError`, `AtlasError`.
-    """
+    """Reduce every entry to 0 … ``max_moments`` moments, and reconstruct it, by all four techniques."""
     if not 0 <= max_moments <= MAX_MOMENTS:
-        raise OptionError(
-            f"max_moments must be in [0, {MAX_MOMENTS}], got {max_moments}",
-            code="moments-out-of-range",
-            hint=f"the thesis has {DEFAULT_MAX_MOMENTS}",
-        )
+        raise OptionError(f"max_moments must be in [0, {MAX_MOMENTS}], got {max_moments}")
     atlas = merge(atlases.values())
     if not atlas.entries:
-        raise AtlasError("the atlases have no entries", code="empty-atlas", hint="name an atlas with reflectances")
+        raise AtlasError("the atlases have no entries", code="too-few-entries", hint="name an atlas with reflectances")
     measured = on_grid(atlas, fine_grid())
-    errors_of = _error_function(measured)
-    counts = max_moments + 1
+    original = measured[:, :: round(observer.STEP / STEP)]
+    lights = [observer.light(name) for name in REPORT_LIGHTS]
+
+    def labs(spectra: Array) -> list[Array]:
+        return [lab(spectra @ light.xyz.T, light.white) for light in lights]
+
+    expected, counts = labs(original), max_moments + 1
     errors = np.empty((len(TECHNIQUES), counts, len(measured), len(MEASURES)))
     for row, technique in enumerate(TECHNIQUES):
         moments = technique.moments(measured, fine_grid(), max_moments)
         for count in range(counts):
-            reconstructed = technique.reconstruct(moments[:, : count + 1], observer.grid())
-            errors[row, count] = errors_of(reconstructed)
+            spectra = technique.reconstruct(moments[:, : count + 1], observer.grid())
+            actual, rms = labs(spectra), np.sqrt(((spectra - original) ** 2).mean(axis=1))
+            delta_e = [delta_e_1976(actual[0], expected[0]), *map(delta_e_2000, actual, expected)]
+            errors[row, count] = np.stack([*delta_e, rms], axis=1)
             progress(Progress("reconstructions", row * counts + count + 1, len(TECHNIQUES) * counts))
     origins = tuple(name for name, each in atlases.items() for _ in each.entries)
     return MomentsStudy(atlas.names, origins, measured, errors)
-
-
-def _error_function(measured: Array) -> Callable[[Array], Array]:
-    """Make the function from reconstructions (E, 81) on the grid of the observer to errors (E, len(MEASURES))."""
-    original = measured[:, :: round(observer.STEP / STEP)]
-    lights = [observer.light(name) for name in REPORT_LIGHTS]
-    expected = [_lab(light, original) for light in lights]
-
-    def errors(reconstructed: Array) -> Array:
-        actual = [_lab(light, reconstructed) for light in lights]
-        delta_e = [delta_e_2000(one, other) for one, other in zip(actual, expected, strict=True)]
-        rms = np.sqrt(((reconstructed - original) ** 2).mean(axis=1))
-        return np.stack([delta_e_1976(actual[0], expected[0]), *delta_e, rms], axis=1)
-
-    return errors
-
-
-def _lab(light: Light, reflectance: Array) -> Array:
-    return lab(reflectance @ light.xyz.T, light.white)
-
-
-def records(study: MomentsStudy) -> list[dict[str, Any]]:
-    """Make a flat record for every group, technique and count, with the mean and maximum of every measure."""
-    return [_record(study, result) for result in study.results()]
-
-
-def _record(study: MomentsStudy, result: MomentsResult) -> dict[str, Any]:
-    errors: dict[str, float] = {}
-    for name, mean, largest in zip(MEASURES, result.mean, result.max, strict=True):
-        errors |= {f"{name}_mean": float(mean), f"{name}_max": float(largest)}
-    return {
-        "atlas": result.group,
-        "entries": len(study.rows(result.group)),
-        "mirrored": result.technique.mirrored,
-        "warped": result.technique.warped,
-        "moments": result.moments,
-        "floats": result.floats,
-        **errors,
-        "worst": study.names[result.worst],
-    }

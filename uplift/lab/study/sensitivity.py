@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
-from functools import partial
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from scipy.spatial.distance import cdist
 
 from uplift.atlas import Atlas, Entry
 from uplift.atlas.atlas import HIGHEST, LOWEST
@@ -16,7 +16,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.colorimetry.sensor import Light
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.cube import CubeData
@@ -33,37 +33,113 @@ CODE_STEPS = {"1/255": 1.0, "1/1023": 255 / 1023}
 """Steps of one code of 8 and of 10 bits, in 8-bit codes."""
 ROUNDING, ROUNDING_STEP = "1e-7", 1e-7
 """Rounding of a float32, in linear RGB."""
+NOISE, NOISE_DRAWS = 0.002, 3
+"""Repeatability of a spectrophotometer: standard deviation of a reflectance; and the number of atlases with noise."""
+MOVED_DELTA_E = 0.5
+"""ΔE00 above which a node counts as moved: half of a just noticeable difference."""
+Record = dict[str, Any]
 
 
-@dataclass(frozen=True)
-class Perturbation:
-    """Changes of the answers of one mode to colours that moved by one step.
+@dataclass(frozen=True, eq=False)
+class Change:
+    """Effect of a change of the atlas on n nodes.
 
-    ``_mean`` and ``_most`` are mean and maximum over the colours. The fields are the keys of the JSON output.
-
-    ``mode``: lookup mode.
-    ``step``: name of the step.
-    ``rms_mean``, ``rms_most``: change of the reflectance, rms over wavelength.
-    ``largest``: largest change of reflectance at any wavelength.
-    ``light_mean``, ``light_most``: ΔE00 under the light of the study.
-    ``own_mean``, ``own_most``: ΔE00 under the illuminant of the cube, which the change of the query itself causes.
+    ``rms`` (n,): change of the spectra, rms over wavelength. ``delta_e`` (n,): the same, ΔE00 under a light.
+    ``distance`` (2, n): in linear RGB and in ΔE*ab from the nearer of the old and the new colour of the changed entry;
+    None if all entries changed.
     """
 
-    mode: str
-    step: str
-    rms_mean: float
-    rms_most: float
-    largest: float
-    light_mean: float
-    light_most: float
-    own_mean: float
-    own_most: float
+    description: str
+    rms: Array
+    delta_e: Array
+    distance: Array | None
+
+    @property
+    def moved(self) -> Mask:
+        """Nodes (n,) that change by more than `MOVED_DELTA_E`."""
+        return np.asarray(self.delta_e > MOVED_DELTA_E)
+
+    def record(self) -> Record:
+        """Convert to JSON values; the radii are the largest distances of moved nodes, 0 if no node moved."""
+        radii = [None, None] if self.distance is None else self.distance[:, self.moved].max(axis=1, initial=0).tolist()
+        return {
+            "change": self.description,
+            "moved": float(self.moved.mean()),
+            **dict(zip(("rgb_radius", "lab_radius"), radii, strict=True)),
+            **_mean_and_most("delta_e", self.delta_e),
+            **_mean_and_most("rms", self.rms),
+        }
 
 
-def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Perturbation]:
-    """Move random colours, uniform in 8-bit codes, by every step and compare the answers.
+@dataclass(frozen=True, eq=False)
+class Sensitivity:
+    """Changes of the answers to moved queries, Lipschitz constants, and changes of the atlas, none without an atlas."""
 
-    Every channel moves up or down, at random, by the full step.
+    data: CubeData
+    moves: list[Record]
+    lipschitz: LipschitzConstants
+    changes: list[Change]
+
+    @property
+    def removed(self) -> list[Change]:
+        """Changes by an entry left out."""
+        return [change for change in self.changes if change.description.endswith("left out")]
+
+    def record(self) -> Record:
+        """Convert to JSON values; ``steepest_cell`` is the linear RGB of the lowest corner of a cell."""
+        constants, boxes, inexact = self.lipschitz, self.lipschitz.boxes, self.data.inexact_cells
+        lattice = self.data.lattice
+        steepest = np.unravel_index(int(constants.cells.argmax()), constants.cells.shape)
+        cells = np.zeros((0, 0, 0)) if inexact is None else inexact.reshape((lattice.dim,) * 3)[:-1, :-1, :-1]
+        return {
+            "moves": self.moves,
+            "lipschitz": {
+                "largest": constants.largest,
+                "median_cell": float(np.median(constants.cells)),
+                "largest_per_code": float(constants.codes.max()),
+                "median_per_code": float(np.median(constants.codes)),
+                "steepest_cell": lattice.nodes[np.array(steepest)].tolist(),
+                "steepest_wavelength": float(self.data.sensor.wavelengths[constants.wavelengths.argmax()]),
+                "largest_box": float(boxes.max()) if boxes.size else None,
+                "moved_cells": int(cells.sum()),
+            },
+            "changes": [each.record() for each in self.changes],
+        }
+
+
+def study_sensitivity(
+    cube: Cube, atlas: Atlas | None, entries: int, progress: ProgressCallback = ignore_progress
+) -> Sensitivity:
+    """Perturb queries, compute Lipschitz constants, and rebuild the cube with changes of its atlas.
+
+    ``entries`` of the atlas are changed, one at a time.
+    """
+    data = cube.data
+    if data.complete_cells is not None:
+        raise OptionError(
+            "a sparse cube has no answers between the cells of its scene",
+            code="sparse-cube",
+            hint="build it without a scene",
+        )
+    light = observer.light(NARROW_BAND_LIGHT, data.sensor.observer)
+    moves, lipschitz, changes = perturb(cube, light), lipschitz_constants(data), []
+    if atlas is not None and entries > 0:
+        options = recorded_options(data.provenance["options"])
+        before = rebuild(atlas.entries, options)
+        kept = [entry for entry in atlas.entries if entry.name in before.atlas.names]
+        jobs = list(changed_atlases(kept, before.atlas.names[:entries]))
+        for number, (description, name, changed) in enumerate(jobs, 1):
+            changes.append(compare(before, rebuild(changed, options), light, description, name))
+            progress(Progress("builds", number, len(jobs)))
+    return Sensitivity(data, moves, lipschitz, changes)
+
+
+def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Record]:
+    """Move random colours, uniform in 8-bit codes, by every step and compare the answers of every mode.
+
+    Every channel moves up or down, at random, by the full step. ``rms`` is the change of the reflectance over
+    wavelength, ``largest`` that at any wavelength; ``light`` and ``own`` are ΔE00 under a light and under the
+    illuminant of the cube, where the change of the query causes it. ``_mean`` and ``_most`` are over the colours.
     """
     rng = np.random.default_rng(5)
     codes = rng.uniform(1, 254, (count, 3))
@@ -71,258 +147,63 @@ def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Perturbation
     rgb = cube.decode(codes)
     moved = {name: cube.decode(codes + step * signs) for name, step in CODE_STEPS.items()}
     moved[ROUNDING] = np.clip(rgb + ROUNDING_STEP * signs, 0, 1)
-    return [
-        _perturbation(cube, light, mode, name, rgb, nearby)
-        for mode in CONTINUOUS_MODES
-        for name, nearby in moved.items()
-    ]
+    found = []
+    for mode in CONTINUOUS_MODES:
+        before = cube.reflectance(rgb, mode=mode)
+        for step, colours in moved.items():
+            after = cube.reflectance(colours, mode=mode)
+            found.append(
+                {
+                    "mode": mode,
+                    "step": step,
+                    **_mean_and_most("rms", _rms(after - before)),
+                    "largest": float(np.abs(after - before).max()),
+                    **_mean_and_most("light", delta_e_spectra(light, before, after)),
+                    **_mean_and_most("own", delta_e_spectra(cube.data.sensor.light, before, after)),
+                }
+            )
+    return found
 
 
-def _perturbation(cube: Cube, light: Light, mode: str, step: str, rgb: Array, nearby: Array) -> Perturbation:
-    before, after = (cube.reflectance(colours, mode=mode) for colours in (rgb, nearby))
-    change = np.sqrt(((after - before) ** 2).mean(axis=1))
-    under_light = delta_e_spectra(light, before, after)
-    under_own = delta_e_spectra(cube.data.sensor.light, before, after)
-    return Perturbation(
-        mode,
-        step,
-        rms_mean=float(change.mean()),
-        rms_most=float(change.max()),
-        largest=float(np.abs(after - before).max()),
-        light_mean=float(under_light.mean()),
-        light_most=float(under_light.max()),
-        own_mean=float(under_own.mean()),
-        own_most=float(under_own.max()),
-    )
+def changed_atlases(entries: Sequence[Entry], names: Sequence[str]) -> Iterator[tuple[str, str, list[Entry]]]:
+    """Yield descriptions of changes, the changed entry, empty if all changed, and the changed entries.
 
-
-NOISE = 0.002
-"""Repeatability of a spectrophotometer: standard deviation of a reflectance."""
-MOVED_DELTA_E = 0.5
-"""ΔE00 above which a lattice point counts as moved: half of a just noticeable difference."""
-
-
-@dataclass(frozen=True, eq=False)
-class Change:
-    """Effect of a change of the atlas on the n lattice points.
-
-    ``description``: the change.
-    ``rms`` (n,): change of the spectra, rms over wavelength.
-    ``delta_e`` (n,): change of the spectra, ΔE00 under a light.
-    ``rgb_distance``, ``lab_distance`` (n,): distance in linear RGB and ΔE*ab from the nearer of the old and the new
-        colour of the changed entry. Empty if all entries changed.
+    Changes are `NOISE` on all entries, an entry with its wavelengths in reverse order, as an example of a wrong
+    measurement, and an entry left out.
     """
-
-    description: str
-    rms: Array
-    delta_e: Array
-    rgb_distance: Array
-    lab_distance: Array
-
-    @property
-    def moved(self) -> float:
-        """Share of the lattice points that change by more than `MOVED_DELTA_E`."""
-        return float((self.delta_e > MOVED_DELTA_E).mean())
-
-    def radius(self, distance: Array) -> float:
-        """Largest distance (n,) of a moved point; 0 if no point moved, NaN if all entries changed."""
-        if not distance.size:
-            return float("nan")
-        return float(np.max(distance[self.delta_e > MOVED_DELTA_E], initial=0))
+    for seed in range(NOISE_DRAWS):
+        rng = np.random.default_rng(seed)
+        noisy = [(each, each.values + rng.normal(0, NOISE, len(each.values))) for each in entries]
+        changed = [replace(each, values=np.clip(values, LOWEST, HIGHEST)) for each, values in noisy]
+        yield f"noise, draw {seed}", "", changed
+    for name in names:
+        reverse = [replace(each, values=each.values[::-1]) if each.name == name else each for each in entries]
+        yield f"{name} wrong", name, reverse
+    for name in names:
+        yield f"{name} left out", name, [each for each in entries if each.name != name]
 
 
-@dataclass(frozen=True, eq=False)
-class Baseline:
-    """A cube before its atlas changes.
-
-    ``entries``: entries of the atlas that constrain the cube.
-    ``data``: the cube.
-    ``spectra`` (n, N): reflectances of the lattice points.
-    ``light``: light of all ΔE00.
-    ``options``: build options.
-    """
-
-    entries: tuple[Entry, ...]
-    data: CubeData
-    spectra: Array
-    light: Light
-    options: Mapping[str, Any]
+def compare(before: CubeData, after: CubeData, light: Light, description: str, name: str = "") -> Change:
+    """Compare the nodes of a cube with those after a change of its atlas, of all entries or of a named one."""
+    spectra = [reflectance(data.model, data.points.coefficients, data.sensor.wavelengths) for data in (before, after)]
+    atlases, points, distance = (before.atlas, after.atlas), before.lattice.points, None
+    if name:
+        rgb = np.array([atlas.rgb[atlas.names.index(name)] for atlas in atlases if name in atlas.names])
+        spaces = (points, rgb), [rgb_to_lab(before.sensor, colours) for colours in (points, rgb)]
+        distance = np.array([cdist(*pair).min(axis=1) for pair in spaces])
+    return Change(description, _rms(spectra[1] - spectra[0]), delta_e_spectra(light, *spectra), distance)
 
 
-def build_baseline(atlas: Atlas, light: Light, **options: Any) -> Baseline:
-    """Build the cube that changes are compared with. Raises `UpliftError`."""
-    data = _build_data(atlas.entries, options)
-    entries = tuple(entry for entry in atlas.entries if entry.name in data.atlas.names)
-    return Baseline(entries, data, _lattice_spectra(data), light, options)
-
-
-def remove_entry(base: Baseline, name: str) -> Change:
-    """Rebuild without an entry."""
-    remaining = [entry for entry in base.entries if entry.name != name]
-    return _change(base, f"{name} left out", remaining, name)
-
-
-def reverse_entry(base: Baseline, name: str) -> Change:
-    """Rebuild with the wavelengths of an entry in reverse order, as an example of a wrong measurement."""
-    entries = [replace(entry, values=entry.values[::-1]) if entry.name == name else entry for entry in base.entries]
-    return _change(base, f"{name} wrong", entries, name)
-
-
-def add_noise(base: Baseline, seed: int) -> Change:
-    """Rebuild with `NOISE` added to every entry."""
-    rng = np.random.default_rng(seed)
-
-    def noisy(entry: Entry) -> Entry:
-        values = entry.values + rng.normal(0, NOISE, len(entry.values))
-        return replace(entry, values=np.clip(values, LOWEST, HIGHEST))
-
-    return _change(base, f"noise, draw {seed}", [noisy(entry) for entry in base.entries])
-
-
-def _change(base: Baseline, description: str, entries: Sequence[Entry], name: str | None = None) -> Change:
-    data = _build_data(entries, base.options)
-    after = _lattice_spectra(data)
-    rms = np.sqrt(((after - base.spectra) ** 2).mean(axis=1))
-    colours = [each.atlas.rgb[each.atlas.names.index(name)] for each in (base.data, data) if name in each.atlas.names]
-    points, sensor = base.data.lattice.points, base.data.sensor
-    return Change(
-        description,
-        rms,
-        delta_e_spectra(base.light, base.spectra, after),
-        _distance(points, colours),
-        _distance(rgb_to_lab(sensor, points), [rgb_to_lab(sensor, colour) for colour in colours]),
-    )
-
-
-def _distance(points: Array, centres: Sequence[Array]) -> Array:
-    """Distance (n,) of points (n, 3) to the nearest centre; empty without centres."""
-    if not centres:
-        return np.zeros(0)
-    return np.asarray(np.min([np.linalg.norm(points - centre, axis=1) for centre in centres], axis=0))
-
-
-def _build_data(entries: Sequence[Entry], options: Mapping[str, Any]) -> CubeData:
+def rebuild(entries: Sequence[Entry], options: Record) -> CubeData:
+    """Build a cube from entries without warnings, as those of changed entries are expected."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
         return build(Atlas(tuple(entries)), **options).data
 
 
-def _lattice_spectra(data: CubeData) -> Array:
-    return reflectance(data.model, data.points.coefficients, data.sensor.wavelengths)
+def _rms(difference: Array) -> Array:
+    return np.asarray(np.sqrt((difference**2).mean(axis=1)))
 
 
-NOISE_DRAWS = 3
-
-
-@dataclass(frozen=True, eq=False)
-class Sensitivity:
-    """Results of `study_sensitivity`.
-
-    ``cube``: the cube.
-    ``perturbations``: changes of the query.
-    ``lipschitz``: lipschitz constants of the cube.
-    ``noise``, ``reversed``, ``removed``: changes of the atlas: noise on all entries, one entry reversed, one entry
-        removed. Empty without an atlas.
-    """
-
-    cube: Cube
-    perturbations: list[Perturbation]
-    lipschitz: LipschitzConstants
-    noise: list[Change]
-    reversed: list[Change]
-    removed: list[Change]
-
-    @property
-    def steepest(self) -> tuple[float, float, float]:
-        """Linear RGB of the lowest corner of the cell with the largest Lipschitz constant."""
-        cells, nodes = self.lipschitz.cells, self.cube.data.lattice.nodes
-        red, green, blue = (float(nodes[index]) for index in np.unravel_index(int(cells.argmax()), cells.shape))
-        return red, green, blue
-
-    @property
-    def moved_cells(self) -> int:
-        """Number of cells in which mode ``spectra`` moves mixtures to exact colours; the constants are of mixtures."""
-        data = self.cube.data
-        if data.inexact_cells is None:
-            return 0
-        return int(data.inexact_cells.reshape((data.lattice.dim,) * 3)[:-1, :-1, :-1].sum())
-
-    def record(self) -> dict[str, Any]:
-        """Convert to JSON values."""
-        constants, boxes = self.lipschitz, self.lipschitz.boxes
-        steepest_wavelength = self.cube.data.sensor.wavelengths[constants.wavelengths.argmax()]
-        return {
-            "moves": [asdict(each) for each in self.perturbations],
-            "lipschitz": {
-                "largest": constants.largest,
-                "median_cell": float(np.median(constants.cells)),
-                "largest_per_code": float(constants.codes.max()),
-                "median_per_code": float(np.median(constants.codes)),
-                "steepest_cell": self.steepest,
-                "steepest_wavelength": float(steepest_wavelength),
-                "largest_box": float(boxes.max()) if boxes.size else None,
-                "moved_cells": self.moved_cells,
-            },
-            "changes": [change_record(each) for each in (*self.noise, *self.reversed, *self.removed)],
-        }
-
-
-def change_record(change: Change) -> dict[str, Any]:
-    """Convert a change to JSON values."""
-    one_entry = bool(change.rgb_distance.size)
-    return {
-        "change": change.description,
-        "moved": change.moved,
-        "rgb_radius": change.radius(change.rgb_distance) if one_entry else None,
-        "lab_radius": change.radius(change.lab_distance) if one_entry else None,
-        "delta_e_mean": float(change.delta_e.mean()),
-        "delta_e_most": float(change.delta_e.max()),
-        "rms_mean": float(change.rms.mean()),
-        "rms_most": float(change.rms.max()),
-    }
-
-
-def study_sensitivity(
-    cube: Cube,
-    atlas: Atlas | None,
-    entries: int,
-    progress: ProgressCallback = ignore_progress,
-) -> Sensitivity:
-    """Perturb queries, compute Lipschitz constants, and rebuild the cube with changes of its atlas.
-
-    Raises `OptionError`.
-    """
-    if entries < 0:
-        raise OptionError(
-            f"entries must be at least 0, got {entries}",
-            code="entries-out-of-range",
-            hint="give 0 to change no entry",
-        )
-    if cube.data.complete_cells is not None:
-        raise OptionError(
-            "a sparse cube has no answers between the cells of its scene",
-            code="sparse-cube",
-            hint="build it without a scene",
-        )
-    light = observer.light(NARROW_BAND_LIGHT, cube.data.sensor.observer)
-    perturbations, lipschitz = perturb(cube, light), lipschitz_constants(cube.data)
-    if atlas is None or not entries:
-        return Sensitivity(cube, perturbations, lipschitz, [], [], [])
-    base = build_baseline(atlas, light, **recorded_options(cube.data.provenance["options"]))
-    names = base.data.atlas.names[:entries]
-    jobs = [
-        *(partial(add_noise, base, seed) for seed in range(NOISE_DRAWS)),
-        *(partial(reverse_entry, base, name) for name in names),
-        *(partial(remove_entry, base, name) for name in names),
-    ]
-    changes = []
-    for number, job in enumerate(jobs, 1):
-        changes.append(job())
-        progress(Progress("builds", number, len(jobs)))
-    first_removed = NOISE_DRAWS + len(names)
-    noise, reverse, removed = (
-        changes[:NOISE_DRAWS],
-        changes[NOISE_DRAWS:first_removed],
-        changes[first_removed:],
-    )
-    return Sensitivity(cube, perturbations, lipschitz, noise, reverse, removed)
+def _mean_and_most(name: str, values: Array) -> Record:
+    return {f"{name}_mean": float(values.mean()), f"{name}_most": float(values.max())}
