@@ -70,7 +70,7 @@ def holdout(
 ) -> tuple[HoldoutSplit, ...]:
     """Build cubes from random halves of an atlas and predict the other halves.
 
-    Unless ``options`` say otherwise, the prior does not know the families that contain spectra of the atlas.
+    By default the prior does not know the families that contain spectra of the atlas.
     """
     total = 2 + splits
     options = {"leave_out": families_with(resample(atlas, observer.grid()).values), **options}
