@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -13,20 +13,122 @@ import numpy as np
 
 import uplift
 from benchmarks import CUBES, DOCS, REFERENCE, record
-from benchmarks.mixing_criteria import CRITERIA, SHARES, evaluate
-from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.observer import colour_science
+from uplift.colorimetry.delta_e import delta_e_rgb, rgb_to_lab
+from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
-from uplift.design.mixing import Ingredients, Medium, dispersive, make_coat, optics, overpainter, pigments
+from uplift.design.mixing import Ingredients, Medium, dispersive, make_coat, optics, overpainter
 from uplift.design.mixing.coats import ramp
 from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, Pigment, PowerOfReflectance, Scattering, from_opaque
-from uplift.design.mixing.theories import hsl_to_rgb, mixers, spectral_models
+from uplift.design.mixing.theories import Mixer, mixers, spectral_models
 from uplift.lab.timing import Spread, time_calls
 from uplift.lookup import Cube
 from uplift.viz.plots import Strip, plot_strips
 
+SHARES = np.array([(0.75, 0.25), (0.5, 0.5), (0.25, 0.75)])
+"""Proportions of shades, tints and greens."""
 BLUES = ("ultramarine", "cobalt", "cerulean", "phthalo blue")
+ARTISTS = ("#002185", "#fcd200")
+"""Cobalt blue and Hansa yellow, as Mixbox's table has them."""
+GREEN_MARGIN = 0.01
+"""Excess of G over R and B, in linear RGB, that counts as green."""
+INDICES = (1.33, 1.48, 1.5, 1.66)
+"""Water, light oil, glass and linseed oil, heavy oil."""
+MIXTURES, PIXELS = 20_000, 1_000_000
+RUNS = 5
+CHECKED = 20
+PAIRS = {
+    "blue-yellow": ("#005fa0", "#ffd200"),
+    "atlas-blue-yellow": ("blue", "yellow"),
+    "red-white": ("#b01030", "#ffffff"),
+    "red-green": ("#d02020", "#20a040"),
+}
+"""Names of entries, or codes."""
+STEPS = 11
+DRAWN = (
+    "pigments", "pigments in oil", "pigments, S = √R", "pigments, S = 1", "dyes", "average", "ryb", "phosphors",
+    "product",
+)  # fmt: skip
+"""Shares are the thickness of filters and products, so that a ramp ends at its colours."""
+Row = dict[str, Any]
+
+# --- criteria ---
+
+BLACK, WHITE = np.zeros(3), np.ones(3)
+COMPLEMENTS = (((0, 0, 1), (1, 0.5, 0)), ((1, 0, 0), (0, 1, 0)), ((1, 1, 0), (1, 0, 1)))
+"""Blue and orange, red and green, yellow and purple, as saturated linear RGB."""
+BLUE_YELLOW = np.array([[0.0, 0, 1], [1.0, 1, 0]])
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """A criterion of painters (Fishkin 1983, 10.4) in words, the measured quantity, and its largest value that passes.
+
+    The thesis requires tints to maintain chromaticity, too. White, however, moves every chromaticity towards its own.
+    A tint can only keep its hue, the direction from white in the CIE 1976 u'v' diagram. A shade can keep both.
+    """
+
+    title: str
+    measure: str
+    limit: float
+
+
+CRITERIA = (
+    Criterion("mixed with itself: no change", "worst ΔE00", 0.1),
+    Criterion("with black: chromaticity kept", "worst Δu'v'", 0.005),
+    Criterion("with black: darker", "largest change of L*", 0.0),
+    Criterion("with white: hue kept", "worst turn, degrees", 3.0),
+    Criterion("with white: lighter", "largest fall of L*", 0.0),
+    Criterion("with its complement: grey", "worst C*ab", 10.0),
+    Criterion("blue and yellow: green", "max(R, B) − G at best", -0.01),
+)
+"""All criteria, in the order of `evaluate`."""
+
+
+def evaluate(mixer: Mixer, sensor: Sensor, colours: Array) -> tuple[float, ...]:
+    """Measure a mixing model by every criterion, the first five with linear RGB (n, 3) without greys."""
+
+    def chromaticities(rgb: Array) -> Array:
+        """CIE 1976 u', v' (…, 2). Black, which has none, gets those of white."""
+        xyz = np.where((rgb > 0).any(axis=-1, keepdims=True), sensor.xyz(rgb), sensor.light.white)
+        return np.stack([4 * xyz[..., 0], 9 * xyz[..., 1]], axis=-1) / (xyz @ [1, 15, 3])[..., None]
+
+    def hues(rgb: Array) -> Array:
+        u, v = np.moveaxis(chromaticities(rgb) - chromaticities(WHITE), -1, 0)
+        return np.degrees(np.arctan2(v, u))
+
+    itself = np.array([mixer.mix(np.stack([one, one]), np.ones(2)) for one in colours])
+    shades, tints = (
+        np.array([mixer.mix(np.stack([one, other]), 2 * SHARES) for one in colours]) for other in (BLACK, WHITE)
+    )
+    neutral = [mixer.mix(np.array(pair, dtype=float), np.ones(2)) for pair in COMPLEMENTS]
+    greens = mixer.mix(BLUE_YELLOW, 2 * SHARES)
+    lightness = rgb_to_lab(sensor, colours)[:, None, 0]
+    turns = (hues(tints) - hues(colours)[:, None] + 180) % 360 - 180
+    return (
+        float(delta_e_rgb(sensor, colours, itself).max()),
+        float(np.linalg.norm(chromaticities(shades) - chromaticities(colours)[:, None], axis=-1).max()),
+        float((rgb_to_lab(sensor, shades)[..., 0] - lightness).max()),
+        float(np.abs(turns).max()),
+        float((lightness - rgb_to_lab(sensor, tints)[..., 0]).max()),
+        max(float(np.linalg.norm(rgb_to_lab(sensor, one)[..., 1:])) for one in neutral),
+        float((np.maximum(greens[:, 0], greens[:, 2]) - greens[:, 1]).min()),
+    )
+
+
+def criteria(cube: Cube) -> Row:
+    """Evaluate every mixer by every criterion on the coloured patches of the cube's atlas."""
+    atlas = cube.data.atlas.rgb
+    coloured = atlas[np.ptp(atlas, axis=1) > 0.1 * atlas.max(axis=1)]
+    rows = []
+    for mixer in mixers(cube):
+        values = zip(CRITERIA, evaluate(mixer, cube.data.sensor, coloured), strict=True)
+        verdicts = [{"obeys": value <= criterion.limit, "value": value + 0.0} for criterion, value in values]
+        rows.append({"mixer": mixer.title, "verdicts": verdicts})
+    return {"patches": len(coloured), "criteria_titles": [vars(one) for one in CRITERIA], "criteria": rows}
+
+
+# --- rules for S on mixtures of known paints ---
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +146,6 @@ class Mixtures:
     shares: Array
     expected: Array
 
-    @property
-    def components(self) -> Array:
-        """Colours (n, 2, 3) of both paints of each mixture."""
-        return np.asarray(self.paints[self.pairs])
-
 
 def acrylics(first: tuple[str, ...] = (), second: str = "") -> Mixtures:
     """Return the mixtures of paint_mixtures.csv.
@@ -61,15 +158,12 @@ def acrylics(first: tuple[str, ...] = (), second: str = "") -> Mixtures:
         return (not first or one.startswith(first)) and other.endswith(second)
 
     table = _rows("paint_mixtures.csv")
-    masstones = {row[0]: [float(x) for x in row[3:]] for row in table if row[0] == row[1]}
-    index = {name: number for number, name in enumerate(masstones)}
+    masstones = {row[0]: np.array(row[3:], dtype=float) for row in table if row[0] == row[1]}
+    names = list(masstones)
     kept = [row for row in table if row[0] != row[1] and (wanted(*row[:2]) or wanted(row[1], row[0]))]
-    return Mixtures(
-        np.array(list(masstones.values())),
-        np.array([[index[row[0]], index[row[1]]] for row in kept]),
-        _shares([row[2] for row in kept]),
-        np.array([[float(x) for x in row[3:]] for row in kept]),
-    )
+    pairs = np.array([[names.index(row[0]), names.index(row[1])] for row in kept])
+    expected = np.array([row[3:] for row in kept], dtype=float)
+    return Mixtures(np.array(list(masstones.values())), pairs, _shares([row[2] for row in kept]), expected)
 
 
 def three_bands(name: str) -> Mixtures:
@@ -89,14 +183,16 @@ def three_bands(name: str) -> Mixtures:
 def published(tool: str, cube: Cube) -> Mixtures:
     """Return the mixtures that a tool publishes (published_mixtures.csv)."""
     kept = [row for row in _rows("published_mixtures.csv") if row[0] == tool]
-    linear = cube.decode(np.array([[codes(row[column]) for column in (1, 2, 4)] for row in kept]))
+    linear = np.array([[colour(cube, row[column]) for column in (1, 2, 4)] for row in kept])
     pairs = np.arange(2 * len(kept)).reshape(-1, 2)
     return Mixtures(linear[:, :2].reshape(-1, 3), pairs, _shares([row[3] for row in kept]), linear[:, 2])
 
 
-def codes(text: str) -> list[int]:
-    """Return the three 8-bit codes of '#rrggbb'."""
-    return [int(text[i : i + 2], 16) for i in (1, 3, 5)]
+def colour(cube: Cube, word: str) -> Array:
+    """Return the linear RGB (3,) of an entry or of '#rrggbb'."""
+    if word.startswith("#"):
+        return cube.decode(list(bytes.fromhex(word[1:])))
+    return np.asarray(cube.data.atlas.rgb[cube.data.atlas.names.index(word)], dtype=float)
 
 
 def _shares(second: list[str]) -> Array:
@@ -110,110 +206,22 @@ def _rows(name: str) -> list[list[str]]:
     return [line.split(",") for line in lines if not line.startswith("#")][1:]
 
 
-STEPS = 11
-PAIRS = {
-    "blue-yellow": ("#005fa0", "#ffd200"),
-    "atlas-blue-yellow": ("blue", "yellow"),
-    "red-white": ("#b01030", "#ffffff"),
-    "red-green": ("#d02020", "#20a040"),
-}
-"""Names of entries, or codes."""
-DRAWN = (
-    "pigments",
-    "pigments in oil",
-    "pigments, S = √R",
-    "pigments, S = 1",
-    "dyes",
-    "average",
-    "ryb",
-    "phosphors",
-    "product",
-)
-"""Shares are the thickness of filters and products, so that a ramp ends at its colours."""
+def mix(cube: Cube, mixtures: Mixtures, rule: Scattering | None) -> Array:
+    """Return the colours (n, 3) of mixtures from those of their paints, in linear RGB in [0, 1]; None averages RGB."""
+    if rule is None:
+        return np.asarray((mixtures.shares[:, None] @ mixtures.paints[mixtures.pairs])[:, 0])
+    paints = from_opaque(cube.reflectance(mixtures.paints), rule)
+    pairs = Pigment(paints.absorption[mixtures.pairs], paints.scattering[mixtures.pairs])
+    return np.clip(cube.data.sensor.rgb(pairs.mix(mixtures.shares).opaque_reflectance()), 0, 1)
 
 
-def draw(cube: Cube, smooth: Cube, folder: Path) -> None:
-    """Write a picture for each pair of colours, one of coats, and one that compares other tools, by ``smooth``."""
-    folder.mkdir(exist_ok=True)
-    for name, pair in PAIRS.items():
-        rgb = np.array([colour(cube, word) for word in pair])
-        plot_strips(_ramps(cube, rgb), folder / f"{name}.png", force=True)
-    plot_strips(_coat_strips(cube), folder / "thickness.png", force=True)
-    plot_strips(_tools(smooth), folder / "tools.png", force=True)
+def compare_scattering(smooth: Cube, atlas: Cube) -> Row:
+    """Compare rules for S on the measured sets and on published mixtures, uplifted by ``smooth``.
 
-
-def colour(cube: Cube, word: str) -> Array:
-    """Return the linear RGB (3,) of an entry or of '#rrggbb'."""
-    if word.startswith("#"):
-        return cube.decode([int(word[i : i + 2], 16) for i in (1, 3, 5)])
-    return np.asarray(cube.data.atlas.rgb[cube.data.atlas.names.index(word)], dtype=float)
-
-
-def _ramps(cube: Cube, rgb: Array) -> list[Strip]:
-    by_name = {mixer.name: mixer for mixer in mixers(cube)}
-    parts = ramp(np.ones(2), STEPS)
-    return [_strip(cube, by_name[name].title, by_name[name].mix(rgb, parts)) for name in DRAWN]
-
-
-def _tools(cube: Cube) -> list[Strip]:
-    """Return the ramp of two artists' paints by RGB, by us before and now, and as other tools publish it."""
-    steps = published("coloraide", cube)
-    ends = steps.paints[:2]
-    parts = np.concatenate([[[1, 0]], steps.shares, [[0, 1]]])
-    by_name = {mixer.name: mixer for mixer in mixers(cube)}
-    mixbox = published("mixbox", cube).expected[:1]
-    encoded = np.clip(cube.decode(parts @ cube.encode(ends)), 0, 1)
-    ramps = {
-        "mean of sRGB codes": encoded,
-        "uplift mix --scattering root, the default before": by_name["pigments, S = √R"].mix(ends, parts),
-        "uplift mix, the default now": by_name["pigments"].mix(ends, parts),
-        "coloraide's spectral, after spectral.js (published)": np.concatenate([ends[:1], steps.expected, ends[1:]]),
-        "Mixbox 1:1 (published)": np.concatenate([ends[:1], mixbox, ends[1:]]),
-    }
-    return [_strip(cube, title, rgb) for title, rgb in ramps.items()]
-
-
-def _coat_strips(cube: Cube) -> list[Strip]:
-    """Return strips of paints on white and on black and of dyes, with doubling thickness."""
-    thickness = [0, *(2.0 ** np.arange(-4, 3))]
-    spectra = cube.reflectance(np.array([colour(cube, word) for word in ("#b01030", "#ffd200", "#005fa0")]))
-    strips = []
-    for name, spectrum in zip(("red", "yellow", "blue"), spectra, strict=True):
-        colorant, scattering = Ingredients(spectrum[None]), dispersive(cube.data.sensor)
-        for ground, on in ((1.0, "white"), (0.0, "black")):
-            media = [Medium(x, scattering=scattering) for x in thickness]
-            coats = [make_coat("pigment", colorant, [1], medium).over(np.full(81, ground)) for medium in media]
-            title = f"{name} paint on {on}, {', '.join(f'{x:.3g}' for x in thickness)} units thick"
-            strips.append(_strip(cube, title, cube.data.sensor.rgb(coats)))
-        coats = [make_coat("dye", colorant, [1], Medium(x)).over(1.0) for x in thickness]
-        strips.append(_strip(cube, f"{name} dye on white, the same thicknesses", cube.data.sensor.rgb(coats)))
-    return strips
-
-
-def _strip(cube: Cube, title: str, rgb: Array) -> Strip:
-    return Strip(title, to_display_codes(rgb, cube.data.sensor) / 255)
-
-
-ARTISTS = ("#002185", "#fcd200")
-"""Cobalt blue and Hansa yellow, as Mixbox's table has them."""
-GREEN_MARGIN = 0.01
-"""Excess of G over R and B, in linear RGB, that counts as green."""
-
-
-def _sets(cube: Cube) -> dict[str, Mixtures]:
-    return {
-        "acrylics": acrylics(),
-        "blues": acrylics(BLUES, "yellow"),
-        "watercolours": three_bands("curtis1997"),
-        "photographed": three_bands("lindemeier2020"),
-        "mixbox": published("mixbox", cube),
-    }
-
-
-def _rules(cube: Cube) -> dict[str, Scattering | None]:
-    """Return the rules by title; None averages RGB."""
-    best = dispersive(cube.data.sensor)
-    return {
+    ``atlas`` is the cube that uplifts the ColorChecker's blue and yellow.
+    """
+    best = dispersive(smooth.data.sensor)
+    rules: dict[str, Scattering | None] = {
         "mean of linear RGB": None,
         "1": CONSTANT,
         "R^½": SQUARE_ROOT,
@@ -226,104 +234,121 @@ def _rules(cube: Cube) -> dict[str, Scattering | None]:
         "Y^¾ exp(h / 4)": best,
         "Y exp(h / 4)": replace(best, exponent=1.0),
     }
+    sets = {
+        "acrylics": acrylics(),
+        "blues": acrylics(BLUES, "yellow"),
+        "watercolours": three_bands("curtis1997"),
+        "photographed": three_bands("lindemeier2020"),
+        "mixbox": published("mixbox", smooth),
+    }
+    greens = {"artists": (smooth, ARTISTS), "patches": (atlas, ("blue", "yellow"))}
+    rows = []
+    for title, rule in rules.items():
+        row: Row = {"rule": title}
+        for name, one in sets.items():
+            found = mix(smooth, one, rule)
+            difference = delta_e_rgb(smooth.data.sensor, one.expected, found)
+            rms = np.sqrt(np.mean((found - one.expected) ** 2))
+            row[name] = {"delta_e": float(difference.mean()), "rms": float(rms)}
+        for name, (cube, words) in greens.items():
+            pair = np.array([colour(cube, word) for word in words])
+            row[name] = list(_greens(cube, pair, rule))
+        rows.append(row)
+    return {"scatterings": rows, "set_sizes": {name: len(one.pairs) for name, one in sets.items()}}
 
 
-def mix(cube: Cube, mixtures: Mixtures, rule: Scattering | None) -> Array:
-    """Return the colours (n, 3) of mixtures from the colours of their paints, in linear RGB in [0, 1]."""
-    if rule is None:
-        return np.asarray((mixtures.shares[:, None] @ mixtures.components)[:, 0])
-    spectra = pigments.from_opaque(cube.reflectance(mixtures.paints), rule)
-    return _mix(cube, mixtures, spectra)
+def _greens(cube: Cube, pair: Array, rule: Scattering | None) -> Iterator[Row]:
+    """Mix a blue and a yellow at 1:3, 1:1 and 3:1."""
+    for rgb in mix(cube, Mixtures(pair, np.array([[0, 1]] * 3), SHARES[::-1], np.zeros((3, 3))), rule):
+        code = "#" + "".join(f"{round(code):02x}" for code in cube.encode(rgb).tolist())
+        yield {"green": bool(rgb[1] > max(rgb[0], rgb[2]) + GREEN_MARGIN), "code": code}
 
 
-def _mix(cube: Cube, mixtures: Mixtures, paints: pigments.Pigment) -> Array:
-    pairs = pigments.Pigment(paints.absorption[mixtures.pairs], paints.scattering[mixtures.pairs])
-    found = pairs.mix(mixtures.shares).opaque_reflectance()
-    return np.clip(cube.data.sensor.rgb(found), 0, 1)
+# --- pictures ---
 
 
-def _mix_errors(cube: Cube, mixtures: Mixtures, rule: Scattering | None) -> dict[str, float]:
-    found = mix(cube, mixtures, rule)
-    difference = delta_e_rgb(cube.data.sensor, mixtures.expected, found)
+def draw(cube: Cube, smooth: Cube, folder: Path) -> None:
+    """Write a picture for each pair of colours, one of coats, and one that compares other tools, by ``smooth``."""
+    folder.mkdir(exist_ok=True)
+    by_name, parts = {mixer.name: mixer for mixer in mixers(cube)}, ramp(np.ones(2), STEPS)
+    for name, pair in PAIRS.items():
+        rgb = np.array([colour(cube, word) for word in pair])
+        strips = {by_name[each].title: by_name[each].mix(rgb, parts) for each in DRAWN}
+        _plot(cube, strips, folder / f"{name}.png")
+    _plot(cube, dict(_coats(cube)), folder / "thickness.png")
+    _plot(smooth, _tools(smooth), folder / "tools.png")
+
+
+def _plot(cube: Cube, strips: dict[str, Array], path: Path) -> None:
+    sensor = cube.data.sensor
+    plot_strips([Strip(title, to_display_codes(rgb, sensor) / 255) for title, rgb in strips.items()], path, force=True)
+
+
+def _tools(cube: Cube) -> dict[str, Array]:
+    """Return the ramp of two artists' paints by RGB, by us before and now, and as other tools publish it."""
+    steps, mixbox = published("coloraide", cube), published("mixbox", cube).expected[:1]
+    ends = steps.paints[:2]
+    parts = np.concatenate([[[1, 0]], steps.shares, [[0, 1]]])
+    by_name = {mixer.name: mixer for mixer in mixers(cube)}
     return {
-        "delta_e": float(difference.mean()),
-        "rms": float(np.sqrt(np.mean((found - mixtures.expected) ** 2))),
+        "mean of sRGB codes": np.clip(cube.decode(parts @ cube.encode(ends)), 0, 1),
+        "uplift mix --scattering root, the default before": by_name["pigments, S = √R"].mix(ends, parts),
+        "uplift mix, the default now": by_name["pigments"].mix(ends, parts),
+        "coloraide's spectral, after spectral.js (published)": np.concatenate([ends[:1], steps.expected, ends[1:]]),
+        "Mixbox 1:1 (published)": np.concatenate([ends[:1], mixbox, ends[1:]]),
     }
 
 
-def _greens(cube: Cube, pair: Array, rule: Scattering | None) -> list[dict[str, Any]]:
-    """Mix a blue and a yellow at 1:3, 1:1 and 3:1."""
-    one = Mixtures(pair, np.array([[0, 1]] * 3), SHARES[::-1], np.zeros((3, 3)))
+def _coats(cube: Cube) -> Iterator[tuple[str, Array]]:
+    """Yield title and colours of paints on white and on black and of dyes, with doubling thickness."""
+    sensor = cube.data.sensor
+    thickness = [0, *(2.0 ** np.arange(-4, 3))]
+    for name, code in (("red", "#b01030"), ("yellow", "#ffd200"), ("blue", "#005fa0")):
+        colorant, scattering = Ingredients(cube.reflectance(colour(cube, code))[None]), dispersive(sensor)
+        paints = [make_coat("pigment", colorant, [1], Medium(x, scattering=scattering)) for x in thickness]
+        dyes = [make_coat("dye", colorant, [1], Medium(x)) for x in thickness]
+        title = f"{', '.join(f'{x:.3g}' for x in thickness)} units thick"
+        yield f"{name} paint on white, {title}", sensor.rgb([coat.over(np.ones(81)) for coat in paints])
+        yield f"{name} paint on black, {title}", sensor.rgb([coat.over(np.zeros(81)) for coat in paints])
+        yield f"{name} dye on white, the same thicknesses", sensor.rgb([coat.over(1.0) for coat in dyes])
+
+
+# --- times ---
+
+
+def mixture_times(cube: Cube) -> Iterator[Row]:
+    """Yield nanoseconds per mixture of two, from RGB to RGB and between spectra."""
+    rng = np.random.default_rng(0)
+    rgb, parts = rng.random((MIXTURES, 2, 3)), rng.random((MIXTURES, 2)) + 0.1
+    spectra, spectral_mixers = cube.reflectance(rgb), spectral_models(cube.data.sensor)
+    for mixer in mixers(cube):
+        pairs = zip(rgb[:CHECKED], parts[:CHECKED], strict=True)
+        _check(mixer.mix(rgb[:CHECKED], parts[:CHECKED]), [mixer.mix(*pair) for pair in pairs], 1e-9)
+        between = spectral_mixers.get(mixer.name)
+        spectral = _ns(partial(between[1], spectra, parts), MIXTURES) if between else None
+        yield {"mixer": mixer.title, "rgb": _ns(partial(mixer.mix, rgb, parts), MIXTURES), "spectra": spectral}
+
+
+def pixel_times(cube: Cube) -> list[Row]:
+    """Return nanoseconds of a coat over an image, and of a layer."""
+    spectrum, scattering = cube.reflectance(colour(cube, "red")), dispersive(cube.data.sensor)
+    coat = make_coat("pigment", Ingredients(spectrum[None]), [1], Medium(0.5, scattering=scattering))
+    brush = overpainter(cube, coat, threads=1)
+    image = np.random.default_rng(0).random((PIXELS, 3)).astype(np.float32)
+    grounds = cube.reflectance(image[:MIXTURES])
+    _check(brush.paint(image)[:CHECKED], cube.data.sensor.rgb(coat.over(grounds[:CHECKED])), 1e-5)
+    paint, thickness = from_opaque(spectrum[None], scattering), np.linspace(0.01, 3, MIXTURES)
+    layer = _ns(lambda: paint.mix([1]).layer(thickness).over(grounds), MIXTURES)
     return [
-        {"green": bool(g > max(r, b) + GREEN_MARGIN), "code": _hex(cube, np.array([r, g, b]))}
-        for r, g, b in mix(cube, one, rule)
+        {"operation": "coat over a painting, RGB to RGB", "ns": _ns(lambda: brush.paint(image), PIXELS)},
+        {"operation": "Kubelka–Munk layer on a ground, 81 wavelengths", "ns": layer},
     ]
 
 
-def _hex(cube: Cube, rgb: Array) -> str:
-    return "#" + "".join(f"{round(code):02x}" for code in cube.encode(rgb).tolist())
-
-
-INDICES = (1.33, 1.48, 1.5, 1.66)
-"""Water, light oil, glass and linseed oil, heavy oil."""
-
-
-MIXTURES, PIXELS, COLOURS = 20_000, 1_000_000, 1_000_000
-RUNS = 5
-CHECKED = 20
-
-
-def mixtures(cube: Cube) -> list[dict[str, Any]]:
-    """Return nanoseconds per mixture of two, from RGB to RGB and between spectra."""
-    rng = np.random.default_rng(0)
-    rgb, parts = rng.random((MIXTURES, 2, 3)), rng.random((MIXTURES, 2)) + 0.1
-    spectra = cube.reflectance(rgb)
-    rows, spectral_mixers = [], spectral_models(cube.data.sensor)
-    for mixer in mixers(cube):
-        _check(mixer.mix, rgb, parts)
-        between = spectral_mixers.get(mixer.name)
-        spectral = _ns(partial(between[1], spectra, parts), MIXTURES) if between else None
-        rows.append({"mixer": mixer.title, "rgb": _ns(partial(mixer.mix, rgb, parts), MIXTURES), "spectra": spectral})
-    return rows
-
-
-def _check(mix: Callable[[Array, Array], Array], rgb: Array, parts: Array) -> None:
-    """Raise `RuntimeError` unless a batch gives the same results as single mixtures."""
-    batch = mix(rgb[:CHECKED], parts[:CHECKED])
-    expected = np.array([mix(one, share) for one, share in zip(rgb[:CHECKED], parts[:CHECKED], strict=True)])
-    if not np.allclose(batch, expected, atol=1e-9):
+def _check(found: Array, expected: Any, tolerance: float) -> None:
+    """Raise `RuntimeError` unless what is timed gives the expected results."""
+    if not np.allclose(found, expected, rtol=0, atol=tolerance):
         raise RuntimeError("wrong result: nothing to time")
-
-
-def images(cube: Cube) -> list[dict[str, Any]]:
-    """Return nanoseconds of a coat over an image, and of HSL to RGB."""
-    rng = np.random.default_rng(0)
-    spectrum = cube.reflectance(colour(cube, "red"))
-    scattering = dispersive(cube.data.sensor)
-    coat = make_coat("pigment", Ingredients(spectrum[None]), [1], Medium(0.5, scattering=scattering))
-    brush = overpainter(cube, coat, threads=1)
-    image = rng.random((PIXELS, 3)).astype(np.float32)
-    expected = cube.data.sensor.rgb(coat.over(cube.reflectance(image[:CHECKED])))
-    if np.abs(brush.paint(image)[:CHECKED] - expected).max() > 1e-5:
-        raise RuntimeError("wrong result: nothing to time")
-    colours = rng.random((COLOURS, 3))
-    peer = colour_science().HSL_to_RGB
-    if not np.allclose(hsl_to_rgb(colours), peer(colours)):
-        raise RuntimeError("wrong result: nothing to time")
-    spectra = cube.reflectance(image[:MIXTURES])
-    paint = partial(_over, from_opaque(spectrum[None], scattering), spectra)
-    operations: dict[str, tuple[Callable[[], object], int]] = {
-        "coat over a painting, RGB to RGB": (lambda: brush.paint(image), PIXELS),
-        "Kubelka–Munk layer on a ground, 81 wavelengths": (paint, MIXTURES),
-        "HSL to RGB (5.3.5)": (lambda: hsl_to_rgb(colours), COLOURS),
-        "HSL to RGB, colour-science": (lambda: peer(colours), COLOURS),
-    }
-    return [{"operation": name, "ns": _ns(function, count)} for name, (function, count) in operations.items()]
-
-
-def _over(paint: Pigment, grounds: Array) -> Array:
-    thickness = np.linspace(0.01, 3, len(grounds))
-    return paint.mix([1]).layer(thickness).over(grounds)
 
 
 def _ns(function: Callable[[], object], count: int) -> Spread:
@@ -333,43 +358,7 @@ def _ns(function: Callable[[], object], count: int) -> Spread:
     return cpu.scaled(1e9 / count)
 
 
-def compare_scattering(smooth: Cube, atlas: Cube) -> dict[str, Any]:
-    """Compare rules for S on the measured sets and on published mixtures, uplifted by ``smooth``.
-
-    ``atlas`` is the cube that uplifts the ColorChecker's blue and yellow.
-    """
-    sets = _sets(smooth)
-    artists = np.array([smooth.decode(codes(text)) for text in ARTISTS])
-    patches = np.array([colour(atlas, name) for name in ("blue", "yellow")])
-    rows = [
-        {
-            "rule": title,
-            **{name: _mix_errors(smooth, one, rule) for name, one in sets.items()},
-            "artists": _greens(smooth, artists, rule),
-            "patches": _greens(atlas, patches, rule),
-        }
-        for title, rule in _rules(smooth).items()
-    ]
-    return {"scatterings": rows, "set_sizes": {name: len(one.pairs) for name, one in sets.items()}}
-
-
-def criteria(cube: Cube) -> dict[str, Any]:
-    """Evaluate every mixer by every criterion of section 10.4."""
-    atlas = cube.data.atlas.rgb
-    coloured = atlas[np.ptp(atlas, axis=1) > 0.1 * atlas.max(axis=1)]
-    rows = []
-    for mixer in mixers(cube):
-        values = evaluate(mixer, cube.data.sensor, coloured)
-        verdicts = [
-            {"obeys": value <= criterion.limit, "value": value + 0.0}
-            for criterion, value in zip(CRITERIA, values, strict=True)
-        ]
-        rows.append({"mixer": mixer.title, "verdicts": verdicts})
-    titles = [{"title": one.title, "measure": one.measure, "limit": one.limit} for one in CRITERIA]
-    return {"patches": len(coloured), "criteria_titles": titles, "criteria": rows}
-
-
-def surface_record(index: float) -> dict[str, float]:
+def surface(index: float) -> Row:
     """Return the reflectance at normal incidence (9.3), for diffuse light (10.9), and for diffuse light from inside."""
     return {
         "index": index,
@@ -387,13 +376,12 @@ def main() -> None:
         "mixing",
         **criteria(cube),
         **compare_scattering(smooth, cube),
-        surfaces=[surface_record(index) for index in INDICES],
+        surfaces=[surface(index) for index in INDICES],
         runs=RUNS,
         mixtures=MIXTURES,
         pixels=PIXELS,
-        colours=COLOURS,
-        mixture_times=mixtures(cube),
-        pixel_times=images(cube),
+        mixture_times=list(mixture_times(cube)),
+        pixel_times=pixel_times(cube),
     )
 
 

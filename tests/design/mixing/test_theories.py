@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import uplift
-from benchmarks.mixing import BLUES, acrylics, published
-from benchmarks.mixing_criteria import CRITERIA, evaluate
+from benchmarks.mixing import BLUES, CRITERIA, acrylics, evaluate, published
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.design.mixing.theories import (
     RGB_WHEEL,
