@@ -11,7 +11,6 @@ import subprocess
 import sys
 import tempfile
 import warnings
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -60,18 +59,15 @@ class Case:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class CheckedPlan:
-    """The content of a plan file, the CPU seconds it took, and independent ΔE00 by group and light."""
-
-    case: Case
-    plan: dict[str, Any]
-    seconds: float
-    delta_e: dict[tuple[str, str], Array]
+Errors = dict[tuple[str, str], Array]
+"""Independent ΔE00 by group and light."""
 
 
-def check_plan(folder: Path, case: Case) -> CheckedPlan:
-    """Plan a scene, run the command lines of the plan, and compute the errors of what they write."""
+def check_plan(folder: Path, case: Case) -> tuple[dict[str, Any], float, Errors]:
+    """Plan a scene, run the command lines of the plan, and compute the errors of what they write.
+
+    Returns the content of the plan, the CPU seconds it took, and the errors.
+    """
     shutil.copy(ATLASES / case.atlas, folder)
     stem = case.stem
     (folder / f"{stem}.toml").write_text(case.scene(), encoding="utf-8")
@@ -79,13 +75,22 @@ def check_plan(folder: Path, case: Case) -> CheckedPlan:
     _run(folder, f"uplift plan {stem}.toml --force")
     seconds = _cpu() - begin
     plan = json.loads((folder / f"{stem}.plan.json").read_text(encoding="utf-8"))
-    print(f"{stem}: planned in {seconds:.0f} s of CPU time", file=sys.stderr)
     build, texture = plan["lines"]
     _run(folder, f"{build} --force")
     _run(folder, f"{texture} --force")
-    reference = _reference(folder, case)
-    delta_e = dict(_pixels(folder, case, plan, reference)) | dict(_materials(folder, case, plan))
-    return CheckedPlan(case, plan, seconds, delta_e)
+    cube = uplift.load(folder / f"{stem}.uplift")
+    planned = _pixel_values(folder / f"{Path(case.picture).stem}-uplifted.exr")
+    expected = _pixel_values(_reference(folder, case))
+    measured, answered = _materials(folder, case, plan)
+    errors: Errors = {}
+    for light in case.lights:
+        blocks = [slice(first, first + ROWS) for first in range(0, len(planned), ROWS)]
+        found = [
+            _errors(expected[rows], _spectra(plan, cube.data.model, planned[rows]), plan, light) for rows in blocks
+        ]
+        errors["textures", light] = np.concatenate(found)
+        errors["materials", light] = _errors(measured, answered, plan, light)
+    return plan, seconds, errors
 
 
 def _cpu() -> float:
@@ -96,8 +101,7 @@ def _cpu() -> float:
 
 def _run(folder: Path, line: str) -> None:
     words = shlex.split(line)
-    quiet = {"cwd": folder, "check": True, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    subprocess.run([str(BIN / words[0]), *words[1:]], **quiet)
+    subprocess.run([str(BIN / words[0]), *words[1:]], cwd=folder, check=True, capture_output=True)
 
 
 def _reference(folder: Path, case: Case) -> Path:
@@ -113,33 +117,17 @@ def _reference(folder: Path, case: Case) -> Path:
     return path
 
 
-def _pixels(folder: Path, case: Case, plan: dict[str, Any], reference: Path) -> Iterator[tuple[tuple[str, str], Array]]:
-    stem = Path(case.picture).stem
-    planned, expected = _pixel_values(folder / f"{stem}-uplifted.exr"), _pixel_values(reference)
-    cube = uplift.load(folder / f"{case.stem}.uplift")
-    for light in case.lights:
-        blocks = []
-        for first in range(0, len(planned), ROWS):
-            rows = slice(first, first + ROWS)
-            rendered = _rendered(_spectra(plan, cube.data.model, planned[rows]), plan, light)
-            blocks.append(_difference(_integrated(expected[rows], light), rendered, light))
-        yield ("textures", light), np.concatenate(blocks)
-
-
-def _materials(folder: Path, case: Case, plan: dict[str, Any]) -> Iterator[tuple[tuple[str, str], Array]]:
-    """Yield the errors of the atlas entries, from a cube with the same options that has their nodes."""
+def _materials(folder: Path, case: Case, plan: dict[str, Any]) -> tuple[Array, Array]:
+    """Return the atlas entries, and the answers at the plan's wavelengths of a cube that has their nodes."""
     sensor = observer.sensor()
     measured = resample(read_atlas(folder / case.atlas), sensor.wavelengths).values
-    rgb = sensor.rgb(measured)
-    measured, rgb = measured[sensor.contains(rgb)], np.clip(rgb[sensor.contains(rgb)], 0, 1)
+    measured = measured[sensor.contains(sensor.rgb(measured))]
+    rgb = np.clip(sensor.rgb(measured), 0, 1)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         options = {**plan["build"], "lights": tuple(plan["build"]["lights"])}
         cube = uplift.build(folder / case.atlas, scene=ColourSet(rgb), **options)
-    answered = cube.reflectance(rgb, plan["rendering"]["wavelengths"])
-    for light in case.lights:
-        rendered = _rendered(answered, plan, light)
-        yield ("materials", light), _difference(_integrated(measured, light), rendered, light)
+    return measured, cube.reflectance(rgb, plan["rendering"]["wavelengths"])
 
 
 def _pixel_values(path: Path) -> Array:
@@ -158,13 +146,6 @@ def _spectra(plan: dict[str, Any], model: models.Model, values: Array) -> Array:
     return evaluate(model, numbers, wavelengths)
 
 
-def _rendered(reflectances: Array, plan: dict[str, Any], light: str) -> Array:
-    """Return XYZ (n, 3): the weighted sum of light times reflectance."""
-    rendering = plan["rendering"]
-    radiance = reflectances * np.array(rendering["powers"][light])
-    return radiance @ np.array(rendering["to_xyz"])
-
-
 def _integrated(reflectances: Array, light: str) -> Array:
     """Return XYZ (n, 3) by colour-science; white has Y = 1."""
     shape = colour.SpectralShape(380, 780, 5)
@@ -176,12 +157,13 @@ def _integrated(reflectances: Array, light: str) -> Array:
     return np.asarray(xyz) / 100
 
 
-def _difference(expected: Array, rendered: Array, light: str) -> Array:
-    """Return ΔE00 (n,) by colour-science."""
+def _errors(expected: Array, answered: Array, plan: dict[str, Any], light: str) -> Array:
+    """Return ΔE00 (n,) by colour-science of reflectances (n, W) at the plan's wavelengths, rendered by its weights."""
+    rendering = plan["rendering"]
+    rendered = (answered * np.array(rendering["powers"][light])) @ np.array(rendering["to_xyz"])
     white = colour.XYZ_to_xy(_integrated(np.ones((1, 81)), light)[0])
-    return np.asarray(
-        colour.delta_E(*(colour.XYZ_to_Lab(xyz, white) for xyz in (expected, rendered)), method="CIE 2000")
-    )
+    labs = [colour.XYZ_to_Lab(xyz, white) for xyz in (_integrated(expected, light), rendered)]
+    return np.asarray(colour.delta_E(*labs, method="CIE 2000"))
 
 
 PICTURE = DOCS / "plan" / "page.png"
@@ -211,18 +193,15 @@ def main() -> None:
         confirming=effort.confirming,
         reference_dim=effort.reference,
         reference_coefficients=effort.coefficients[-1],
-        scenes=[summary(each) for each in checked],
-        decisions=[decision_figures(decision) for decision in checked[0].plan["decisions"]],
+        scenes=[summary(case, *each) for case, each in zip(CASES, checked, strict=True)],
+        decisions=[candidates(decision) for decision in checked[0][0]["decisions"]],
     )
 
 
-def summary(checked: CheckedPlan) -> dict[str, Any]:
+def summary(case: Case, plan: dict[str, Any], seconds: float, errors: Errors) -> dict[str, Any]:
     """Return what a plan chose, its predicted error, and the independent one."""
-    case, plan = checked.case, checked.plan
     error, quantile = plan["error"], plan["scene"]["quantile"]
-    independent = {
-        key: float(np.quantile(values, quantile, method="inverted_cdf")) for key, values in checked.delta_e.items()
-    }
+    independent = {key: float(np.quantile(values, quantile, method="inverted_cdf")) for key, values in errors.items()}
     group, light = max(independent, key=lambda key: independent[key])
     predicted, largest = error["predicted"]["quantile"], max(independent.values())
     build, texture = plan["build"], plan["texture"]
@@ -240,35 +219,27 @@ def summary(checked: CheckedPlan) -> dict[str, Any]:
         "deviation": largest / predicted - 1,
         "group": group,
         "light": light,
-        "seconds": checked.seconds,
+        "seconds": seconds,
     }
 
 
-def decision_figures(decision: dict[str, Any]) -> dict[str, Any]:
+def candidates(decision: dict[str, Any]) -> dict[str, Any]:
     """Return the candidates of a decision with their errors."""
-    trials = []
-    for number, trial in enumerate(decision["trials"]):
-        error = trial["error"]
-        trials.append(
-            {
-                "name": trial["name"],
-                "cost": trial["told"],
-                **{key: error[key] for key in ("quantile", "mean", "largest", "group", "light")},
-                "chosen": number == decision["taken"],
-            }
-        )
+    keys = ("quantile", "mean", "largest", "group", "light")
+    trials = [
+        {"name": trial["name"], "cost": trial["told"], **{key: trial["error"][key] for key in keys}}
+        | {"chosen": number == decision["taken"]}
+        for number, trial in enumerate(decision["trials"])
+    ]
     return {"title": decision["title"], "limit": decision["limit"], "trials": trials}
 
 
 def _screenshot(page: Path) -> None:
     """Take a picture of the page of a plan if Chromium is installed."""
-    browser = shutil.which("chromium")
-    if browser is None:
-        return
-    PICTURE.parent.mkdir(exist_ok=True)
-    words = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", f"--screenshot={PICTURE}"]
-    quiet = {"check": True, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    subprocess.run([browser, *words, "--window-size=1180,1500", page.as_uri()], **quiet)
+    if browser := shutil.which("chromium"):
+        PICTURE.parent.mkdir(exist_ok=True)
+        words = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", f"--screenshot={PICTURE}"]
+        subprocess.run([browser, *words, "--window-size=1180,1500", page.as_uri()], check=True, capture_output=True)
 
 
 if __name__ == "__main__":

@@ -82,7 +82,7 @@ def test_every_criterion_can_fail(small_cube, colours, mix, failed):
 
 def errors(mixtures, mixer, sensor):
     """ΔE00 (n,) of mixtures from the colours of their paints."""
-    found = np.clip(mixer.mix(mixtures.components, mixtures.shares), 0, 1)
+    found = np.clip(mixer.mix(mixtures.paints[mixtures.pairs], mixtures.shares), 0, 1)
     return delta_e_rgb(sensor, mixtures.expected, found)
 
 
