@@ -57,8 +57,8 @@ def test_errors_are_those_of_a_renderer_with_count_wavelengths(smooth, method):
                 sampling.powers[light, i] * float(smooth.curves(nm)[material])
                 for i, nm in enumerate(sampling.wavelengths)
             ]
-            seen = colour.XYZ_to_Lab(np.array(radiance) @ sampling.to_xyz, colour.XYZ_to_xy(smooth.whites[light]))
-            delta_e = colour.delta_E(smooth.lab[light, material], seen, method="CIE 2000")
+            found = colour.XYZ_to_Lab(np.array(radiance) @ sampling.to_xyz, colour.XYZ_to_xy(smooth.whites[light]))
+            delta_e = colour.delta_E(smooth.lab[light, material], found, method="CIE 2000")
             assert choice.errors.delta_e[light, material] == pytest.approx(delta_e, abs=1e-6), name
 
 
