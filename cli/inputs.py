@@ -55,14 +55,12 @@ def _expand(source: str) -> list[str]:
     return paths
 
 
-def parse_wavelengths(text: str | None) -> Array | None:
+def parse_wavelengths(text: str) -> Array:
     """Parse '380:780:5' (end included) or '450,550,650' into nm, shape (N,)."""
     import numpy as np
 
     from uplift.common.errors import OptionError
 
-    if text is None:
-        return None
     try:
         if ":" not in text:
             return np.array([parse_float(part) for part in text.split(",")])
@@ -76,18 +74,6 @@ def parse_wavelengths(text: str | None) -> Array | None:
         f"wavelengths must be START:END:STEP or a list, got {format_value(text)}",
         hint="write for example 380:780:5 or 450,550,650, in nm",
     )
-
-
-def parse_range(text: str) -> tuple[float, float]:
-    """Parse '360:830', a first and a last wavelength in nm."""
-    from uplift.common.errors import OptionError
-
-    try:
-        start, end = (parse_float(part) for part in text.split(":"))
-    except ValueError as error:
-        problem = f"a range must be START:END in nm, got {format_value(text)}"
-        raise OptionError(problem, hint="write for example 360:830") from error
-    return start, end
 
 
 def find_input_space(name: str | None) -> ImageSpace | None:

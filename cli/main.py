@@ -106,7 +106,7 @@ class LazyGroup(click.Group):
 @click.command(
     cls=LazyGroup,
     commands=[click.Command(name) for name in (*COMMANDS, "help")],
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
 )
 @click.version_option(version=VERSION, message="uplift %(version)s")
 @click.option("--traceback", is_flag=True, envvar="UPLIFT_TRACEBACK", help="Show the traceback of an internal error.")

@@ -1,20 +1,31 @@
-"""Options that several commands share, and the types of their values."""
+"""Options that several commands share, the types of their values, and the names that a shell completes.
+
+Commands import this module and write ``@options.cube``.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 import click
+from click.shell_completion import CompletionItem
 
 from uplift.common.text import format_value, parse_float, parse_whole
 
-from .completion import complete_atlas, complete_cube, complete_illuminant, complete_observer, complete_space
+from .inputs import parse_wavelengths
+
+if TYPE_CHECKING:
+    from uplift.common.arrays import Array
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
+SPACE_NAMES = "colorimetry.observer:space_names"
+OBSERVER_NAMES = ("colorimetry.observer:observer_names", "colorimetry.observer:camera_names")
+ILLUMINANT_NAMES = "colorimetry.observer:illuminant_names"
 
 
 class Number(click.ParamType):  # type: ignore[type-arg]
@@ -44,8 +55,30 @@ class Whole(click.IntRange):
             self.fail(f"{format_value(value)} is not a whole number.", param, ctx)
         return super().convert(number, param, ctx)
 
+    def _describe_range(self) -> str:
+        return "" if (self.min, self.max) == (None, None) else super()._describe_range()
+
 
 NUMBER = Number()
+
+
+def completion(*sources: str, files: bool = False) -> Callable[..., list[CompletionItem]]:
+    """Complete names, and the names of ``files``; sources are functions or tuples of the library, 'module:name'."""
+
+    def complete(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:
+        items = [CompletionItem(text, type="file")] * files  # first: bash drops the items before it
+        for source in sources:
+            module, name = source.split(":")
+            names = getattr(import_module(f"uplift.{module}"), name)
+            found = (getattr(each, "name", each) for each in (names() if callable(names) else names))
+            items += [CompletionItem(each) for each in found if each.lower().startswith(text.lower())]
+        return items
+
+    return complete
+
+
+complete_atlas = completion("atlas:shipped_atlases", files=True)
+complete_cube = completion("lookup.cube:PACKAGED", files=True)
 
 
 def stacked(*decorators: Decorator) -> Decorator:
@@ -59,89 +92,72 @@ def stacked(*decorators: Decorator) -> Decorator:
     return decorate
 
 
-def _repeatable(help: str, default: str) -> str:
-    return f"{help}; repeatable." + (f" [default: {default}]" if default else "")
+def _repeatable(option: str, name: str, help: str, default: str = "", **settings: Any) -> Decorator:
+    text = f"{help}; repeatable." + (f" [default: {default}]" if default else "")
+    return click.option(option, name, multiple=True, help=text, **settings)
 
 
-def atlas_option(help: str, default: str = "") -> Decorator:
+def atlas(help: str, default: str = "") -> Decorator:
     """``--atlas`` as ``files``."""
-    return click.option(
-        "--atlas",
-        "files",
-        multiple=True,
-        metavar="FILE",
-        help=_repeatable(help, default),
-        shell_complete=complete_atlas,
-    )
+    return _repeatable("--atlas", "files", help, default, metavar="FILE", shell_complete=complete_atlas)
 
 
-def light_option(help: str, default: str) -> Decorator:
+def light(help: str, default: str) -> Decorator:
     """``--light`` as ``lights``."""
-    return click.option(
-        "--light",
-        "lights",
-        multiple=True,
-        metavar="NAME",
-        help=_repeatable(help, default),
-        shell_complete=complete_illuminant,
-    )
+    complete = completion(ILLUMINANT_NAMES)
+    return _repeatable("--light", "lights", help, default, metavar="NAME", shell_complete=complete)
 
 
-def xyz_options(help: str) -> Decorator:
+def xyz(help: str) -> Decorator:
     """``--xyz``, and ``--xy`` with ``--luminance``."""
+    xy_help = "Colour by chromaticity, with --luminance, as for --xyz."
     return stacked(
         click.option("--xyz", type=NUMBER, nargs=3, metavar="X Y Z", help=help),
-        click.option(
-            "--xy", type=NUMBER, nargs=2, metavar="X Y", help="Colour by chromaticity, with --luminance, as for --xyz."
-        ),
+        click.option("--xy", type=NUMBER, nargs=2, metavar="X Y", help=xy_help),
         click.option("--luminance", type=NUMBER, metavar="Y", help="Luminance of --xy, where white has 1."),
     )
 
 
-def encoding_option(subject: str = "colours") -> Decorator:
+def choice(option: str, *choices: str, help: str, name: str | None = None, default: str | None = None) -> Decorator:
+    """An option with one of some values; without a ``default``, the first one is."""
+    names = (option,) if name is None else (option, name)
+    return click.option(*names, type=click.Choice(choices), default=default or choices[0], help=help)
+
+
+def encoding(subject: str = "colours") -> Decorator:
     """``--encoding``."""
-    return click.option(
-        "--encoding",
-        type=click.Choice(("auto", "linear", "encoded")),
-        default="auto",
-        show_default=True,
-        help=f"Encoding of {subject}. auto: whole numbers have the transfer function of the cube's space, floats are "
-        "linear.",
-    )
+    text = "auto: whole numbers have the transfer function of the cube's space, floats are linear."
+    return choice("--encoding", "auto", "linear", "encoded", help=f"Encoding of {subject}. {text}")
 
 
-def input_space_option(subject: str, default: str = "as the file states") -> Decorator:
+def input_space(subject: str, default: str = "as the file states") -> Decorator:
     """``--input-space``: text for `uplift.colorimetry.spaces.find_space`."""
     return click.option(
         "--input-space",
         metavar="NAME",
-        shell_complete=complete_space,
+        shell_complete=completion(SPACE_NAMES),
         help=f"RGB space of {subject}: a name of OpenColorIO or colour-science such as ACEScg or lin_rec2020, or x,y "
         f"of red, green, blue and white. [default: {default}]",
     )
 
 
-def out_of_gamut_option(default: str = "error", subject: str = "linear RGB") -> Decorator:
+def out_of_gamut(default: str = "error", subject: str = "linear RGB") -> Decorator:
     """``--out-of-gamut`` as ``method``: names of `uplift.colorimetry.gamut.METHODS`, which is not imported here."""
-    return click.option(
-        "--out-of-gamut",
-        "method",
-        type=click.Choice(("error", "clip", "scale", "desaturate", "desaturate-oklab")),
-        default=default,
-        show_default=True,
-        help=f"Treatment of {subject} outside [0, 1]: raise an error, clip, darken, or desaturate at constant "
-        "luminance and dominant wavelength or at constant lightness and hue of Oklab.",
+    methods = ("error", "clip", "scale", "desaturate", "desaturate-oklab")
+    text = (
+        f"Treatment of {subject} outside [0, 1]: raise an error, clip, darken, or desaturate at constant luminance and "
+        "dominant wavelength or at constant lightness and hue of Oklab."
     )
+    return choice("--out-of-gamut", *methods, name="method", default=default, help=text)
 
 
-def format_option(*choices: str) -> Decorator:
+def output_format(*choices: str) -> Decorator:
     """``--format`` as ``style``; the first choice is the default."""
     return click.option(
         "--format",
         "style",
         type=click.Choice(choices),
         default=choices[0],
-        show_default=True,
         is_eager=True,
         callback=_remember_format,
         help="Output format.",
@@ -154,7 +170,7 @@ def _remember_format(ctx: click.Context, param: click.Parameter, value: str) -> 
     return value
 
 
-def plot_option(help: str, option: str = "--plot", name: str = "plot_path") -> Decorator:
+def plot(help: str, option: str = "--plot", name: str = "plot_path") -> Decorator:
     """An option for the file of a plot, as ``name``. A suffix other than .png, .svg and .pdf is an error at once."""
     return click.option(option, name, metavar="FILE", callback=_check_suffix, help=f"{help}, as .png, .svg or .pdf.")
 
@@ -167,70 +183,70 @@ def _check_suffix(ctx: click.Context, param: click.Parameter, value: str | None)
     return value
 
 
-cube_option = click.option(
+def _wavelengths(ctx: click.Context, param: click.Parameter, value: str | None) -> Array | None:
+    return None if value is None else parse_wavelengths(value)
+
+
+def wavelengths(help: str) -> Decorator:
+    """``--wavelengths`` as an array in nm, or None."""
+    return click.option("--wavelengths", metavar="NM", callback=_wavelengths, help=help)
+
+
+cube = click.option(
     "--cube",
     "cube_path",
     metavar="FILE",
     help="Cube file, or ACEScg for the packaged ACEScg cube. [default: the packaged sRGB cube]",
     shell_complete=complete_cube,
 )
-scale_option = click.option(  # names of uplift.atlas.MEASURED, which is not imported here
+cube_argument = click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
+scale = choice(  # names of uplift.atlas.MEASURED, which is not imported here
     "--scale",
-    type=click.Choice(("auto", "percent", "fraction")),
-    default="auto",
-    show_default=True,
+    *("auto", "percent", "fraction"),
     help="Scale of measured values. auto: as the atlas file states, or else by its values.",
 )
-coefficients_option = click.option(
-    "--coefficients",
-    type=Whole(),
-    default=9,
-    show_default=True,
-    metavar="N",
-    help="Coefficients per spectrum, 3 to 17.",
+coefficients = click.option(
+    "--coefficients", type=Whole(), default=9, metavar="N", help="Coefficients per spectrum, 3 to 17."
 )
-wavelengths_option = click.option(  # text for inputs.parse_wavelengths
-    "--wavelengths",
-    metavar="NM",
-    help="Wavelengths as START:END:STEP or a list such as 450,550,650. [default: those of the cube]",
+output_wavelengths = wavelengths(
+    "Wavelengths as START:END:STEP or a list such as 450,550,650. [default: those of the cube]"
 )
-input_option = click.option(
+input_file = click.option(
     "--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input."
 )
-encoded_option = click.option("--encoded", is_flag=True, help="Numbers are encoded 8-bit codes from 0 to 255.")
-fill_option = click.option(
+encoded = click.option("--encoded", is_flag=True, help="Numbers are encoded 8-bit codes from 0 to 255.")
+fill = click.option(
     "--fill-missing", is_flag=True, help="Take colours that a cube built with --scene lacks from the packaged cube."
 )
-atlas_folders_option = click.option(
-    "--atlas-dir", "folders", multiple=True, metavar="DIR", help=_repeatable("Folder to search for atlases", "")
-)
-output_folder_option = click.option("-o", "--output", metavar="DIR", help="Folder for tables and plots.")
-force_option = click.option("--force", is_flag=True, help="Replace existing files.")
-quiet_option = click.option("-q", "--quiet", is_flag=True, help="Print only warnings and errors.")
-verbose_option = click.option(
-    "-v", "--verbose", is_flag=True, help="Print a line for every round and improvement step."
-)
+atlas_folders = _repeatable("--atlas-dir", "folders", "Folder to search for atlases", metavar="DIR")
+output_folder = click.option("-o", "--output", metavar="DIR", help="Folder for tables and plots.")
+force = click.option("--force", is_flag=True, help="Replace existing files.")
+quiet = click.option("-q", "--quiet", is_flag=True, help="Print only warnings and errors.")
+verbose = click.option("-v", "--verbose", is_flag=True, help="Print a line for every round and improvement step.")
 
 
-sensor_options = stacked(  # the observer stays None for the default of the library
+def output(help: str, **settings: Any) -> Decorator:
+    """``--output``."""
+    return click.option("-o", "--output", metavar="FILE", type=click.Path(), help=help, **settings)
+
+
+sensor = stacked(
     click.option(
         "--space",
         default="sRGB",
-        show_default=True,
         help="RGB space by its name in colour-science or OpenColorIO, such as ACEScg; or camera: raw values.",
-        shell_complete=complete_space,
+        shell_complete=completion(SPACE_NAMES),
     ),
     click.option(
         "--illuminant",
         default="D65",
-        show_default=True,
         help="Illuminant under which RGB are defined.",
-        shell_complete=complete_illuminant,
+        shell_complete=completion(ILLUMINANT_NAMES),
     ),
     click.option(
         "--observer",
-        help="Standard observer, or with --space camera a camera: name or CSV file of sensitivities. "
-        "[default: CIE 1931 2 Degree Standard Observer]",
-        shell_complete=complete_observer,
+        default="CIE 1931 2 Degree Standard Observer",
+        help="Standard observer, or with --space camera a camera: name or CSV file of sensitivities.",
+        shell_complete=completion(*OBSERVER_NAMES),
     ),
 )

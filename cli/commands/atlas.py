@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..completion import complete_atlas
-from ..options import force_option, format_option, scale_option, sensor_options
-from ..output.console import has_colours, make_table, paragraph, print_csv, print_json, say, show
+from .. import options
+from ..output.console import (
+    has_colours,
+    make_table,
+    paragraph,
+    print_csv,
+    print_fields,
+    print_json,
+    say,
+    show,
+    swatch,
+)
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
@@ -23,18 +32,18 @@ SOURCE = ("name", "digest", "format", "measured", "notes")
 
 
 @click.command("atlas")
-@click.argument("files", metavar="[FILE]...", nargs=-1, shell_complete=complete_atlas)
-@scale_option
-@sensor_options
-@format_option("table", "json", "csv")
-@click.option("-o", "--output", metavar="FILE", type=click.Path(), help="Write all entries to FILE instead of a list.")
-@force_option
+@click.argument("files", metavar="[FILE]...", nargs=-1, shell_complete=options.complete_atlas)
+@options.scale
+@options.sensor
+@options.output_format("table", "json", "csv")
+@options.output("Write all entries to FILE instead of a list.")
+@options.force
 def command(
     files: tuple[str, ...],
     scale: Any,
     space: str,
     illuminant: str,
-    observer: str | None,
+    observer: str,
     style: str,
     output: str | None,
     force: bool,
@@ -57,27 +66,49 @@ def command(
       uplift atlas dark.csv --scale percent
       uplift atlas paints.csv -o paints.txt
     """
+    from uplift.atlas import read_atlas, write_atlas
+    from uplift.colorimetry.observer import sensor
+    from uplift.common.files import check_output
+
     if not files:
         if output is not None:
             raise click.UsageError("--output needs an atlas to write.")
-        print_shipped(style)
+        _print_shipped(style)
         return
-    from uplift.atlas import read_atlas, write_atlas
-    from uplift.colorimetry.observer import DEFAULT_OBSERVER, sensor
-    from uplift.common.files import check_output
-
     if output is not None:
-        check_output(output, inputs=files, force=force)
-    atlas = read_atlas(*files, measured=scale)
-    if output is None:
-        PRINTERS[style](_list_entries(atlas, sensor(space, illuminant, observer or DEFAULT_OBSERVER)))
-    else:
-        write_atlas(atlas, output, force=force)
+        path = check_output(output, inputs=files, force=force)
+        atlas = read_atlas(*files, measured=scale)
+        write_atlas(atlas, path, force=force)
         say(f"{output}: {len(atlas)} entries", err=True)
+        return
+    atlas = read_atlas(*files, measured=scale)
+    camera = sensor(space, illuminant, observer)
+    rows, smallest = _list_entries(atlas, camera)
+    if style == "json":
+        fields = {
+            "space": camera.space,
+            "illuminant": camera.illuminant,
+            "observer": camera.observer,
+            "sources": [{name: getattr(source, name) for name in SOURCE} for source in atlas.sources],
+            "smallest_space": smallest,
+            "entries": [{key: value for key, value in asdict(row).items() if key != "swatch"} for row in rows],
+            "skipped": [asdict(skipped) for skipped in atlas.skipped],
+        }
+        print_json(fields)
+    elif style == "csv":
+        print_csv(
+            ["name", "start", "end", "step", "r", "g", "b", "in_gamut", "warnings"],
+            [
+                [row.name, row.start, row.end, row.step, *row.rgb, str(row.in_gamut).lower(), "; ".join(row.warnings)]
+                for row in rows
+            ],
+        )
+    else:
+        _print_table(atlas, camera, rows, smallest)
 
 
-def print_shipped(style: str) -> None:
-    """Print the shipped atlases as table, JSON or CSV."""
+def _print_shipped(style: str) -> None:
+    """Print the shipped atlases as text, JSON or CSV."""
     from uplift.atlas import shipped_atlases
 
     atlases = shipped_atlases()
@@ -88,12 +119,8 @@ def print_shipped(style: str) -> None:
     elif style == "csv":
         print_csv(SHIPPED, (list(row.values()) for row in rows))
     else:
-        table = make_table()
-        for name in SHIPPED:
-            table.add_column(name, justify="right" if name == "entries" else "left", no_wrap=name in SHIPPED[:2])
-        for row in rows:
-            table.add_row(*map(str, row.values()))
-        show(table)
+        for atlas in atlases:
+            print_fields({atlas.name: atlas.content, "": f"{atlas.source}. {atlas.licence}"})
         say()
         paragraph("Use a name as --atlas NAME, or in place of FILE.")
 
@@ -112,18 +139,8 @@ class Row:
     warnings: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Listing:
-    """An atlas, its colours under one sensor, and the smallest common RGB space that holds all of them."""
-
-    atlas: Atlas
-    sensor: Sensor
-    rows: tuple[Row, ...]
-    smallest_space: str | None
-
-
-def _list_entries(atlas: Atlas, sensor: Sensor) -> Listing:
-    """List all entries under a sensor, with reflectances clipped as in a build."""
+def _list_entries(atlas: Atlas, sensor: Sensor) -> tuple[list[Row], str | None]:
+    """List all entries, with reflectances clipped as in a build, and the smallest common RGB space that holds all."""
     from uplift.atlas import resample
     from uplift.colorimetry.gamut import SRGB
     from uplift.colorimetry.observer import sensor as make_sensor
@@ -135,84 +152,36 @@ def _list_entries(atlas: Atlas, sensor: Sensor) -> Listing:
     clips = {clip.name: (str(clip),) for clip in resampled.clips}
     colours = sensor.rgb(resampled.values).tolist()
     codes = to_display_codes(display.rgb(resampled.values), SRGB).astype(int).tolist()
-    rows = [
-        Row(
-            entry.name,
-            float(entry.wavelengths[0]),
-            float(entry.wavelengths[-1]),
-            entry.step,
-            tuple(rgb),
-            tuple(code),
-            bool(sensor.contains(rgb)),
-            clips.get(entry.name, ()),
-        )
-        for entry, rgb, code in zip(atlas.entries, colours, codes, strict=True)
-    ]
-    smallest = smallest_space(resampled.values, sensor.illuminant, sensor.observer)
-    return Listing(atlas, sensor, tuple(rows), smallest)
+    rows = []
+    for entry, rgb, code in zip(atlas.entries, colours, codes, strict=True):
+        start, end = (float(entry.wavelengths[end]) for end in (0, -1))
+        in_gamut, clipped = bool(sensor.contains(rgb)), clips.get(entry.name, ())
+        rows.append(Row(entry.name, start, end, entry.step, tuple(rgb), tuple(code), in_gamut, clipped))
+    return rows, smallest_space(resampled.values, sensor.illuminant, sensor.observer)
 
 
-def _print_json(listing: Listing) -> None:
-    rows = [{key: value for key, value in asdict(row).items() if key != "swatch"} for row in listing.rows]
-    sensor = listing.sensor
-    fields = {
-        "space": sensor.space,
-        "illuminant": sensor.illuminant,
-        "observer": sensor.observer,
-        "sources": [{name: getattr(source, name) for name in SOURCE} for source in listing.atlas.sources],
-        "smallest_space": listing.smallest_space,
-        "entries": rows,
-        "skipped": [asdict(skipped) for skipped in listing.atlas.skipped],
-    }
-    print_json(fields)
-
-
-def _print_csv(listing: Listing) -> None:
-    header = ["name", "start", "end", "step", "r", "g", "b", "in_gamut", "warnings"]
-    rows = (
-        [row.name, row.start, row.end, row.step, *row.rgb, str(row.in_gamut).lower(), "; ".join(row.warnings)]
-        for row in listing.rows
-    )
-    print_csv(header, rows)
-
-
-def _print_table(listing: Listing) -> None:
-    from rich.text import Text
-
-    sensor = listing.sensor
-    swatches = has_colours()
-    texts = [""] * swatches + ["name", "nm"]
+def _print_table(atlas: Atlas, sensor: Sensor, rows: Sequence[Row], smallest: str | None) -> None:
+    """Print the entries, their warnings, the sources, and the numbers of entries out of gamut and skipped."""
+    coloured = has_colours()
+    texts = [""] * coloured + ["name", "nm"]
     table = make_table(texts, "RGB", title=f"linear {sensor.space} under {sensor.illuminant}")
-    for row in listing.rows:
-        red, green, blue = row.swatch
-        swatch = [Text("   ", style=f"on rgb({red},{green},{blue})")] * swatches
+    for row in rows:
         step = "" if row.step is None else f":{row.step:g}"
         rgb = (f"{channel:.4f}" for channel in row.rgb)
-        table.add_row(*swatch, row.name, f"{row.start:g}:{row.end:g}{step}", *rgb)
+        table.add_row(*[swatch(row.swatch)] * coloured, row.name, f"{row.start:g}:{row.end:g}{step}", *rgb)
     show(table)
-    for row in listing.rows:
+    for row in rows:
         for warning in row.warnings:
             paragraph(f"{row.name}: {warning}")
-    for source in listing.atlas.sources:
+    for source in atlas.sources:
         paragraph("; ".join((f"{source.name}: {source.format}", *source.notes)))
-    paragraph(_summary(listing))
-
-
-def _summary(listing: Listing) -> str:
-    """Return the numbers of entries, of those out of gamut with the space that holds all, and of skipped ones."""
-    outside = [row.name for row in listing.rows if not row.in_gamut]
-    skipped = [skipped.name for skipped in listing.atlas.skipped]
-    text = f"{len(listing.rows)} entries, {_count(outside, f'out of the {listing.sensor.space} gamut')}, "
-    text += _count(skipped, "skipped")
-    if outside and listing.smallest_space is None:
-        text += "; no common RGB space holds all"
-    elif outside:
-        text += f"; {listing.smallest_space} holds all {len(listing.rows)}"
-    return text
+    outside = [row.name for row in rows if not row.in_gamut]
+    skipped = [skipped.name for skipped in atlas.skipped]
+    text = f"{len(rows)} entries, {_count(outside, f'out of the {sensor.space} gamut')}, {_count(skipped, 'skipped')}"
+    if outside:
+        text += f"; {smallest} holds all {len(rows)}" if smallest else "; no common RGB space holds all"
+    paragraph(text)
 
 
 def _count(names: Sequence[str], label: str) -> str:
     return f"{len(names)} {label}" + (f" ({', '.join(names)})" if names else "")
-
-
-PRINTERS: dict[str, Callable[[Listing], None]] = {"table": _print_table, "json": _print_json, "csv": _print_csv}

@@ -2,38 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import chain
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..options import force_option, format_option, light_option, plot_option
-from ..output.answers import format_rgb, hex_code, patch, print_fields
-from ..output.console import csv_writer, emit, make_table, print_json_answers, say, show
-from .query import ColourCommand, QueryStream, ask, colour_options, result_object
+from .. import options
+from ..output.answers import format_rgb, hex_code, patch
+from ..output.console import csv_writer, emit, make_table, print_fields, print_json_answers, say, show
+from .query import ColourCommand, ask, colour_options, result_object
 
 if TYPE_CHECKING:
     from uplift.lookup import Bounds, Cube, QueryResult
 
 Block = tuple[Sequence["QueryResult"], Sequence["Bounds"]]
 """Answers, and their bounds under each light."""
-UNKNOWN = "–"
 DIVISIONS, SINGLE_DIVISIONS = 2, 3
 """Density of the directions of bounds: 162 of each of many colours, 642 of a single one."""
 
 
 @click.command("bounds", cls=ColourCommand)
 @colour_options
-@light_option("Illuminant under which the bounds are shown", "A FL11 HP1")
-@format_option("table", "json", "csv")
-@plot_option("Plot the bounds")
+@options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
+@options.output_format("table", "json", "csv")
+@options.plot("Plot the bounds")
 @click.option(
     "--html",
     metavar="FILE",
     help="Write a page on which the colour under each --light is dragged within its bounds, for a file of looks.",
 )
-@force_option
+@options.force
 def command(
     lights: tuple[str, ...], style: str, plot_path: str | None, html: str | None, force: bool, **colours: Any
 ) -> None:
@@ -53,14 +51,23 @@ def command(
     The page of --html shows the bounds of one colour and a spectrum for every choice in them; it writes the TOML for
     'uplift build --look'.
     """
+    import numpy as np
+
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
     from uplift.common.files import check_outputs
+    from uplift.lookup import bounds
 
     check_outputs((plot_path, html), inputs=(colours["cube_path"], colours["input_path"]), force=force)
     stream, results, single = ask(lights=lights or RELIGHT_LIGHTS, **colours)
     if html is not None and not single:
         raise click.UsageError("--html shows one colour: give it on the command line.")
-    blocks: Iterable[Block] = ((block, _bounds(stream, block, single=single)) for block in results)
+
+    def compute(block: Sequence[QueryResult]) -> Block:
+        rgb = np.stack([result.rgb for result in block])
+        divisions = SINGLE_DIVISIONS if single else DIVISIONS
+        return block, [bounds(stream.cube, rgb, light, stream.mode, divisions) for light in stream.lights]
+
+    blocks: Iterable[Block] = map(compute, results)
     if plot_path is not None or html is not None:
         blocks = list(blocks)
     if plot_path is not None:
@@ -72,50 +79,39 @@ def command(
 
         write_look_page(stream.cube, next(iter(blocks))[1], html, force=force)
         say(f"{html}: page to choose a look on", err=True)
-    WRITERS[style](stream.cube, blocks, single)
+    if style == "json":
+        print_json_answers((each for block in blocks for each in _objects(stream.cube, *block)), single=single)
+    elif style == "csv":
+        _print_csv(blocks)
+    else:
+        _print_table(stream.cube, blocks, single=single)
     stream.warn()
 
 
-def _bounds(stream: QueryStream, block: Sequence[QueryResult], *, single: bool) -> list[Bounds]:
-    """Compute the bounds of a block under each light, from more directions for a single colour."""
-    import numpy as np
-
-    from uplift.lookup import bounds
-
-    rgb = np.stack([result.rgb for result in block])
-    divisions = SINGLE_DIVISIONS if single else DIVISIONS
-    return [bounds(stream.cube, rgb, light, stream.mode, divisions) for light in stream.lights]
-
-
-def _print_json(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
-    print_json_answers(chain.from_iterable(_objects(cube, *block) for block in blocks), single=single)
-
-
 def _objects(cube: Cube, results: Sequence[QueryResult], found: Sequence[Bounds]) -> Iterable[dict[str, Any]]:
-    for row, result in enumerate(results):
-        yield result_object(cube, result) | {"bounds": {each.light.name: _object(each, row) for each in found}}
-
-
-def _object(found: Bounds, row: int) -> dict[str, Any]:
     from uplift.colorimetry.delta_e import lab
     from uplift.lookup.light_errors import LIKELY
 
-    likely = found.likely(row)
-    return {
-        "lab": found.lab[row].tolist(),
-        "largest_delta_e_2000": float(found.largest.delta_e_2000[row]),
-        "largest_lab": lab(found.largest.xyz[row], found.light.white).tolist(),
-        "outer_delta_e_2000": float(found.largest.outer[row]),
-        "lab_range": found.box[row].tolist(),
-        "share": float(found.share[row]),
-        "outline": found.outline(row).tolist(),
-        "covariance": None if found.covariance is None else found.covariance[row].tolist(),
-        "likely": None if likely is None else likely.tolist(),
-        "likely_share": LIKELY,
-    }
+    for row, result in enumerate(results):
+        fields = {}
+        for each in found:
+            likely = each.likely(row)
+            fields[each.light.name] = {
+                "lab": each.lab[row].tolist(),
+                "largest_delta_e_2000": float(each.largest.delta_e_2000[row]),
+                "largest_lab": lab(each.largest.xyz[row], each.light.white).tolist(),
+                "outer_delta_e_2000": float(each.largest.outer[row]),
+                "lab_range": each.box[row].tolist(),
+                "share": float(each.share[row]),
+                "outline": each.outline(row).tolist(),
+                "covariance": None if each.covariance is None else each.covariance[row].tolist(),
+                "likely": None if likely is None else likely.tolist(),
+                "likely_share": LIKELY,
+            }
+        yield result_object(cube, result) | {"bounds": fields}
 
 
-def _print_csv(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
+def _print_csv(blocks: Iterable[Block]) -> None:
     """Print a row per colour and light."""
     writer = csv_writer()
     lab_range = [f"{name}_{end}" for end in ("min", "max") for name in ("L*", "a*", "b*")]
@@ -125,23 +121,20 @@ def _print_csv(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
         for row, result in enumerate(results):
             for each in found:
                 light = each.light.name
-                errors = (result.standard_errors.get(light, ""), result.error_bounds.get(light, ""))
-                largest = each.largest
-                differences = [float(values[row]) for values in (largest.delta_e_2000, largest.outer)]
-                lab_range = each.box[row].ravel().tolist()
-                answer: list[object] = [*result.rgb.tolist(), light, *each.lab[row].tolist()]
-                writer.write([*answer, *errors, *differences, *lab_range, float(each.share[row])])
+                errors = (result.standard_errors.get(light), result.error_bounds.get(light))
+                numbers = [float(each.largest.delta_e_2000[row]), float(each.largest.outer[row])]
+                numbers += [*each.box[row].ravel().tolist(), float(each.share[row])]
+                writer.write([*result.rgb.tolist(), light, *each.lab[row].tolist(), *errors, *numbers])
 
 
-def _print_table(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
+def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
     """Print a line per colour and light; a single colour has its fields above."""
     from uplift.lookup.light_errors import LIKELY
 
     for number, (results, found) in enumerate(blocks):
         if single:
             rgb = results[0].rgb
-            fields = {"linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"}
-            print_fields(fields, {"linear RGB": patch(cube, rgb)})
+            print_fields({"linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"}, {"linear RGB": patch(cube, rgb)})
             emit("")
         table = make_table(
             ("hex",) * (not single) + ("light",),
@@ -152,25 +145,16 @@ def _print_table(cube: Cube, blocks: Iterable[Block], single: bool) -> None:
         for row, result in enumerate(results):
             for column, each in enumerate(found):
                 code = hex_code(cube, result.rgb) if column == 0 else ""
-                table.add_row(*(code,) * (not single), *_cells(result.error_bounds, each, row))
+                error = result.error_bounds.get(each.light.name)
+                (_, least_a, least_b), (_, most_a, most_b) = each.box[row].tolist()
+                table.add_row(
+                    *(code,) * (not single),
+                    each.light.name,
+                    " ".join(f"{value:.1f}" for value in each.lab[row]),
+                    "–" if error is None else f"{error:.2f}",
+                    f"{each.largest.delta_e_2000[row]:.2f}",
+                    f"{least_a:.0f} to {most_a:.0f}",
+                    f"{least_b:.0f} to {most_b:.0f}",
+                    f"{each.share[row]:.2g}",
+                )
         show(table)
-
-
-def _cells(error_bounds: Mapping[str, float], found: Bounds, row: int) -> Iterable[str]:
-    error = error_bounds.get(found.light.name)
-    (_, least_a, least_b), (_, most_a, most_b) = found.box[row].tolist()
-    yield found.light.name
-    yield " ".join(f"{value:.1f}" for value in found.lab[row])
-    yield UNKNOWN if error is None else f"{error:.2f}"
-    yield f"{found.largest.delta_e_2000[row]:.2f}"
-    yield f"{least_a:.0f} to {most_a:.0f}"
-    yield f"{least_b:.0f} to {most_b:.0f}"
-    yield f"{found.share[row]:.2g}"
-
-
-WRITERS: dict[str, Callable[[Cube, Iterable[Block], bool], None]] = {
-    "table": _print_table,
-    "json": _print_json,
-    "csv": _print_csv,
-}
-"""Printers of blocks, each before the next one is computed."""

@@ -12,30 +12,16 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from uplift.common.text import format_value, parse_whole
+from uplift.common.errors import OptionError
+from uplift.common.text import format_value, parse_float, parse_whole
 
-from ..inputs import expand_patterns, parse_range
-from ..options import (
-    NUMBER,
-    Whole,
-    atlas_option,
-    coefficients_option,
-    encoding_option,
-    force_option,
-    input_space_option,
-    light_option,
-    out_of_gamut_option,
-    quiet_option,
-    scale_option,
-    sensor_options,
-    verbose_option,
-)
+from .. import options
+from ..inputs import expand_patterns
 from ..output.console import say
-from ..output.progress import build_progress
+from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
-    from uplift.io.scene_colours import Images
     from uplift.lookup import Cube
 
 ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet", "verbose"}
@@ -44,69 +30,65 @@ OF_IMAGES = {"encoding": "--encoding", "method": "--out-of-gamut", "input_space"
 """Options of --scene images by parameter."""
 
 
-class LatticeDim(click.ParamType):  # type: ignore[type-arg]
-    """A whole number or 'auto'."""
+def parse_dim(ctx: click.Context, param: click.Parameter, value: str) -> int | str:
+    """Parse a whole number or 'auto'."""
+    try:
+        return value if value == "auto" else parse_whole(value)
+    except ValueError as error:
+        raise click.BadParameter(f"{format_value(value)} is neither a whole number nor 'auto'") from error
 
-    name = "dim"
 
-    def convert(self, value: str | int, param: click.Parameter | None, ctx: click.Context | None) -> int | str:
-        """Return a whole number or 'auto'."""
-        if value == "auto" or isinstance(value, int):
-            return value
-        try:
-            return parse_whole(value)
-        except ValueError:
-            self.fail(f"{format_value(value)} is neither a whole number nor 'auto'", param, ctx)
+def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple[float, float]:
+    """Parse '360:830', a first and a last wavelength in nm."""
+    try:
+        start, end = (parse_float(part) for part in value.split(":"))
+    except ValueError as error:
+        problem = f"a range must be START:END in nm, got {format_value(value)}"
+        raise OptionError(problem, hint="write for example 360:830") from error
+    return start, end
 
 
 @click.command("build")
-@atlas_option("Measured spectra")
-@scale_option
-@click.option(
-    "-o", "--output", metavar="FILE", help="Cube to write. [default: named after atlas and dim, in the current folder]"
-)
+@options.atlas("Measured spectra")
+@options.scale
+@options.output("Cube to write. [default: named after atlas and dim, in the current folder]")
 @click.option(
     "--dim",
     default="32",
-    type=LatticeDim(),
-    show_default=True,
+    callback=parse_dim,
+    metavar="N",
     help="Lattice nodes along each axis. 'auto' chooses the smallest dim, and its axis, that resolves every entry.",
 )
 @click.option(
     "--tolerance",
     "auto_tolerance",
-    type=NUMBER,
+    type=options.NUMBER,
     default=0.5,
-    show_default=True,
     help="ΔE00 within which the lattice of --dim auto must reproduce the entries.",
 )
-@click.option("--model", default="moments", show_default=True, help="Spectrum model: moments or sigmoid.")
-@coefficients_option
+@click.option("--model", default="moments", help="Spectrum model: moments or sigmoid.")
+@options.coefficients
 @click.option(
     "--entry-coefficients",
-    type=Whole(),
+    type=options.Whole(),
     default=17,
-    show_default=True,
     metavar="N",
     help="Coefficients per spectrum of an atlas entry, from --coefficients to 17.",
 )
-@click.option("--warp", default="none", show_default=True, help="Phase warp of the moments: none or vision.")
-@click.option("--axis", default="srgb", show_default=True, help="Spacing of the nodes: srgb or linear.")
-@sensor_options
+@click.option("--warp", default="none", help="Phase warp of the moments: none or vision.")
+@click.option("--axis", default="srgb", help="Spacing of the nodes: srgb or linear.")
+@options.sensor
 @click.option(
     "--range",
     "limits",
     default="380:780",
-    show_default=True,
+    callback=parse_range,
     help="First and last wavelength of the spectra in nm, from 300 to 1000.",
 )
-@click.option("--step", type=NUMBER, default=5, show_default=True, help="Distance of wavelengths in nm: 1, 5 or 10.")
-@light_option("Illuminant under which entries must keep their colour", "D65 A FL2 FL11 LED-B3")
+@click.option("--step", type=options.NUMBER, default=5, help="Distance of wavelengths in nm: 1, 5 or 10.")
+@options.light("Illuminant under which entries must keep their colour", "D65 A FL2 FL11 LED-B3")
 @click.option(
-    "--prior",
-    default="learnt",
-    show_default=True,
-    help="Spectra of colours without measurements: learnt (from real materials) or smooth.",
+    "--prior", default="learnt", help="Spectra of colours without measurements: learnt (from real materials) or smooth."
 )
 @click.option(
     "--library",
@@ -124,9 +106,7 @@ class LatticeDim(click.ParamType):  # type: ignore[type-arg]
     metavar="FAMILY",
     help="Family of the shipped library that the learnt prior must not know, for tests on it; repeatable.",
 )
-@click.option(
-    "--threshold", type=NUMBER, default=1e-4, show_default=True, help="Largest residual of a node, |linear RGB|."
-)
+@click.option("--threshold", type=options.NUMBER, default=1e-4, help="Largest residual of a node, |linear RGB|.")
 @click.option(
     "--scene",
     "images",
@@ -134,35 +114,29 @@ class LatticeDim(click.ParamType):  # type: ignore[type-arg]
     metavar="IMAGE",
     help="Build only the cells that the colours of this image, or quoted pattern, need; repeatable.",
 )
-@click.option(
-    "--start",
-    default="prior",
-    show_default=True,
-    help="What nodes start from: prior, or neighbours, outward from the seeds.",
-)
+@click.option("--start", default="prior", help="What nodes start from: prior, or neighbours, outward from the seeds.")
 @click.option(
     "--solver",
     default="least-change",
-    show_default=True,
     help="Solver: least-change, dogleg, levenberg-marquardt or gauss-newton. Only nearly box-shaped spectra differ.",
 )
-@encoding_option("--scene images")
-@input_space_option("--scene images")
+@options.encoding("--scene images")
+@options.input_space("--scene images")
 @click.option("--plan", "plan_path", metavar="PLAN", help="Build the cube of a plan by 'uplift plan'.")
-@out_of_gamut_option("clip", "linear RGB of --scene images")
+@options.out_of_gamut("clip", "linear RGB of --scene images")
 @click.option(
     "--seed-corners",
     is_flag=True,
     help="Start all eight nodes around an entry from it: closer near entries, less so for other materials.",
 )
 @click.option("--debug", is_flag=True, help="Store the round of every node, for 'uplift slices'.")
-@force_option
-@quiet_option
-@verbose_option
+@options.force
+@options.quiet
+@options.verbose
 def command(
     plan_path: str | None,
     files: tuple[str, ...],
-    scale: str,
+    scale: Any,
     output: str | None,
     images: tuple[str, ...],
     encoding: str,
@@ -171,8 +145,8 @@ def command(
     force: bool,
     quiet: bool,
     verbose: bool,
-    limits: str,
-    **options: Any,
+    limits: tuple[float, float],
+    **settings: Any,
 ) -> None:
     """Build an uplifting cube constrained by measured spectra.
 
@@ -206,7 +180,6 @@ def command(
 
     context = click.get_current_context()
     given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
-    build: Callable[..., Cube]
     inputs: list[str | Path | None]
     if plan_path is not None:
         if others := [each.opts[-1] for each in context.command.params if each.name in given - ALLOWED_WITH_PLAN]:
@@ -214,22 +187,27 @@ def command(
         from uplift.scene.plan.plan_file import cube_name, read_plan
 
         plan = read_plan(plan_path)
-        build = partial(plan.build, debug=options["debug"])
+        make: Callable[..., Cube] = partial(plan.build, debug=settings["debug"])
         name = cube_name(plan_path)
         inputs = [plan_path, *plan.textures, *plan.atlases]
     else:
         if not images and (useless := given & set(OF_IMAGES)):
             names = ", ".join(OF_IMAGES[name] for name in sorted(useless))
             raise click.UsageError(f"{names}: no --scene image is given to which this applies.")
-        scene = _scene(images, encoding, method, input_space)
-        options["shortest"], options["longest"] = parse_range(limits)
-        build = partial(_build, files, scale, scene=scene, **options)
-        name = _default_name(files, images, options)
-        inputs = [*files, *options["library"], options["looks"], options["observer"], *(scene.paths if scene else ())]
+        name = _default_name(files, images, settings)
+        inputs = [*files, *settings["library"], settings["looks"], settings["observer"]]
+        settings["shortest"], settings["longest"] = limits
+        if images:
+            from uplift.io.scene_colours import Images
+
+            scene = Images(tuple(map(Path, expand_patterns(images))), encoding, method, input_space)
+            settings["scene"] = scene
+            inputs += scene.paths
+        make = partial(_build, files, scale, **settings)
     path = check_output(name if output is None else output, inputs=inputs, force=force)
     begin = time.perf_counter()
-    with build_progress(quiet=quiet, verbose=verbose) as progress:
-        cube = build(progress=progress)
+    with progress_bar(quiet=quiet, verbose=verbose) as progress:
+        cube = make(progress=progress)
     cube.save(path, force=force)
     if verbose:
         for step in cube.data.provenance["improvements"]:
@@ -238,28 +216,19 @@ def command(
         _print_summary(cube, path, time.perf_counter() - begin)
 
 
-def _build(files: tuple[str, ...], scale: Any, **options: Any) -> Cube:
+def _build(files: tuple[str, ...], scale: Any, **settings: Any) -> Cube:
     from uplift.atlas import read_atlas
     from uplift.pipeline.build import build
 
-    given = {name: value for name, value in options.items() if value not in (None, ())}
+    given = {name: value for name, value in settings.items() if value not in (None, ())}
     return build(read_atlas(*files, measured=scale) if files else None, **given)
 
 
-def _scene(images: tuple[str, ...], encoding: str, method: str, space: str | None) -> Images | None:
-    """Return the images of the scene, None without images."""
-    if not images:
-        return None
-    from uplift.io.scene_colours import Images
-
-    return Images(tuple(map(Path, expand_patterns(images))), encoding, method, space)
-
-
-def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], options: dict[str, Any]) -> str:
+def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]) -> str:
     """Return the name of a cube file: atlases, dim, and the space if it is not sRGB."""
     from uplift.colorimetry.camera import CAMERA
 
-    space = options["space"]
+    space = settings["space"]
     if space not in ("sRGB", CAMERA):
         from uplift.colorimetry.spaces import look_up_space
 
@@ -267,7 +236,7 @@ def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], options: di
     space = re.sub("[ /]", "-", space).lower()
     stem = "+".join(Path(atlas).stem for atlas in atlases) or space
     suffix = f"-{space}" if atlases and space != "srgb" else ""
-    return f"{stem}-{options['dim']}{suffix}{'-scene' if images else ''}.uplift"
+    return f"{stem}-{settings['dim']}{suffix}{'-scene' if images else ''}.uplift"
 
 
 def _print_summary(cube: Cube, path: Path, seconds: float) -> None:

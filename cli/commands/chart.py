@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from .. import options
 from ..inputs import DEFAULT_ATLASES, read_atlases
-from ..options import NUMBER, Whole, atlas_option, force_option
 from ..output.console import make_table, say, show
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache, use_one_blas_thread
@@ -22,7 +22,7 @@ FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
 
 
 @click.command("chart")
-@click.option("-o", "--output", metavar="DIR", default="chart", show_default=True, help="Folder to write to.")
+@click.option("-o", "--output", metavar="DIR", default="chart", help="Folder to write to.")
 @click.option(
     "--methods",
     "patterns",
@@ -30,27 +30,28 @@ FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
     multiple=True,
     help="Methods by name, with '*' as a wildcard; repeatable.",
 )
-@atlas_option("Measured spectra", DEFAULT_ATLASES)
+@options.atlas("Measured spectra", DEFAULT_ATLASES)
 @click.option(
     "--colours",
     metavar="N",
-    type=Whole(max=1_000_000),
+    type=options.Whole(max=1_000_000),
     default=2000,
-    show_default=True,
     help="Number of random colours for the round trip.",
 )
 @click.option("--quick", is_flag=True, help="Few methods and repeats: about a minute instead of half an hour.")
 @click.option("--from", "source", metavar="CSV", help="Table of an earlier chart to draw or to recommend from.")
 @click.option("--recommend", is_flag=True, help="Recommend a cube to build, from the packaged chart or --from.")
-@click.option("--time-ns", type=NUMBER, help="With --recommend: largest CPU time per RGB, in ns.")
-@click.option("--tolerance", "delta_e", metavar="ΔE00", type=NUMBER, help="With --recommend: largest mean ΔE00.")
+@click.option("--time-ns", type=options.NUMBER, help="With --recommend: largest CPU time per RGB, in ns.")
+@click.option(
+    "--tolerance", "delta_e", metavar="ΔE00", type=options.NUMBER, help="With --recommend: largest mean ΔE00."
+)
 @click.option(
     "--light", help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: mean of five]"
 )
 @click.option(
     "--atlas-materials", is_flag=True, help="With --recommend: ΔE00 of the atlas entries instead of unseen materials."
 )
-@force_option
+@options.force
 def command(
     output: str,
     patterns: tuple[str, ...],

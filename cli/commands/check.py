@@ -11,27 +11,25 @@ import click
 
 from uplift.common.errors import UpliftError
 
-from ..completion import complete_cube
-from ..options import atlas_folders_option, format_option, quiet_option, verbose_option
+from .. import options
 from ..output.console import make_table, print_json, say, show
 from ..output.diagnostics import CommandFailure, error_object
+from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
-    from rich.text import Text
-
     from uplift.common.progress import ProgressCallback
     from uplift.lookup import Cube
     from uplift.report.regression import RebuildDifference
 
 
 @click.command("check")
-@click.argument("files", nargs=-1, required=True, shell_complete=complete_cube)
-@atlas_folders_option
+@click.argument("files", nargs=-1, required=True, shell_complete=options.complete_cube)
+@options.atlas_folders
 @click.option("--update", is_flag=True, help="Replace the cubes that differ by the rebuilt ones.")
-@format_option("table", "json")
-@quiet_option
-@verbose_option
+@options.output_format("table", "json")
+@options.quiet
+@options.verbose
 def command(
     files: tuple[str, ...], folders: tuple[str, ...], update: bool, style: str, quiet: bool, verbose: bool
 ) -> None:
@@ -53,22 +51,22 @@ def command(
     in these, and the shipped atlases.
     """
     enable_jit_cache()
-    from ..output.progress import build_progress
-
-    with build_progress(quiet=quiet, verbose=verbose) as progress:
+    with progress_bar(quiet=quiet, verbose=verbose) as progress:
         results = [_check(Path(file), folders, progress) for file in dict.fromkeys(files)]
     if style == "json":
         print_json([_object(result) for result in results])
     elif not quiet:
-        _table(results)
-    replaced = [result for result in results if update and not result.passed and result.rebuilt]
-    failed = [result for result in results if not result.passed and result not in replaced]
-    for result in failed:
-        if result.error and style != "json":
-            CommandFailure(result.error).show()
-    for result in replaced:
-        result.replace()
-    if failed:
+        _print_table(results)
+    is_failed = False
+    for result in results:
+        if result.failures and update and result.rebuilt:
+            result.rebuilt.save(result.path, force=True)
+            say(f"{result.path}: replaced", err=True)
+        elif result.failures:
+            is_failed = True
+            if result.error and style != "json":
+                CommandFailure(result.error).show()
+    if is_failed:
         raise SystemExit(1)
 
 
@@ -87,16 +85,6 @@ class _Result:
         if self.comparison:
             return self.comparison.failures
         return (self.error.code,) if self.error else ()
-
-    @property
-    def passed(self) -> bool:
-        return not self.failures
-
-    def replace(self) -> None:
-        """Replace the stored cube by the rebuilt one."""
-        if self.rebuilt:
-            self.rebuilt.save(self.path, force=True)
-            say(f"{self.path}: replaced", err=True)
 
 
 def _check(path: Path, folders: Sequence[str], progress: ProgressCallback) -> _Result:
@@ -117,7 +105,7 @@ def _object(result: _Result) -> dict[str, object]:
     comparison, error = result.comparison, result.error
     return {
         "cube": str(result.path),
-        "passed": result.passed,
+        "passed": not result.failures,
         "failures": list(result.failures),
         "measures": comparison.measures if comparison else {},
         "status": {"stored": comparison.stored_counts, "rebuilt": comparison.rebuilt_counts} if comparison else {},
@@ -125,35 +113,22 @@ def _object(result: _Result) -> dict[str, object]:
     }
 
 
-def _table(results: Sequence[_Result]) -> None:
-    from uplift.report.regression import LIMITS
-
-    headings = {"rgb": "RGB", "spectra_max": "spectra", "spectra_rms": "rms"}
-    measures = (headings.get(name, name.replace("delta_e_", "ΔE ")) for name in LIMITS)
-    table = make_table()
-    table.add_column("cube", no_wrap=True)
-    for measure in measures:
-        table.add_column(measure, justify="right", no_wrap=True)
-    table.add_column("nodes", no_wrap=True)
-    table.add_column("verdict", no_wrap=True)
-    for result in results:
-        table.add_row(*_row(result))
-    table.add_row("limit", *(f"{limit:.0e}" for limit in LIMITS.values()), "same", "", style="dim")
-    show(table)
-
-
-def _row(result: _Result) -> list[str | Text]:
+def _print_table(results: Sequence[_Result]) -> None:
     from rich.text import Text
 
     from uplift.report.regression import LIMITS
 
-    def cell(name: str, text: str) -> Text:
-        return Text(text, style="bold red" if name in result.failures else "")
-
-    if result.comparison:
-        cells = [cell(name, f"{result.comparison.measures[name]:.1e}") for name in LIMITS]
-        cells.append(cell("status", "differs" if "status" in result.failures else "same"))
-    else:
-        cells = [Text("–")] * (len(LIMITS) + 1)
-    verdict = Text("passed", style="green") if result.passed else Text("FAILED", style="bold red")
-    return [str(result.path), *cells, verdict]
+    headings = {"rgb": "RGB", "spectra_max": "spectra", "spectra_rms": "rms"}
+    table = make_table(("cube",), (headings.get(name, name.replace("delta_e_", "ΔE ")) for name in LIMITS))
+    for heading in ("nodes", "verdict"):
+        table.add_column(heading, no_wrap=True)
+    for result in results:
+        cells = dict.fromkeys((*LIMITS, "status"), "–")
+        if result.comparison:
+            cells = {name: f"{result.comparison.measures[name]:.1e}" for name in LIMITS}
+            cells["status"] = "differs" if "status" in result.failures else "same"
+        styled = (Text(text, style="bold red" if name in result.failures else "") for name, text in cells.items())
+        verdict = Text("FAILED", style="bold red") if result.failures else Text("passed", style="green")
+        table.add_row(str(result.path), *styled, verdict)
+    table.add_row("limit", *(f"{limit:.0e}" for limit in LIMITS.values()), "same", "", style="dim")
+    show(table)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from .. import options
 from ..inputs import DEFAULT_ATLASES, read_atlases
-from ..options import NUMBER, atlas_option, force_option, format_option, light_option, output_folder_option
 from ..output.console import make_table, print_csv_text, print_json, say, show
 from ..output.progress import progress_bar
 from ..startup import use_one_blas_thread
@@ -23,21 +23,21 @@ FILTERS = "compare-filters.csv"
 
 
 @click.command("compare")
-@atlas_option("Surfaces", DEFAULT_ATLASES)
-@light_option("Illuminant", "A, B, C, and FL2, FL7, FL11")
+@options.atlas("Surfaces", DEFAULT_ATLASES)
+@options.light("Illuminant", "A, B, C, and FL2, FL7, FL11")
 @click.option(
     "--tolerance",
     metavar="ΔE00",
-    type=NUMBER,
+    type=options.NUMBER,
     help="Print the cheapest representation with 97.5 % of errors below this value.",
 )
 @click.option(
     "--filters", is_flag=True, help="Also search the best low-pass filters for point sampling, which takes minutes."
 )
 @click.option("--quick", is_flag=True, help="At most forty surfaces, few repeats and a coarse search: seconds.")
-@output_folder_option
-@format_option("table", "json", "csv")
-@force_option
+@options.output_folder
+@options.output_format("table", "json", "csv")
+@options.force
 def command(
     files: tuple[str, ...],
     lights: tuple[str, ...],

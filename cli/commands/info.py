@@ -6,14 +6,13 @@ from typing import Any
 
 import click
 
-from ..completion import complete_cube
-from ..options import format_option
-from ..output.console import make_table, print_json, say, show
+from .. import options
+from ..output.console import print_fields, print_json, say
 
 
 @click.command("info")
-@click.argument("file", required=False, shell_complete=complete_cube)
-@format_option("table", "json")
+@click.argument("file", required=False, shell_complete=options.complete_cube)
+@options.output_format("table", "json")
 def command(file: str | None, style: str) -> None:
     """Show the contents and provenance of a cube file. FILE defaults to the packaged cube.
 
@@ -33,17 +32,13 @@ def print_facts(name: str, fields: dict[str, Any], style: str) -> None:
     if style == "json":
         print_json(fields)
         return
-    say(name)
-    table = make_table(show_header=False, box=None)
-    table.add_column(style="bold", no_wrap=True)
-    table.add_column(overflow="fold")
     provenance = fields.pop("provenance")
-    options = provenance.pop("options", {})
+    settings = {f"option {key}": value for key, value in provenance.pop("options", {}).items()}
     looks = {f"look {each['name'].removeprefix('look ')}": _look(each) for each in provenance.pop("looks", ())}
-    for section in (fields, looks, provenance, {f"option {key}": value for key, value in options.items()}):
-        for key, value in section.items():
-            table.add_row(key.replace("_", " "), _text(value))
-    show(table)
+    say(name)
+    print_fields(
+        {key.replace("_", " "): _text(value) for key, value in (fields | looks | provenance | settings).items()}
+    )
 
 
 def _look(record: dict[str, Any]) -> str:

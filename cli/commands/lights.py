@@ -11,24 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from .. import options
 from ..colours import ColourReader, find_point
-from ..completion import complete_lights, complete_space
-from ..inputs import find_input_space, parse_wavelengths
-from ..options import (
-    atlas_option,
-    encoded_option,
-    encoding_option,
-    force_option,
-    format_option,
-    input_option,
-    input_space_option,
-    plot_option,
-    quiet_option,
-    wavelengths_option,
-    xyz_options,
-)
-from ..output.answers import format_rgb, print_columns, print_fields, sparkline
-from ..output.console import csv_writer, emit, print_json_answers, say
+from ..inputs import find_input_space
+from ..output.answers import format_rgb, print_columns, sparkline
+from ..output.console import csv_writer, emit, print_fields, print_json_answers, say
 from .info import print_facts
 from .query import ColourCommand
 from .texture import as_tuple, convert, image_options
@@ -42,15 +29,13 @@ PACKAGED = "emission"
 LANGUAGES = {".h": "c", ".glsl": "glsl"}
 """Languages of `uplift.io.export.write_light_program` by suffix."""
 
-table_argument = click.argument(
-    "table_path", metavar="[TABLE]", required=False, default=PACKAGED, shell_complete=complete_lights
-)
+table_argument = click.argument("table_path", metavar="[TABLE]", required=False, default=PACKAGED, type=click.Path())
 table_option = click.option(
     "--lights",
     "table_path",
     metavar="FILE",
     help="Emission table by 'uplift lights build'. [default: the packaged one]",
-    shell_complete=complete_lights,
+    type=click.Path(),
 )
 
 
@@ -71,18 +56,17 @@ def command() -> None:
 
 
 @command.command("build")
-@atlas_option("Spectral powers of lamps")
+@options.atlas("Spectral powers of lamps")
 @click.option("-o", "--output", metavar="FILE", help="Table to write. [default: ATLAS-emission.uplift]")
 @click.option(
     "--space",
     default="sRGB",
-    show_default=True,
     help="RGB space of queries by its name in colour-science or OpenColorIO, such as ACEScg.",
-    shell_complete=complete_space,
+    shell_complete=options.completion(options.SPACE_NAMES),
 )
 @click.option("--observer", help="Standard observer. [default: CIE 1931 2 Degree Standard Observer]")
-@force_option
-@quiet_option
+@options.force
+@options.quiet
 def build(
     files: tuple[str, ...], output: str | None, space: str, observer: str | None, force: bool, quiet: bool
 ) -> None:
@@ -114,10 +98,10 @@ def build(
 
 @command.command("info")
 @table_argument
-@format_option("table", "json")
-@plot_option("Plot colours, expected errors and lamps over u′v′")
+@options.output_format("table", "json")
+@options.plot("Plot colours, expected errors and lamps over u′v′")
 @click.option("--html", metavar="FILE", help="Page with the plots, answers to random lights, and all lamps.")
-@force_option
+@options.force
 def info(table_path: str, style: str, plot_path: str | None, html: str | None, force: bool) -> None:
     """Show the contents of an emission table, in words, as a picture or as a page.
 
@@ -155,7 +139,7 @@ def info(table_path: str, style: str, plot_path: str | None, html: str | None, f
     type=click.Choice(("header", "file")),
     help="Where the numbers of the program are. [default: header for .h, else file]",
 )
-@force_option
+@options.force
 def export(table_path: str, output: str, form: str | None, force: bool) -> None:
     """Write an emission table as a program that looks up colours, in C or GLSL.
 
@@ -185,13 +169,13 @@ def export(table_path: str, output: str, form: str | None, force: bool) -> None:
 @command.command("texture")
 @image_options
 @table_option
-@wavelengths_option
+@options.output_wavelengths
 @click.option("--depth", type=click.Choice(("float", "half")), help="32 or 16 bits per channel. [default: float]")
-@encoding_option()
-@input_space_option("the images")
+@options.encoding()
+@options.input_space("the images")
 def texture(
     table_path: str | None,
-    wavelengths: str | None,
+    wavelengths: Array | None,
     depth: str | None,
     encoding: str,
     input_space: str | None,
@@ -212,7 +196,7 @@ def texture(
 
     settings = TextureSettings(
         (None if table_path is None else os.path.abspath(find_table(table_path)),),
-        Spectrum(as_tuple(parse_wavelengths(wavelengths))),
+        Spectrum(as_tuple(wavelengths)),
         depth=depth,
         encoding=encoding,
         space=input_space,
@@ -224,22 +208,21 @@ def texture(
 @command.command("query", cls=ColourCommand)
 @click.argument("colour", nargs=-1)
 @table_option
-@input_option
-@xyz_options("Colour by XYZ, where white of the table's space has Y = 1.")
-@encoded_option
-@wavelengths_option
-@input_space_option("the colours", default="that of the table")
+@options.input_file
+@options.xyz("Colour by XYZ, where white of the table's space has Y = 1.")
+@options.encoded
+@options.output_wavelengths
+@options.input_space("the colours", default="that of the table")
 @click.option(
     "--out-of-gamut",
     "outside",
     type=click.Choice(("error", "clip")),
     default="error",
-    show_default=True,
     help="Treatment of colours that no light has: raise an error, or take the nearest one towards white.",
 )
-@format_option("table", "json", "csv")
-@plot_option("Plot the spectra")
-@force_option
+@options.output_format("table", "json", "csv")
+@options.plot("Plot the spectra")
+@options.force
 def query(
     colour: tuple[str, ...],
     table_path: str | None,
@@ -248,7 +231,7 @@ def query(
     xy: tuple[float, float] | None,
     luminance: float | None,
     encoded: bool,
-    wavelengths: str | None,
+    wavelengths: Array | None,
     input_space: str | None,
     outside: str,
     style: str,
@@ -281,8 +264,7 @@ def query(
     else:
         reader = ColourReader(sensor(table.space), encoded=encoded, space=space)
         blocks = map(table.xyz, reader.read(colour, input_path))
-    at = parse_wavelengths(wavelengths)
-    results = _answers(table, blocks, table.wavelengths if at is None else at, outside)
+    results = _answers(table, blocks, table.wavelengths if wavelengths is None else wavelengths, outside)
     if plot_path is not None:
         from uplift.viz.plots import plot_lights
 

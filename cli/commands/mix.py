@@ -2,31 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 import warnings
-from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from uplift.common.errors import OutputError, UpliftWarning
 
-from ..ingredients import Ingredient, SpectrumResolver, library_ingredients, make_resolver
-from ..inputs import find_input_space, parse_wavelengths
-from ..options import (
-    NUMBER,
-    Whole,
-    atlas_option,
-    cube_option,
-    encoding_option,
-    force_option,
-    format_option,
-    input_space_option,
-    out_of_gamut_option,
-    plot_option,
-    wavelengths_option,
-)
+from .. import options
+from ..ingredients import SpectrumResolver
+from ..inputs import find_input_space
 from ..output.answers import (
     coordinates,
     describe_coordinates,
@@ -34,55 +20,42 @@ from ..output.answers import (
     hex_code,
     patch,
     print_columns,
-    print_fields,
     sparkline,
 )
-from ..output.console import emit, print_json, say
+from ..output.console import emit, has_colours, print_fields, print_json, say
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 from .query import ColourCommand
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.sensor import Sensor
-    from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
-    from uplift.design.mixing import Medium
     from uplift.design.mixing.pigments import Scattering
     from uplift.lookup import Cube
-
-SCATTERINGS = ("dispersive", "root", "constant")
-"""Values of --scattering, the default first."""
 
 
 @click.command("mix", cls=ColourCommand)
 @click.argument("words", metavar="[PARTS:]COLOUR...", nargs=-1, required=True)
 @click.option(
-    "--pigment", "kind", flag_value="pigment", default="pigment", help="Mix paints, which absorb and scatter. [default]"
+    "--pigment", "kind", flag_value="pigment", default="pigment", help="Mix paints, which absorb and scatter."
 )
 @click.option("--dye", "kind", flag_value="dye", help="Mix dyes, which absorb.")
 @click.option("--filter", "kind", flag_value="filter", help="Stack filters; PARTS is the thickness.")
 @click.option("--additive", "kind", flag_value="light", help="Add lights; PARTS is the intensity.")
-@click.option("--thickness", type=NUMBER, metavar="X", help="Thickness of the coat. [default: opaque; dyes: 1]")
+@click.option("--thickness", type=options.NUMBER, metavar="X", help="Thickness of the coat. [default: opaque; dyes: 1]")
 @click.option("--ground", metavar="COLOUR", help="Substrate of the coat. [default: white]")
 @click.option(
     "--refractive-index",
-    type=NUMBER,
+    type=options.NUMBER,
     default=1.0,
     metavar="N",
-    help="Refractive index of the binder, 1.5 for oil. [default: no surface]",
+    help="Refractive index of the binder, 1.5 for oil; 1 leaves out the surface.",
 )
-@click.option(
-    "--incidence",
-    type=click.Choice(("perpendicular", "diffuse")),
-    default="perpendicular",
-    show_default=True,
-    help="Incidence of light on the surface given by --refractive-index.",
+@options.choice(
+    "--incidence", "perpendicular", "diffuse", help="Incidence of light on the surface given by --refractive-index."
 )
-@click.option(
+@options.choice(
     "--scattering",
-    type=click.Choice(SCATTERINGS),
-    default=SCATTERINGS[0],
-    show_default=True,
+    *("dispersive", "root", "constant"),
     help="Scattering that is assumed of a paint given by one colour: dispersive is strongest on the long-wave side of "
     "an absorption, root is √R for a reflectance R, constant is 1.",
 )
@@ -91,18 +64,18 @@ SCATTERINGS = ("dispersive", "root", "constant")
     is_flag=True,
     help="Mix the colours by every model: Kubelka and Munk, Amy, Duntley, dyes, filters, and heuristics of RGB.",
 )
-@cube_option
-@atlas_option("Measured spectra whose entries are ingredients")
-@wavelengths_option
-@out_of_gamut_option("scale", "mixtures and pixels")
-@format_option("table", "json")
-@plot_option("Plot the ramp from the first ingredient to the last")
-@click.option("--steps", type=Whole(2, 1000), default=9, show_default=True, help="Number of swatches on the ramp.")
+@options.cube
+@options.atlas("Measured spectra whose entries are ingredients")
+@options.output_wavelengths
+@options.out_of_gamut("scale", "mixtures and pixels")
+@options.output_format("table", "json")
+@options.plot("Plot the ramp from the first ingredient to the last")
+@click.option("--steps", type=options.Whole(2, 1000), default=9, help="Number of swatches on the ramp.")
 @click.option("--over", metavar="IMAGE", help="Image to paint over (EXR, PNG, JPEG, TIFF).")
-@click.option("-o", "--output", metavar="EXR", help="With --over: image to write.")
-@encoding_option("the image of --over")
-@input_space_option("the colours and of the image of --over", default="that of the cube")
-@force_option
+@options.output("With --over: image to write, as .exr.")
+@options.encoding("the image of --over")
+@options.input_space("the colours and of the image of --over", default="that of the cube")
+@options.force
 def command(
     words: tuple[str, ...],
     kind: str,
@@ -114,7 +87,7 @@ def command(
     theories: bool,
     cube_path: str | None,
     files: tuple[str, ...],
-    wavelengths: str | None,
+    wavelengths: Array | None,
     method: str,
     style: str,
     plot_path: str | None,
@@ -142,43 +115,14 @@ def command(
       uplift mix '#c8342a/#601810' --thickness 0.4 --over painting.exr -o glazed.exr
       uplift mix --theories '#005fa0' '#ffd200'
     """
+    import numpy as np
+
+    from uplift.atlas import Atlas, read_atlas
     from uplift.common.files import check_outputs
-    from uplift.design.mixing import Medium, Surface
+    from uplift.design.mixing import Ingredients, Medium, Surface, make_coat, mix, overpainter
+    from uplift.design.mixing.coats import COATS, ramp
+    from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, dispersive
     from uplift.lookup import load
-
-    _check_usage(kind, ground, over, output, plot_path)
-    if theories and any(option is not None for option in (thickness, ground, over, plot_path)):
-        raise click.UsageError("--theories mixes opaque colours, without --thickness, --ground, --over and --plot.")
-    check_outputs((plot_path, output), inputs=(cube_path, over, *files), force=force)
-    cube = load(cube_path)
-    sensor = cube.data.sensor
-    surface = Surface.of_index(refractive_index, incidence)
-    space = find_input_space(input_space)
-    listed = cube.resolve_wavelengths(parse_wavelengths(wavelengths))
-    resolver = make_resolver(cube, files, listed, space)
-    ingredients = resolver.ingredients(words)
-    if theories:
-        _print_theories(cube, ingredients, method, style)
-    elif over is not None and output is not None:
-        medium = Medium(thickness, surface, _scattering(scattering, sensor))
-        recipe = {
-            "kind": kind,
-            "of": [[one.parts, one.name] for one in ingredients],
-            "thickness": thickness,
-            "surface": asdict(surface),
-            "scattering": scattering,
-        }
-        _paint_over(cube, ingredients, medium, recipe, over, output, encoding, method, space, force=force)
-    else:
-        medium = Medium(thickness, surface, _scattering(scattering, sensor, listed))
-        mixture = _mix(resolver, kind, ingredients, medium, ground, steps, method)
-        if plot_path is not None:
-            _plot(cube, mixture, plot_path, force=force)
-        PRINTERS[style](cube, mixture)
-
-
-def _check_usage(kind: str, ground: str | None, over: str | None, output: str | None, plot_path: str | None) -> None:
-    from uplift.design.mixing.coats import COATS
 
     if (over is None) != (output is None):
         raise click.UsageError("--over IMAGE and --output EXR require each other.")
@@ -186,68 +130,78 @@ def _check_usage(kind: str, ground: str | None, over: str | None, output: str | 
         raise click.UsageError("--ground applies to coats of --pigment or --dye, without --over.")
     if over is not None and plot_path is not None:
         raise click.UsageError("--plot shows a mixture and does not apply to --over.")
+    if theories and any(option is not None for option in (thickness, ground, over, plot_path)):
+        raise click.UsageError("--theories mixes opaque colours, without --thickness, --ground, --over and --plot.")
     if output is not None and not output.lower().endswith(".exr"):
         raise OutputError("painted images are OpenEXR files", path=output, hint="give a file name ending in .exr")
+    check_outputs((plot_path, output), inputs=(cube_path, over, *files), force=force)
+    cube = load(cube_path)
+    sensor, space = cube.data.sensor, find_input_space(input_space)
+    further = np.array([]) if theories or over is not None else cube.resolve_wavelengths(wavelengths)
+    grid = np.concatenate([sensor.wavelengths, further])  # for colours, followed by those of the output
+    resolver = SpectrumResolver(cube, read_atlas(*files) if files else Atlas(), grid, space)
+    names, parts, spectra, on_black = zip(*map(resolver.ingredient, words), strict=True)
+    ingredients = Ingredients(np.stack(spectra), on_black)
+    if theories:
+        _print_theories(cube, names, np.array(parts), ingredients.spectra, method, style)
+        return
+    assumed: dict[str, Scattering] = {"root": SQUARE_ROOT, "constant": CONSTANT}
+    law = assumed.get(scattering) or dispersive(sensor, further)
+    medium = Medium(thickness, Surface.of_index(refractive_index, incidence), law)
+    if over is not None and output is not None:
+        enable_jit_cache()
+        from uplift.io.texture import convert
+
+        recipe = {
+            "kind": kind,
+            "of": [list(pair) for pair in zip(parts, names, strict=True)],
+            "thickness": thickness,
+            "surface": asdict(medium.surface),
+            "scattering": scattering,
+        }
+        coat = make_coat(kind, ingredients, parts, medium)
+        painter = overpainter(cube, coat, recipe, encoding=encoding, out_of_gamut=method, space=space)
+        with progress_bar("rows") as progress:
+            painted = convert(painter, over, output, force=force, progress=progress)
+        for warning in painted.warnings:
+            warnings.warn(warning, stacklevel=1)
+        say(f"{output}: {painted.counts.pixels:,} pixels painted over")
+        return
+    from uplift.colorimetry.gamut import map_to_gamut
+
+    amounts = np.concatenate([np.array(parts)[None], ramp(parts, steps)])
+    mixed = mix(kind, ingredients, amounts, medium, resolver.spectrum(ground or "white"))
+    count = len(sensor.wavelengths)
+    mapped = map_to_gamut(sensor.rgb(mixed[:, :count]), sensor, method)
+    if mapped.outside[0]:
+        problem = f"the mixture lies outside [0, 1]: mapped into the gamut ({method})"
+        warnings.warn(UpliftWarning(problem), stacklevel=1)
+    mixture = Mixture(kind, names, amounts, further, mixed[0, count:], mapped.rgb)
+    if plot_path is not None:
+        _plot(cube, mixture, plot_path, force=force)
+    if style == "json":
+        _print_json(cube, mixture)
+    else:
+        _print_table(cube, mixture)
 
 
-def _scattering(name: str, sensor: Sensor, further: Array | tuple[()] = ()) -> Scattering:
-    """Return the scattering of spectra at the wavelengths of a sensor, followed by ``further`` wavelengths in nm."""
-    from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, dispersive
-
-    if name == "dispersive":
-        return dispersive(sensor, further)
-    return SQUARE_ROOT if name == "root" else CONSTANT
-
-
-def _print_theories(cube: Cube, ingredients: list[Ingredient], method: str, style: str) -> None:
-    """Mix the colours of the ingredients by every model of `uplift.design.mixing.mixers`, and print the results."""
+def _print_theories(cube: Cube, names: tuple[str, ...], parts: Array, spectra: Array, method: str, style: str) -> None:
+    """Mix the colours of spectra by every model of `uplift.design.mixing.theories`, and print the results."""
     import numpy as np
 
     from uplift.colorimetry.gamut import map_to_gamut
     from uplift.design.mixing.theories import mixers
 
     sensor = cube.data.sensor
-    spectra = np.stack([one.spectrum[: len(sensor.wavelengths)] for one in ingredients])
-    rgb, parts = np.clip(sensor.rgb(spectra), 0, 1), np.array([one.parts for one in ingredients])
+    rgb = np.clip(sensor.rgb(spectra), 0, 1)
     mixed = {mixer.title: map_to_gamut(mixer.mix(rgb, parts)[None], sensor, method).rgb[0] for mixer in mixers(cube)}
     if style == "json":
-        rows = [
-            {"theory": title, "rgb": rgb.tolist(), "hex": hex_code(cube, rgb), **coordinates(cube, rgb)}
-            for title, rgb in mixed.items()
-        ]
-        print_json({"names": [one.name for one in ingredients], "theories": rows}, indent=None)
+        rows = [{"theory": title, **_colour(cube, rgb)} for title, rgb in mixed.items()]
+        print_json({"names": names, "theories": rows}, indent=None)
         return
     for title, rgb in mixed.items():
-        swatch = f"{patch(cube, rgb)}  " if sys.stdout.isatty() else ""
+        swatch = f"{patch(cube, rgb)}  " if has_colours() else ""
         emit(f"{swatch}{hex_code(cube, rgb)}  {format_rgb(rgb)}  {title}")
-
-
-def _paint_over(
-    cube: Cube,
-    ingredients: list[Ingredient],
-    medium: Medium,
-    recipe: Mapping[str, object],
-    image: str,
-    output: str,
-    encoding: str,
-    method: str,
-    space: ImageSpace | None,
-    *,
-    force: bool,
-) -> None:
-    """Paint over an image, write the result with the recipe of the coat, and print the number of pixels."""
-    enable_jit_cache()
-    from uplift.design.mixing import make_coat, overpainter
-    from uplift.io.texture import convert
-
-    mixed = library_ingredients(ingredients, len(cube.data.sensor.wavelengths))
-    coat = make_coat(str(recipe["kind"]), mixed, [one.parts for one in ingredients], medium)
-    painter = overpainter(cube, coat, recipe, encoding=encoding, out_of_gamut=method, space=space)
-    with progress_bar("rows") as progress:
-        painted = convert(painter, image, output, force=force, progress=progress)
-    for warning in painted.warnings:
-        warnings.warn(warning, stacklevel=1)
-    say(f"{output}: {painted.counts.pixels:,} pixels painted over")
 
 
 @dataclass(frozen=True, eq=False)
@@ -259,47 +213,16 @@ class Mixture:
     """
 
     kind: str
-    ingredients: list[Ingredient]
+    names: tuple[str, ...]
     parts: Array
     wavelengths: Array
     spectrum: Array
     rgb: Array
 
     @property
-    def names(self) -> list[str]:
-        return [one.name for one in self.ingredients]
-
-    @property
     def recipe(self) -> str:
         """The ingredients as '2 of blue, 1 of yellow'."""
-        return ", ".join(f"{one.parts:g} of {one.name}" for one in self.ingredients)
-
-
-def _mix(
-    resolver: SpectrumResolver,
-    kind: str,
-    ingredients: list[Ingredient],
-    medium: Medium,
-    ground: str | None,
-    steps: int,
-    method: str,
-) -> Mixture:
-    """Mix ingredients, and a ramp of ``steps`` through them. Warns if the mixture lies outside [0, 1]."""
-    import numpy as np
-
-    from uplift.colorimetry.gamut import map_to_gamut
-    from uplift.design.mixing.coats import mix, ramp
-
-    sensor = resolver.cube.data.sensor
-    parts = np.array([one.parts for one in ingredients])
-    amounts = np.concatenate([parts[None], ramp(parts, steps)])
-    spectra = mix(kind, library_ingredients(ingredients), amounts, medium, resolver.spectrum(ground or "white"))
-    count = len(sensor.wavelengths)
-    mapped = map_to_gamut(sensor.rgb(spectra[:, :count]), sensor, method)
-    if mapped.outside[0]:
-        problem = f"the mixture lies outside [0, 1]: mapped into the gamut ({method})"
-        warnings.warn(UpliftWarning(problem), stacklevel=1)
-    return Mixture(kind, ingredients, amounts, resolver.wavelengths[count:], spectra[0, count:], mapped.rgb)
+        return ", ".join(f"{parts:g} of {name}" for parts, name in zip(self.parts[0], self.names, strict=True))
 
 
 def _plot(cube: Cube, mixture: Mixture, path: str, *, force: bool) -> None:
@@ -314,18 +237,21 @@ def _plot(cube: Cube, mixture: Mixture, path: str, *, force: bool) -> None:
     plot_strips(strips, path, force=force)
 
 
+def _colour(cube: Cube, rgb: Array) -> dict[str, Any]:
+    return {"rgb": rgb.tolist(), "hex": hex_code(cube, rgb), **coordinates(cube, rgb)}
+
+
 def _print_json(cube: Cube, mixture: Mixture) -> None:
-    steps = [
-        {"parts": parts.tolist(), "rgb": rgb.tolist(), "hex": hex_code(cube, rgb), **coordinates(cube, rgb)}
-        for parts, rgb in zip(mixture.parts, mixture.rgb, strict=True)
-    ]
+    mixed, *ramp = (
+        {"parts": parts.tolist(), **_colour(cube, rgb)} for parts, rgb in zip(mixture.parts, mixture.rgb, strict=True)
+    )
     fields = {
         "kind": mixture.kind,
         "names": mixture.names,
-        **steps[0],
+        **mixed,
         "wavelengths": mixture.wavelengths.tolist(),
         "spectrum": mixture.spectrum.tolist(),
-        "ramp": steps[1:],
+        "ramp": ramp,
     }
     print_json(fields, indent=None)
 
@@ -342,6 +268,3 @@ def _print_table(cube: Cube, mixture: Mixture) -> None:
     print_fields(fields, {"linear RGB": patch(cube, rgb), "ramp": ramp})
     emit("")
     print_columns(wavelengths, spectrum)
-
-
-PRINTERS: dict[str, Callable[[Cube, Mixture], None]] = {"table": _print_table, "json": _print_json}

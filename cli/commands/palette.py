@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,16 +12,15 @@ import click
 
 from uplift.common.errors import OptionError
 
-from ..options import force_option, format_option, plot_option
+from .. import options
 from ..output.console import has_colours, make_table, paragraph, print_json, say, show
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
-    from rich.text import Text
 
     from uplift.common.arrays import Array
-    from uplift.design.palette.design import Design, Matrix, UnmetGoal
+    from uplift.design.palette.design import Design, Matrix
     from uplift.design.palette.palette import Palette, SpectrumSpec
 
 LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of the model. * designed"
@@ -28,11 +28,9 @@ LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of th
 
 @click.command("palette")
 @click.argument("spec", metavar="SPEC.toml", type=click.Path())
-@click.option(
-    "-o", "--output", metavar="FILE", help="Write the designed materials as an atlas; CSV if FILE ends in .csv."
-)
-@plot_option("Plot the matrix of colours")
-@plot_option("Plot the spectra of lights and materials", "--plot-spectra", "spectra_path")
+@options.output("Write the designed materials as an atlas; CSV if FILE ends in .csv.")
+@options.plot("Plot the matrix of colours")
+@options.plot("Plot the spectra of lights and materials", "--plot-spectra", "spectra_path")
 @click.option("--html", metavar="HTML", help="Write a page that shows the materials under any mixture of the lights.")
 @click.option(
     "--image",
@@ -46,8 +44,8 @@ LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of th
     metavar="NAME=#RRGGBB",
     help="Colour of a material in --image; repeatable. [default: greys 1, 2, …]",
 )
-@format_option("table", "json")
-@force_option
+@options.output_format("table", "json")
+@options.force
 def command(
     spec: str,
     output: str | None,
@@ -76,26 +74,34 @@ def command(
       uplift palette engine.toml --html engine.html
       uplift palette vanish.toml --format json > vanish.json
     """
-    from uplift.common.files import check_outputs
+    from uplift.common.files import check_outputs, write_text
     from uplift.design.palette import design, matrix, read_palette, standard_model, unmet_goals, write_designed
+    from uplift.design.palette.picture import cutaway
     from uplift.design.palette.plots import plot_matrix, plot_spectra
+    from uplift.design.palette.relight_page import page, relighting
 
     palette = read_palette(spec)
     check_outputs((output, plot_path, spectra_path, html), inputs=(*palette.sources, image), force=force)
     picture = _read_picture(palette, html, image, labels)
     solution = design(palette, standard_model(palette.sensor, palette.count))
-    PRINTERS[style](solution, matrix(solution), unmet_goals(solution))
+    colours = matrix(solution)
+    unmet = [str(goal) for goal in unmet_goals(solution)]
+    if style == "json":
+        _print_json(solution, colours, unmet)
+    else:
+        _print_table(solution, colours, unmet)
     if output is not None:
         count = write_designed(solution, output, force=force)
         say(f"{output}: {count} designed materials", err=True)
     if plot_path is not None:
-        plot_matrix(solution, matrix(solution), plot_path, force=force)
+        plot_matrix(solution, colours, plot_path, force=force)
         say(f"{plot_path}: matrix of colours", err=True)
     if spectra_path is not None:
         plot_spectra(solution, spectra_path, force=force)
         say(f"{spectra_path}: spectra", err=True)
     if html is not None:
-        _write_page(solution, Path(spec).stem, picture, html, force=force)
+        weights = cutaway(len(palette.materials)) if picture is None else picture
+        write_text(page(relighting(Path(spec).stem, solution, weights)), html, force=force)
         say(f"{html}: relighting page", err=True)
 
 
@@ -120,23 +126,28 @@ def _read_picture(
     return read_weights(image, [part.name for part in palette.materials], colours or None)
 
 
-def _write_page(design: Design, title: str, picture: NDArray[np.float32] | None, path: str, *, force: bool) -> None:
-    from uplift.common.files import write_text
-    from uplift.design.palette.picture import cutaway
-    from uplift.design.palette.relight_page import page, relighting
+def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
+    """Print a cell per material and light: colours by goal, spectra and factor model, and their differences."""
+    from rich.text import Text
 
-    weights = cutaway(len(design.palette.materials)) if picture is None else picture
-    write_text(page(relighting(title, design, weights)), path, force=force)
+    from uplift.colorimetry.srgb import hex_codes
 
-
-def _print_table(design: Design, colours: Matrix, unmet: Sequence[UnmetGoal]) -> None:
     coloured = has_colours()
     table = make_table(("material",))
     for light in design.palette.lights:
-        table.add_column(_name(light))
+        table.add_column(light.name + "*" * light.designed)
     for row, material in enumerate(design.palette.materials):
-        cells = (_cell(colours, (row, column), coloured) for column in range(len(design.palette.lights)))
-        table.add_row(_name(material), *cells)
+        cells = []
+        for at in ((row, column) for column in range(len(design.palette.lights))):
+            has_goal = not math.isnan(colours.delta_e[at])
+            cell = Text()
+            for rgb in [colours.target[at]] * has_goal + [colours.obtained[at], colours.factor[at]]:
+                (code,) = hex_codes(rgb[None])
+                cell.append("    " if coloured else code, style=f"on {code}" if coloured else "")
+                cell.append(" ")
+            error = f"{colours.delta_e[at]:.2f}" if has_goal else "–"
+            cells.append(cell.append(f" {error}, {colours.model_error[at]:.2f}"))
+        table.add_row(material.name + "*" * material.designed, *cells)
     show(table)
     say()
     paragraph(LEGEND)
@@ -146,74 +157,44 @@ def _print_table(design: Design, colours: Matrix, unmet: Sequence[UnmetGoal]) ->
         say("all goals are met")
 
 
-def _name(part: SpectrumSpec) -> str:
-    return f"{part.name}*" if part.designed else part.name
-
-
-def _cell(colours: Matrix, at: tuple[int, int], coloured: bool) -> Text:
-    from rich.text import Text
-
-    from uplift.colorimetry.srgb import hex_codes
-
-    has_goal = not math.isnan(colours.delta_e[at])
-    triples = [colours.target[at]] * has_goal + [colours.obtained[at], colours.factor[at]]
-    text = Text()
-    for rgb in triples:
-        (code,) = hex_codes(rgb[None])
-        text.append("    " if coloured else code, style=f"on {code}" if coloured else "")
-        text.append(" ")
-    error = f"{colours.delta_e[at]:.2f}" if has_goal else "–"
-    return text.append(f" {error}, {colours.model_error[at]:.2f}")
-
-
-def _print_json(design: Design, colours: Matrix, unmet: Sequence[UnmetGoal]) -> None:
-    palette = design.palette
+def _print_json(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
+    palette, model = design.palette, design.model
+    cells = []
+    for at in product(range(len(palette.materials)), range(len(palette.lights))):
+        has_goal = not math.isnan(colours.delta_e[at])
+        cells.append(
+            {
+                "material": palette.materials[at[0]].name,
+                "light": palette.lights[at[1]].name,
+                "wanted": colours.target[at].tolist() if has_goal else None,
+                "obtained": colours.obtained[at].tolist(),
+                "factor": colours.factor[at].tolist(),
+                "missed": float(colours.delta_e[at]) if has_goal else None,
+                "model_error": float(colours.model_error[at]),
+            }
+        )
     fields = {
         "wavelengths": palette.sensor.wavelengths.tolist(),
-        "coefficients": design.model.count,
-        "lights": [
-            _part(part, samples, design.model.light(samples))
-            for part, samples in zip(palette.lights, design.powers, strict=True)
-        ],
-        "materials": [
-            _part(part, samples, design.model.reflectance(samples))
-            for part, samples in zip(palette.materials, design.reflectances, strict=True)
-        ],
+        "coefficients": model.count,
+        "lights": _parts(palette.lights, design.powers, model.light),
+        "materials": _parts(palette.materials, design.reflectances, model.reflectance),
         "free": {name: rgb.tolist() for name, rgb in design.free.items()},
-        "colours": [
-            _colour(colours, (row, column), material.name, light.name)
-            for row, material in enumerate(palette.materials)
-            for column, light in enumerate(palette.lights)
-        ],
-        "to_rgb": design.model.matrix.tolist(),
-        "missed": [str(goal) for goal in unmet],
+        "colours": cells,
+        "to_rgb": model.matrix.tolist(),
+        "missed": unmet,
     }
     print_json(fields)
 
 
-def _part(part: SpectrumSpec, samples: Array, coefficients: Array) -> dict[str, object]:
-    return {
-        "name": part.name,
-        "designed": part.designed,
-        "samples": samples.tolist(),
-        "coefficients": coefficients.tolist(),
-    }
-
-
-def _colour(colours: Matrix, at: tuple[int, int], material: str, light: str) -> dict[str, object]:
-    has_goal = not math.isnan(colours.delta_e[at])
-    return {
-        "material": material,
-        "light": light,
-        "wanted": colours.target[at].tolist() if has_goal else None,
-        "obtained": colours.obtained[at].tolist(),
-        "factor": colours.factor[at].tolist(),
-        "missed": float(colours.delta_e[at]) if has_goal else None,
-        "model_error": float(colours.model_error[at]),
-    }
-
-
-PRINTERS: dict[str, Callable[[Design, Matrix, Sequence[UnmetGoal]], None]] = {
-    "table": _print_table,
-    "json": _print_json,
-}
+def _parts(
+    specs: Sequence[SpectrumSpec], spectra: Iterable[Array], coefficients: Callable[[Array], Array]
+) -> list[dict[str, object]]:
+    return [
+        {
+            "name": part.name,
+            "designed": part.designed,
+            "samples": samples.tolist(),
+            "coefficients": coefficients(samples).tolist(),
+        }
+        for part, samples in zip(specs, spectra, strict=True)
+    ]

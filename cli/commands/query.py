@@ -6,7 +6,7 @@ import functools
 import re
 import sys
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Any
@@ -14,36 +14,21 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from uplift.common.errors import UpliftWarning
+from uplift.common.text import printable
 
+from .. import options
 from ..colours import ColourReader, find_point
-from ..inputs import find_input_space, parse_wavelengths
-from ..options import (
-    cube_option,
-    encoded_option,
-    fill_option,
-    force_option,
-    format_option,
-    input_option,
-    input_space_option,
-    light_option,
-    out_of_gamut_option,
-    plot_option,
-    stacked,
-    wavelengths_option,
-    xyz_options,
-)
+from ..inputs import find_input_space
 from ..output.answers import (
     coordinates,
     describe_coordinates,
-    display_codes,
     format_rgb,
     hex_code,
     patch,
     print_columns,
-    print_fields,
     sparkline,
 )
-from ..output.console import csv_writer, emit, has_colours, make_table, print_json_answers, show
+from ..output.console import csv_writer, emit, has_colours, print_fields, print_json_answers, say
 from ..startup import hide_drawing_notes
 
 if TYPE_CHECKING:
@@ -64,27 +49,23 @@ class ColourCommand(click.Command):
         return super().parse_args(ctx, [f" {arg}" if NEGATIVE_NUMBER.match(arg) else arg for arg in args])
 
 
-def colour_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Argument and options of the colours of a query, and of how they are answered; for `ask`."""
-    return stacked(
-        click.argument("colour", nargs=-1),
-        cube_option,
-        input_option,
-        xyz_options("Colour by XYZ under the cube's illuminant, where white has Y = 1; also outside the cube's space."),
-        encoded_option,
-        wavelengths_option,
-        click.option(
-            "--mode",
-            type=click.Choice(("spectra", "moments", "refined", "nearest")),
-            default="spectra",
-            show_default=True,
-            help="Interpolate spectra (exact), coefficients (fast), coefficients with refinement, or use the nearest "
-            "node.",
-        ),
-        input_space_option("the colours", default="that of the cube"),
-        out_of_gamut_option(),
-        fill_option,
-    )(function)
+colour_options = options.stacked(
+    click.argument("colour", nargs=-1),
+    options.cube,
+    options.input_file,
+    options.xyz("Colour by XYZ under the cube's illuminant, where white has Y = 1; also outside the cube's space."),
+    options.encoded,
+    options.output_wavelengths,
+    options.choice(
+        "--mode",
+        *("spectra", "moments", "refined", "nearest"),
+        help="Interpolate spectra (exact), coefficients (fast), coefficients with refinement, or use the nearest node.",
+    ),
+    options.input_space("the colours", default="that of the cube"),
+    options.out_of_gamut(),
+    options.fill,
+)
+"""Argument and options of the colours of a query, and of how they are answered; for `ask`."""
 
 
 def ask(
@@ -95,7 +76,7 @@ def ask(
     xy: tuple[float, float] | None,
     luminance: float | None,
     encoded: bool,
-    wavelengths: str | None,
+    wavelengths: Array | None,
     mode: str,
     input_space: str | None,
     method: str,
@@ -108,10 +89,15 @@ def ask(
     space = find_input_space(input_space)
     point, single = find_point(colour, input_path, xyz, xy, luminance)
     cube = load(cube_path)
-    at = parse_wavelengths(wavelengths)
-    stream = QueryStream(cube, method, at, mode, _find_lights(lights, cube), fill_missing=fill_missing)
+    found: list[Light] = []
+    if lights:
+        from uplift.colorimetry.observer import light
+
+        lit = (light(name, cube.observer, *cube.data.sensor.range) for name in lights)
+        found = list({each.name: each for each in lit}.values())
+    stream = QueryStream(cube, method, wavelengths, mode, found, fill_missing=fill_missing)
     if point is not None:
-        return stream, [list(query_xyz(cube, [point], at, mode, stream.lights))], single
+        return stream, [list(query_xyz(cube, [point], wavelengths, mode, found))], single
     bounded = method == "error" and input_space is None
     reader = ColourReader(cube.data.sensor, encoded=encoded, bounded=bounded, space=space)
     return stream, stream.results(reader.read(colour, input_path)), single
@@ -119,10 +105,10 @@ def ask(
 
 @click.command("query", cls=ColourCommand)
 @colour_options
-@light_option("Illuminant under which colour and standard error are shown", "none")
-@format_option("table", "json", "csv")
-@plot_option("Plot the spectra")
-@force_option
+@options.light("Illuminant under which colour and standard error are shown", "none")
+@options.output_format("table", "json", "csv")
+@options.plot("Plot the spectra")
+@options.force
 def command(lights: tuple[str, ...], style: str, plot_path: str | None, force: bool, **colours: Any) -> None:
     """Query the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
 
@@ -158,18 +144,19 @@ def command(lights: tuple[str, ...], style: str, plot_path: str | None, force: b
         hide_drawing_notes()
         results = list(results)
         plot_spectra(stream.cube, list(chain.from_iterable(results)), plot_path, force=force)
-    WRITERS[style](stream.cube, results, single)
+    if style == "json":
+        answers = chain.from_iterable(results)
+        print_json_answers((result_object(stream.cube, answer) for answer in answers), single=single)
+    elif style == "csv":
+        _print_csv(stream.cube, chain.from_iterable(results))
+    elif single:
+        (result,) = chain.from_iterable(results)
+        print_fields(_fields(stream.cube, result), {"linear RGB": patch(stream.cube, result.rgb)})
+        emit("")
+        print_columns(result.wavelengths, result.reflectance)
+    else:
+        _print_lines(stream.cube, chain.from_iterable(results))
     stream.warn()
-
-
-def _find_lights(names: Sequence[str], cube: Cube) -> list[Light]:
-    """Return illuminants by name at the wavelengths of a cube, each once. Raises `UnknownNameError`."""
-    if not names:
-        return []
-    from uplift.colorimetry.observer import light
-
-    lights = (light(name, cube.observer, *cube.data.sensor.range) for name in names)
-    return list({each.name: each for each in lights}.values())
 
 
 @dataclass
@@ -217,11 +204,6 @@ class QueryStream:
             warnings.warn(UpliftWarning(problem), stacklevel=1)
 
 
-def _print_json(cube: Cube, blocks: Iterable[Sequence[QueryResult]], single: bool) -> None:
-    objects = (result_object(cube, result) for result in chain.from_iterable(blocks))
-    print_json_answers(objects, single=single)
-
-
 def result_object(cube: Cube, result: QueryResult) -> dict[str, Any]:
     """Return an answer as JSON values."""
     return {
@@ -247,36 +229,6 @@ def result_object(cube: Cube, result: QueryResult) -> dict[str, Any]:
         },
         "unlike_atlas": result.unlike_atlas,
     }
-
-
-def _print_csv(cube: Cube, blocks: Iterable[Sequence[QueryResult]], single: bool) -> None:
-    """Print a row per colour: r, g, b, round-trip ΔE00, errors, entry, reflectance at each wavelength."""
-    writer = csv_writer()
-    errors: list[str] = []
-    for number, result in enumerate(chain.from_iterable(blocks)):
-        if number == 0:
-            wavelengths = [f"{wavelength:g}" for wavelength in result.wavelengths]
-            names = ["", *(f"_{name}" for name in result.standard_errors)]
-            errors = [f"{kind}{name}" for name in names for kind in ("standard_error", "error_bound")]
-            codes = [f"hex_{name}" for name in result.light_xyz]
-            writer.write(["r", "g", "b", "delta_e_2000", *errors, *codes, "entry", *wavelengths])
-        expected: list[object] = [value for _, *pair in _errors(cube, result) for value in pair]
-        unknown = [""] * (len(errors) - len(expected))
-        codes = [code for _, code in _light_colours(cube, result).values()]
-        numbers = [*result.rgb.tolist(), result.delta_e_2000]
-        writer.write([*numbers, *expected, *unknown, *codes, result.entry or "", *result.reflectance.tolist()])
-
-
-def _print_table(cube: Cube, blocks: Iterable[Sequence[QueryResult]], single: bool) -> None:
-    """Print the fields of a single colour, or a line per colour."""
-    for number, block in enumerate(blocks):
-        if single:
-            (result,) = block
-            print_fields(_fields(cube, result), {"linear RGB": patch(cube, result.rgb)})
-            emit("")
-            print_columns(result.wavelengths, result.reflectance)
-        else:
-            _print_lines(cube, block, heading=number == 0)
 
 
 def _fields(cube: Cube, result: QueryResult) -> dict[str, str]:
@@ -316,26 +268,36 @@ def _fields(cube: Cube, result: QueryResult) -> dict[str, str]:
     return fields
 
 
-def _print_lines(cube: Cube, results: Sequence[QueryResult], *, heading: bool) -> None:
-    from rich.text import Text
-
-    swatches = has_colours()
-    lights = [cube.data.error_illuminant, *results[0].standard_errors] if results[0].standard_errors else []
-    last = [f"± {light}" for light in lights] or ["spectrum"]
-    headings = ("",) * swatches + ("hex", "linear RGB", "ΔE00", "atlas entry", *last)
-    table = make_table(headings, box=None, show_header=heading)
+def _print_csv(cube: Cube, results: Iterable[QueryResult]) -> None:
+    """Print a row per colour: r, g, b, round-trip ΔE00, errors, entry, reflectance at each wavelength."""
+    writer = csv_writer()
+    columns: list[str] = []
     for result in results:
-        red, green, blue = display_codes(cube, result.rgb)
-        errors = [f"{error:.2f}" for _, error, _ in _errors(cube, result)]
-        table.add_row(
-            *(Text("   ", style=f"on rgb({red},{green},{blue})"),) * swatches,
-            hex_code(cube, result.rgb),
-            " ".join(f"{value:.3f}" for value in result.rgb),
-            f"{result.delta_e_2000:.2g}",
-            result.entry or ("unlike the atlas" if lights and result.unlike_atlas else ""),
-            *(errors if lights else [sparkline(result.reflectance, 16)]),
-        )
-    show(table)
+        cells = dict(zip("rgb", result.rgb.tolist(), strict=True)) | {"delta_e_2000": result.delta_e_2000}
+        cells |= {"standard_error": result.standard_error, "error_bound": result.error_bound}
+        for light, error in result.standard_errors.items():
+            cells |= {f"standard_error_{light}": error, f"error_bound_{light}": result.error_bounds[light]}
+        cells |= {f"hex_{light}": code for light, (_, code) in _light_colours(cube, result).items()}
+        cells["entry"] = result.entry
+        if not columns:
+            columns = list(cells)
+            writer.write([*columns, *(f"{wavelength:g}" for wavelength in result.wavelengths)])
+        writer.write([*map(cells.get, columns), *result.reflectance.tolist()])
+
+
+def _print_lines(cube: Cube, results: Iterable[QueryResult]) -> None:
+    """Print a heading and a line per colour; the entry, of any length, comes last."""
+    for number, result in enumerate(results):
+        errors = {f"± {light}": f"{error:.2f}" for light, error, _ in _errors(cube, result)}
+        if number == 0:
+            names = list(errors) or [f"{'spectrum':<16}"]
+            swatch = " " * 5 * has_colours()
+            say(f"{swatch}hex      {'linear RGB':<17}  {'ΔE00':<7}  {'  '.join(names)}  atlas entry")
+        last = [f"{error:>{len(name)}}" for name, error in errors.items()] or [sparkline(result.reflectance, 16)]
+        rgb = " ".join(f"{value:.3f}" for value in result.rgb)
+        entry = result.entry or ("unlike the atlas" if errors and result.unlike_atlas else "")
+        line = f"{hex_code(cube, result.rgb)}  {rgb}  {result.delta_e_2000:<7.2g}  {'  '.join(last)}  {entry}"
+        emit((f"{patch(cube, result.rgb, 3)}  " if has_colours() else "") + printable(line.rstrip()))
 
 
 def _errors(cube: Cube, result: QueryResult) -> list[tuple[str, float, float]]:
@@ -348,26 +310,16 @@ def _errors(cube: Cube, result: QueryResult) -> list[tuple[str, float, float]]:
 
 def _light_colours(cube: Cube, result: QueryResult) -> dict[str, tuple[Array, str]]:
     """Return linear sRGB (3,) and '#rrggbb' of an answer by light; the white of each light is that of the screen."""
-    if not result.light_xyz:
-        return {}
     from uplift.colorimetry.srgb import hex_codes
 
-    matrices = _to_srgb(tuple(result.light_xyz), cube.observer, cube.data.sensor.range)
-    colours = {light: matrix @ result.light_xyz[light] for light, matrix in matrices.items()}
+    to_srgb = functools.partial(_to_srgb, cube.observer, cube.data.sensor.range)
+    colours = {light: to_srgb(light) @ xyz for light, xyz in result.light_xyz.items()}
     return {light: (rgb, hex_codes(rgb[None])[0]) for light, rgb in colours.items()}
 
 
-@functools.lru_cache(maxsize=1)
-def _to_srgb(lights: tuple[str, ...], observer: str, limits: tuple[float, float, float]) -> dict[str, Array]:
-    """Return the matrices (3, 3) from XYZ to linear sRGB by light."""
+@functools.cache
+def _to_srgb(observer: str, limits: tuple[float, float, float], light: str) -> Array:
+    """Return the matrix (3, 3) from XYZ under a light to linear sRGB."""
     from uplift.colorimetry.observer import display_sensors
 
-    return {each.illuminant: each.xyz_to_rgb for each in display_sensors(lights, observer, *limits)}
-
-
-WRITERS: dict[str, Callable[[Cube, Iterable[Sequence[QueryResult]], bool], None]] = {
-    "table": _print_table,
-    "json": _print_json,
-    "csv": _print_csv,
-}
-"""Printers of blocks of results, each before the next one is computed."""
+    return display_sensors((light,), observer, *limits)[0].xyz_to_rgb

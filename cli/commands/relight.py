@@ -3,31 +3,19 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from .. import options
 from ..inputs import expand_patterns, find_input_space
-from ..options import (
-    atlas_option,
-    encoding_option,
-    force_option,
-    format_option,
-    input_space_option,
-    light_option,
-    out_of_gamut_option,
-)
 from ..output.console import make_table, print_json, say, show
-from ..output.progress import spinner
+from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.spaces import ImageSpace
     from uplift.lookup import Cube
-    from uplift.report.relight import Relit
 
 SAMPLE, SAMPLE_ATLAS = "still-life.png", "macbeth"
 PAGE = ".html"
@@ -39,22 +27,17 @@ MAX_SIDE = 960
 
 @click.command("relight")
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
-@light_option("Illuminant", "A FL11 HP1")
+@options.light("Illuminant", "A FL11 HP1")
 @click.option("--cube", "cube_path", metavar="FILE", help="Cube whose spectra are shown as well.")
-@atlas_option("Measured spectra; a cube is built from them and shown as well")
-@encoding_option("the images")
-@input_space_option("the images")
-@out_of_gamut_option("clip", "pixels")
-@click.option(
-    "-o",
-    "--output",
-    metavar="FILE",
-    default="relit.png",
-    show_default=True,
-    help="File to write: a picture if it ends in .png, .svg or .pdf, a page if it ends in .html.",
+@options.atlas("Measured spectra; a cube is built from them and shown as well")
+@options.encoding("the images")
+@options.input_space("the images")
+@options.out_of_gamut("clip", "pixels")
+@options.output(
+    "File to write: a picture if it ends in .png, .svg or .pdf, a page if it ends in .html.", default="relit.png"
 )
-@format_option("table", "json")
-@force_option
+@options.output_format("table", "json")
+@options.force
 def command(
     images: tuple[str, ...],
     lights: tuple[str, ...],
@@ -84,42 +67,58 @@ def command(
     """
     enable_jit_cache()
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
+    from uplift.common.errors import OutputError
     from uplift.common.files import check_output
+    from uplift.io.texture.picture import read_picture
+    from uplift.report.relight import RGB_PRODUCT, relight, write_relit_sheet
+    from uplift.report.relight_page import write_relit_page
     from uplift.samples import sample_path
+    from uplift.viz.figure import SUFFIXES
 
     if cube_path is not None and files:
         raise click.UsageError("--cube and --atlas are alternatives: give one of the two.")
-    write = _writer(output)
+    suffix = Path(output).suffix.lower()
+    if suffix not in (*SUFFIXES, PAGE):
+        raise OutputError(
+            f"the suffix of relit images must be one of {', '.join((*SUFFIXES, PAGE))}, got '{suffix}'",
+            code="unknown-suffix",
+            path=output,
+            hint="give a file name ending in .png for a picture, or .html for a page",
+        )
     paths = expand_patterns(images) or [str(sample_path(SAMPLE))]
     check_output(output, inputs=(*paths, cube_path, *files), force=force)
     if not images and cube_path is None:
         files = files or (SAMPLE_ATLAS,)
-    with spinner("computing spectra"):
+    with progress_bar("computing spectra"):
         cubes = _cubes(cube_path, files)
-        space = find_input_space(input_space)
-        read = partial(_relight, cubes=cubes, encoding=encoding, method=method, space=space)
-        relit = [read(path, lights=lights or RELIGHT_LIGHTS) for path in paths]
+        sensor, space = cubes["without atlas"].data.sensor, find_input_space(input_space)
+        relit = []
+        for path in paths:
+            picture = read_picture(path, sensor, max_side=MAX_SIDE, encoding=encoding, out_of_gamut=method, space=space)
+            for warning in picture.warnings:
+                warnings.warn(warning, stacklevel=1)
+            name, opacity, reduction = Path(path).name, picture.opacity, picture.reduction
+            relit.append(
+                relight(name, picture.rgb, cubes, lights or RELIGHT_LIGHTS, opacity=opacity, reduction=reduction)
+            )
+        write = write_relit_page if suffix == PAGE else write_relit_sheet
         write(relit, output, force=force)
-    WRITERS[style](relit, output)
-
-
-def _writer(output: str) -> Callable[..., object]:
-    from uplift.common.errors import OutputError
-    from uplift.report.relight import write_relit_sheet
-    from uplift.report.relight_page import write_relit_page
-    from uplift.viz.figure import SUFFIXES
-
-    suffix = Path(output).suffix.lower()
-    if suffix == PAGE:
-        return write_relit_page
-    if suffix in SUFFIXES:
-        return write_relit_sheet
-    raise OutputError(
-        f"the suffix of relit images must be one of {', '.join((*SUFFIXES, PAGE))}, got '{suffix}'",
-        code="unknown-suffix",
-        path=output,
-        hint="give a file name ending in .png for a picture, or .html for a page",
-    )
+    rows = []  # ΔE00 of every method from the products of RGB
+    for image in relit:
+        for rendering in image.renderings:
+            for spectra in image.methods[1:]:
+                found = rendering.difference(RGB_PRODUCT, spectra)
+                key = {"image": image.name, "light": rendering.light, "spectra": spectra}
+                rows.append(key | {"mean": found.mean, "p95": found.p95, "max": found.max})
+    if style == "json":
+        print_json({"output": output, "differences": rows})
+        return
+    table = make_table(("image", "light", "spectra"), ("mean ΔE00", "95 %", "largest"))
+    for row in rows:
+        table.add_row(*(each if isinstance(each, str) else f"{each:.2f}" for each in row.values()))
+    show(table)
+    names = ", ".join(image.name for image in relit)
+    say(f"{output}: {names} under {', '.join(each.light for each in relit[0].renderings)}")
 
 
 def _cubes(path: str | None, atlases: tuple[str, ...]) -> dict[str, Cube]:
@@ -134,47 +133,3 @@ def _cubes(path: str | None, atlases: tuple[str, ...]) -> dict[str, Cube]:
 
         cubes[f"with {', '.join(Path(atlas).stem for atlas in atlases)}"] = build(atlases, dim=DIM)
     return cubes
-
-
-def _relight(
-    path: str, cubes: dict[str, Cube], lights: tuple[str, ...], encoding: str, method: str, space: ImageSpace | None
-) -> Relit:
-    from uplift.io.texture.picture import read_picture
-    from uplift.report.relight import relight
-
-    sensor = next(iter(cubes.values())).data.sensor
-    picture = read_picture(path, sensor, max_side=MAX_SIDE, encoding=encoding, out_of_gamut=method, space=space)
-    for warning in picture.warnings:
-        warnings.warn(warning, stacklevel=1)
-    return relight(Path(path).name, picture.rgb, cubes, lights, opacity=picture.opacity, reduction=picture.reduction)
-
-
-def _as_table(relit: list[Relit], output: str) -> None:
-    table = make_table(("image", "light", "spectra"), ("mean ΔE00", "95 %", "largest"))
-    for row in _rows(relit):
-        figures = (f"{row[name]:.2f}" for name in ("mean", "p95", "max"))
-        table.add_row(row["image"], row["light"], row["spectra"], *figures)
-    show(table)
-    names = ", ".join(image.name for image in relit)
-    say(f"{output}: {names} under {', '.join(each.light for each in relit[0].renderings)}")
-
-
-def _as_json(relit: list[Relit], output: str) -> None:
-    print_json({"output": output, "differences": _rows(relit)})
-
-
-def _rows(relit: list[Relit]) -> list[dict[str, object]]:
-    """Return ΔE00 of every method from the products of RGB."""
-    from uplift.report.relight import RGB_PRODUCT
-
-    rows = []
-    for image in relit:
-        for rendering in image.renderings:
-            for method in image.methods[1:]:
-                found = rendering.difference(RGB_PRODUCT, method)
-                place = {"image": image.name, "light": rendering.light, "spectra": method}
-                rows.append({**place, "mean": found.mean, "p95": found.p95, "max": found.max})
-    return rows
-
-
-WRITERS = {"table": _as_table, "json": _as_json}

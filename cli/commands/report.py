@@ -7,34 +7,27 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..completion import complete_cube
-from ..options import Whole, atlas_folders_option, atlas_option, force_option, format_option, light_option
+from .. import options
 from ..output.console import emit, json_text, say
-from ..output.progress import spinner
+from ..output.progress import progress_bar
 
 if TYPE_CHECKING:
     from uplift.report.assessment import Assessment
 
 
 @click.command("report")
-@click.argument("cube_path", metavar="CUBE", shell_complete=complete_cube)
-@atlas_option("Measured spectra that replace the atlases of the cube")
-@atlas_folders_option
-@light_option("Illuminant to evaluate", "D65 A FL2 FL7 FL11 LED-B3")
+@options.cube_argument
+@options.atlas("Measured spectra that replace the atlases of the cube")
+@options.atlas_folders
+@options.light("Illuminant to evaluate", "D65 A FL2 FL7 FL11 LED-B3")
+@options.output("File to write. [default: CUBE's name with .html, in the current folder]")
+@options.output_format("html", "json")
 @click.option(
-    "-o", "--output", metavar="FILE", help="File to write. [default: CUBE's name with .html, in the current folder]"
+    "--worst", type=options.Whole(0), default=24, help="Number of entries with plotted spectra, largest errors first."
 )
-@format_option("html", "json")
-@click.option(
-    "--worst",
-    type=Whole(0),
-    default=24,
-    show_default=True,
-    help="Number of entries with plotted spectra, largest errors first.",
-)
-@force_option
+@options.force
 def command(
-    cube_path: str,
+    cube: str,
     files: tuple[str, ...],
     folders: tuple[str, ...],
     lights: tuple[str, ...],
@@ -70,14 +63,14 @@ def command(
 
     path = None if output is None else Path(output)
     if path is None and style == "html":
-        path = Path(f"{Path(cube_path).stem}.html")
+        path = Path(f"{Path(cube).stem}.html")
     if path is not None:
-        check_output(path, inputs=(cube_path, *files), force=force)
-    cube = load(cube_path)
-    with spinner("evaluating the cube"):
-        atlas = read_atlas(*files) if files else recorded_atlas(cube.data, cube_path, folders)
-        size = Path(cube_path).stat().st_size
-        assessment = assess(cube, Path(cube_path).name, size, atlas, lights or REPORT_LIGHTS)
+        check_output(path, inputs=(cube, *files), force=force)
+    loaded = load(cube)
+    with progress_bar("evaluating the cube"):
+        atlas = read_atlas(*files) if files else recorded_atlas(loaded.data, cube, folders)
+        size = Path(cube).stat().st_size
+        assessment = assess(loaded, Path(cube).name, size, atlas, lights or REPORT_LIGHTS)
         text = json_text(to_json(assessment)) + "\n" if style == "json" else render_report(assessment, worst)
     if path is None:
         emit(text, nl=False)

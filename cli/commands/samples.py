@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import click
 
-from ..options import force_option
+from .. import options
 from ..output.console import say
 
 
 @click.command("samples")
 @click.argument("folder", metavar="[FOLDER]", default=".", type=click.Path())
-@force_option
+@options.force
 def command(folder: str, force: bool) -> None:
     """Copy the files of the examples into FOLDER, by default the current one: images, scenes, palettes, measurements.
 

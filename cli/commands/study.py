@@ -12,8 +12,8 @@ import click
 
 from uplift.common.text import format_value, parse_float, parse_whole
 
+from .. import options
 from ..inputs import DEFAULT_ATLASES, read_atlases
-from ..options import Whole, atlas_folders_option, atlas_option, coefficients_option, force_option, format_option
 from ..output.console import make_table, print_csv_text, print_json, say, show
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
@@ -77,18 +77,17 @@ def _print_table(rows: Sequence[Row]) -> None:
 
 
 @command.command("moments")
-@atlas_option("Atlas", DEFAULT_ATLASES)
+@options.atlas("Atlas", DEFAULT_ATLASES)
 @click.option(
     "--max-moments",
     metavar="N",
-    type=Whole(),
+    type=options.Whole(),
     default=15,
-    show_default=True,
     help="Largest number of moments, up to 32.",
 )
 @output_option
-@format_option("table", "json", "csv")
-@force_option
+@options.output_format("table", "json", "csv")
+@options.force
 def moments(files: tuple[str, ...], max_moments: int, output: str | None, style: str, force: bool) -> None:
     """Reconstruct measured spectra from their moments and compare them with the measurements.
 
@@ -129,11 +128,11 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
 
 
 @command.command("held-out")
-@atlas_option("Atlas", DEFAULT_ATLASES)
-@click.option("--splits", type=Whole(1, 1000), default=3, show_default=True, help="Number of splits of each atlas.")
-@click.option("--dim", type=Whole(), default=32, show_default=True, help="Lattice nodes along each axis.")
-@coefficients_option
-@format_option("table", "json", "csv")
+@options.atlas("Atlas", DEFAULT_ATLASES)
+@click.option("--splits", type=options.Whole(1, 1000), default=3, help="Number of splits of each atlas.")
+@click.option("--dim", type=options.Whole(), default=32, help="Lattice nodes along each axis.")
+@options.coefficients
+@options.output_format("table", "json", "csv")
 def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, style: str) -> None:
     """Build cubes from half of an atlas, query the colours of the other half, and compare with the measurements.
 
@@ -186,13 +185,15 @@ def _list_option(name: str, kind: Callable[[str], Any], metavar: str, help: str)
 @_list_option("--spaces", str, "NAME,…", "RGB spaces of colour-science.")
 @_list_option("--models", str, "NAME,…", "moments, sigmoid.")
 @_list_option("--thresholds", parse_float, "X,…", "Largest residuals, |linear RGB|.")
-@atlas_option("Atlas in addition to the synthetic ones", MACBETH)
+@options.atlas("Atlas in addition to the synthetic ones", MACBETH)
 @_list_option("--atlases", str, "NAME,…", "Atlases to use by name, or 'none'.")
-@click.option("--samples", type=Whole(0, 100_000), help="Number of random settings in addition to the grids.")
+@click.option("--samples", type=options.Whole(0, 100_000), help="Number of random settings in addition to the grids.")
 @output_option
-@format_option("table", "json", "csv")
-@force_option
-def stability(quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool, **options: Any) -> None:
+@options.output_format("table", "json", "csv")
+@options.force
+def stability(
+    quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool, **settings: Any
+) -> None:
     """Build cubes over dims, coefficients, models, spaces, thresholds and atlases, and count unfitted nodes.
 
     Reports for each build the realisable and the unfitted nodes, rounds, improvement attempts, the largest residual and
@@ -212,7 +213,7 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
     from uplift.lab.study.stability import NO_ATLAS, QUICK_DESIGN, SYNTHETIC_ATLASES, DesignSpace, study_stability
 
     atlases = read_atlases(files or (MACBETH,)) | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
-    given = {name: value for name, value in options.items() if value is not None}
+    given = {name: value for name, value in settings.items() if value is not None}
     design = replace(QUICK_DESIGN if quick else DesignSpace(), **({"atlases": (NO_ATLAS, *atlases)} | given))
     _check_plots(output, STABILITY_PLOTS, files, force=force)
     with progress_bar("builds") as progress:
@@ -232,13 +233,11 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
 
 @command.command("sensitivity")
 @click.argument("cube", metavar="[CUBE]", required=False)
-@atlas_folders_option
-@click.option(
-    "--entries", type=Whole(0), default=24, show_default=True, help="Number of atlas entries to change, one at a time."
-)
+@options.atlas_folders
+@click.option("--entries", type=options.Whole(0), default=24, help="Number of atlas entries to change, one at a time.")
 @output_option
-@format_option("table", "json")
-@force_option
+@options.output_format("table", "json")
+@options.force
 def sensitivity(
     cube: str | None, folders: tuple[str, ...], entries: int, output: str | None, style: str, force: bool
 ) -> None:

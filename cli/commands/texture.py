@@ -8,7 +8,7 @@ import os
 import re
 import time
 import warnings
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,19 +18,8 @@ import click
 from uplift.common.errors import OptionError, OutputError
 from uplift.common.progress import Progress
 
-from ..completion import complete_cube
-from ..inputs import UDIM, expand_patterns, parse_wavelengths
-from ..options import (
-    Whole,
-    encoding_option,
-    fill_option,
-    force_option,
-    input_space_option,
-    out_of_gamut_option,
-    quiet_option,
-    stacked,
-    wavelengths_option,
-)
+from .. import options
+from ..inputs import UDIM, expand_patterns
 from ..output.console import say
 from ..output.diagnostics import CommandFailure
 from ..output.progress import progress_bar
@@ -38,29 +27,29 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.io.texture import Conversion, Failure, Job, TextureSettings
-    from uplift.io.texture.uplifter import PixelEncoding
+    from uplift.io.texture import Conversion, Failure, TextureSettings
 
 
-def image_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Images, their target, and how they are converted; for `convert`."""
-    return stacked(
-        click.argument("sources", metavar="IN...", nargs=-1, required=True),
-        click.option(
-            "-o", "--output", "target", metavar="FILE", required=True, help="Texture to write, or folder of textures."
-        ),
-        click.option(
-            "--processes", type=Whole(1, 1024), help="Number of processes for several images. [default: one per core]"
-        ),
-        click.option(
-            "--scheduler",
-            metavar="ADDRESS",
-            help="Dask cluster that converts the images; requires spectral-uplift[cluster].",
-        ),
-        click.option("--resume", is_flag=True, help="Skip images whose textures are complete and newer."),
-        force_option,
-        quiet_option,
-    )(function)
+image_options = options.stacked(
+    click.argument("sources", metavar="IN...", nargs=-1, required=True),
+    click.option(
+        "-o", "--output", "target", metavar="FILE", required=True, help="Texture to write, or folder of textures."
+    ),
+    click.option(
+        "--processes",
+        type=options.Whole(1, 1024),
+        help="Number of processes for several images. [default: one per core]",
+    ),
+    click.option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Dask cluster that converts the images; requires spectral-uplift[cluster].",
+    ),
+    click.option("--resume", is_flag=True, help="Skip images whose textures are complete and newer."),
+    options.force,
+    options.quiet,
+)
+"""Images, their target, and how they are converted; for `convert`."""
 
 
 @click.command("texture")
@@ -71,36 +60,29 @@ def image_options(function: Callable[..., Any]) -> Callable[..., Any]:
     multiple=True,
     metavar="FILE",
     help="Cube file, or ACEScg for the packaged ACEScg cube; repeatable with --mask. [default: the packaged sRGB cube]",
-    shell_complete=complete_cube,
+    shell_complete=options.complete_cube,
 )
 @click.option(
     "--mask",
     metavar="FILE",
     help="Image of which cube a pixel belongs to: 0 for the first, 1 for the second …, or from black to white.",
 )
-@click.option(
-    "--representation",
-    "kind",
-    type=click.Choice(("spectrum", "moments", "multipliers")),
-    default="spectrum",
-    show_default=True,
-    help="Contents of a pixel.",
-)
-@wavelengths_option
+@options.choice("--representation", "spectrum", "moments", "multipliers", name="kind", help="Contents of a pixel.")
+@options.output_wavelengths
 @click.option(
     "--depth",
     type=click.Choice(("half", "float")),
     help="16 or 32 bits per channel. [default: half for reflectances, else float]",
 )
-@encoding_option()
-@input_space_option("the images")
-@out_of_gamut_option("clip")
-@fill_option
+@options.encoding()
+@options.input_space("the images")
+@options.out_of_gamut("clip")
+@options.fill
 def command(
     cube_paths: tuple[str, ...],
     mask: str | None,
     kind: str,
-    wavelengths: str | None,
+    wavelengths: Array | None,
     depth: str | None,
     encoding: str,
     input_space: str | None,
@@ -139,12 +121,16 @@ def command(
     from uplift.io import texture
     from uplift.lookup.cube import find_file
 
+    encode = texture.PIXEL_ENCODINGS[kind]
+    if encode is not texture.Spectrum and wavelengths is not None:
+        hint = "leave out --wavelengths, or use --representation spectrum"
+        raise OptionError(f"{kind} have no wavelengths", hint=hint)
     if len(cube_paths) > 1 and mask is None:
         raise click.UsageError("Several cubes need --mask, an image of which cube a pixel belongs to.")
     cubes = tuple(os.path.abspath(find_file(path)) for path in cube_paths)
     settings = texture.TextureSettings(
         cubes or (None,),
-        _pixel_encoding(kind, parse_wavelengths(wavelengths)),
+        texture.Spectrum(as_tuple(wavelengths)) if encode is texture.Spectrum else encode(),
         depth=depth,
         encoding=encoding,
         out_of_gamut=method,
@@ -176,10 +162,14 @@ def convert(
     settings = replace(settings, threads=max(cores // count, 1))
     jobs = [texture.Job(settings, source.absolute(), path.absolute(), force) for source, path in pairs]
     pending = texture.pending(jobs, resume=resume)
-    converter_for(settings)  # report invalid options once, not once per image
+    converter_for(settings)  # reports invalid options once, not once per image
     begin = time.perf_counter()
     if scheduler is None and len(jobs) == 1:
-        results: list[Conversion | Failure] = [_convert_here(job, quiet=quiet) for job in pending]
+        with progress_bar("rows", quiet=quiet) as progress:
+            results: list[Conversion | Failure] = [
+                texture.convert(converter_for(job.settings), job.source, job.target, force=job.force, progress=progress)
+                for job in pending
+            ]
     else:
         outcomes = texture.convert_all(pending, processes=count, scheduler=scheduler)
         results = _collect(outcomes, len(pending), quiet=quiet)
@@ -188,7 +178,14 @@ def convert(
         for warning in conversion.warnings:
             warnings.warn(warning, stacklevel=1)
     if not quiet:
-        _print_summary(target, converted, len(jobs) - len(pending), time.perf_counter() - begin)
+        skipped = f", {len(jobs) - len(pending)} skipped" if len(jobs) > len(pending) else ""
+        pixels = sum(one.counts.pixels for one in converted)
+        size = sum(one.target.stat().st_size for one in converted) / 1e6
+        spaces = ", ".join(dict.fromkeys(space for one in converted for space in one.spaces))
+        say(
+            f"{target}: {len(converted)} texture{'s' * (len(converted) != 1)}{skipped}, {pixels:,} pixels, "
+            f"{size:.1f} MB, {time.perf_counter() - begin:.1f} s{f', converted from {spaces}' * bool(spaces)}"
+        )
     failures = [one for one in results if isinstance(one, texture.Failure)]
     for failure in failures[1:]:
         CommandFailure(failure.error).show()
@@ -234,28 +231,8 @@ def _tiles(sources: Sequence[str], images: list[str], target: str) -> list[tuple
     return [(Path(image), Path(target.replace(UDIM, match[1]))) for image, match in pairs if match]
 
 
-def _pixel_encoding(kind: str, wavelengths: Array | None) -> PixelEncoding:
-    from uplift.io import texture
-
-    if kind == texture.Spectrum.name:
-        return texture.Spectrum(as_tuple(wavelengths))
-    if wavelengths is not None:
-        hint = "leave out --wavelengths, or use --representation spectrum"
-        raise OptionError(f"{kind} have no wavelengths", hint=hint)
-    return texture.PIXEL_ENCODINGS[kind]()
-
-
 def as_tuple(wavelengths: Array | None) -> tuple[float, ...] | None:
     return None if wavelengths is None else tuple(wavelengths.tolist())
-
-
-def _convert_here(job: Job, *, quiet: bool) -> Conversion:
-    """Convert one image in this process, with a progress bar over its rows."""
-    from uplift.io.texture import convert
-    from uplift.io.texture.sequence import converter_for
-
-    with progress_bar("rows", quiet=quiet) as progress:
-        return convert(converter_for(job.settings), job.source, job.target, force=job.force, progress=progress)
 
 
 def _collect(results: Generator[Conversion | Failure], total: int, *, quiet: bool) -> list[Conversion | Failure]:
@@ -270,13 +247,3 @@ def _collect(results: Generator[Conversion | Failure], total: int, *, quiet: boo
         interrupt.add_note(f"{len(collected)} of {total} images are finished, continue with --resume")
         raise
     return collected
-
-
-def _print_summary(target: str, converted: list[Conversion], skipped: int, seconds: float) -> None:
-    pixels = sum(conversion.counts.pixels for conversion in converted)
-    size = sum(conversion.target.stat().st_size for conversion in converted)
-    suffix = f", {skipped} skipped" if skipped else ""
-    count = f"{len(converted)} texture{'s' * (len(converted) != 1)}{suffix}"
-    spaces = ", ".join(dict.fromkeys(space for each in converted for space in each.spaces))
-    origin = f", converted from {spaces}" if spaces else ""
-    say(f"{target}: {count}, {pixels:,} pixels, {size / 1e6:.1f} MB, {seconds:.1f} s{origin}")

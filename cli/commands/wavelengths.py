@@ -2,43 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import click
 
-from ..inputs import DEFAULT_ATLASES, parse_wavelengths, read_atlases
-from ..options import (
-    NUMBER,
-    Whole,
-    atlas_option,
-    force_option,
-    format_option,
-    light_option,
-    plot_option,
-    sensor_options,
-)
+from .. import options
+from ..inputs import DEFAULT_ATLASES, read_atlases
 from ..output.console import make_table, print_csv, print_json, show
-from ..output.progress import spinner
+from ..output.progress import progress_bar
 
 if TYPE_CHECKING:
-    from uplift.atlas import Atlas
     from uplift.colorimetry.sensor import Sensor
-    from uplift.scene.wavelengths import Choice, ColourErrors
+    from uplift.common.arrays import Array
+    from uplift.scene.wavelengths import Choice
 
 
 @click.command("wavelengths")
-@click.option("--count", metavar="N", type=Whole(), help="Number of wavelengths, 1 to 40.")
+@click.option("--count", metavar="N", type=options.Whole(), help="Number of wavelengths, 1 to 40.")
 @click.option(
-    "--tolerance", metavar="ΔE00", type=NUMBER, help="Choose the fewest wavelengths with an error below this ΔE00."
+    "--tolerance",
+    metavar="ΔE00",
+    type=options.NUMBER,
+    help="Choose the fewest wavelengths with an error below this ΔE00.",
 )
-@click.option(
-    "--wavelengths",
-    "given",
-    metavar="NM",
-    help="Wavelengths as START:END:STEP or a list; only their weights and powers are fitted.",
-)
+@options.wavelengths("Wavelengths as START:END:STEP or a list; only their weights and powers are fitted.")
 @click.option(
     "--measure",
     type=click.Choice(("mean", "p95", "max")),
@@ -54,7 +41,7 @@ if TYPE_CHECKING:
     "--orders",
     nargs=3,
     metavar="A C1 C2",
-    type=Whole(),
+    type=options.Whole(),
     help="Meyer's quadrature with these numbers of wavelengths for the three channels, 1 to 10 each.",
 )
 @click.option(
@@ -62,16 +49,16 @@ if TYPE_CHECKING:
     type=click.Choice(("opponent", "cones", "xyz")),
     help="Channels of --orders: A C1 C2, the cones S M L, or X Y Z. [default: opponent]",
 )
-@atlas_option("Materials", DEFAULT_ATLASES)
-@light_option("Illuminant of the scene", "D65")
-@sensor_options
-@format_option("table", "json", "csv")
-@plot_option("Plot lights, wavelengths and weights")
-@force_option
+@options.atlas("Materials", DEFAULT_ATLASES)
+@options.light("Illuminant of the scene", "D65")
+@options.sensor
+@options.output_format("table", "json", "csv")
+@options.plot("Plot lights, wavelengths and weights")
+@options.force
 def command(
     count: int | None,
     tolerance: float | None,
-    given: str | None,
+    wavelengths: Array | None,
     measure: str | None,
     method: str | None,
     orders: tuple[int, int, int] | None,
@@ -80,7 +67,7 @@ def command(
     lights: tuple[str, ...],
     space: str,
     illuminant: str,
-    observer: str | None,
+    observer: str,
     style: str,
     plot_path: str | None,
     force: bool,
@@ -100,110 +87,78 @@ def command(
       uplift wavelengths --count 4 --method meyer --light C --atlas macbeth
       uplift wavelengths --orders 3 2 1 --light C --atlas macbeth
     """
-    if sum(option is not None for option in (count, tolerance, given, orders)) != 1:
+    if sum(option is not None for option in (count, tolerance, wavelengths, orders)) != 1:
         raise click.UsageError("Give one of --count, --tolerance, --wavelengths and --orders.")
     if (measure is not None and tolerance is None) or (method is not None and count is None and tolerance is None):
         raise click.UsageError("--measure requires --tolerance, --method requires --count or --tolerance.")
     if channels is not None and orders is None:
         raise click.UsageError("--channels requires --orders.")
-    fixed = parse_wavelengths(given)
     from uplift.atlas import merge, on_grid
-    from uplift.colorimetry.observer import DEFAULT_OBSERVER, sensor
+    from uplift.colorimetry.observer import sensor
     from uplift.common.files import check_output
-    from uplift.scene import wavelengths
+    from uplift.scene import wavelengths as library
 
     if plot_path is not None:
         check_output(plot_path, inputs=files, force=force)
-    observer = observer or DEFAULT_OBSERVER
     camera = sensor(space, illuminant, observer)
-    atlas: Atlas = merge(read_atlases(files).values())
-    setting = wavelengths.make_setup(on_grid(atlas, wavelengths.grid()), lights or ("D65",), observer_name=observer)
-    with spinner("fitting wavelengths"):
+    atlas = merge(read_atlases(files).values())
+    setting = library.make_setup(on_grid(atlas, library.grid()), lights or ("D65",), observer_name=observer)
+    with progress_bar("fitting wavelengths"):
         if orders is not None:
-            choice = wavelengths.choose_orders(setting, orders, channels or "opponent")
-        elif fixed is None:
-            choice = wavelengths.choose(
+            choice = library.choose_orders(setting, orders, channels or "opponent")
+        elif wavelengths is not None:
+            choice = library.fit_weights(setting, wavelengths)
+        else:
+            choice = library.choose(
                 setting, count=count, target=tolerance, measure=measure or "max", method=method or "optimised"
             )
-        else:
-            choice = wavelengths.fit_weights(setting, fixed)
     if plot_path is not None:
         from uplift.scene.wavelengths.plots import plot_choice
 
         plot_choice(setting, choice, plot_path, force=force)
-    PRINTERS[style](Result(choice, camera, atlas.names))
+    _print(choice, camera, atlas.names, style)
 
 
-@dataclass(frozen=True, eq=False)
-class Result:
-    """Chosen wavelengths, the RGB space of the output, and the names of the materials."""
-
-    choice: Choice
-    sensor: Sensor
-    materials: tuple[str, ...]
-
-    def errors(self) -> Iterator[tuple[str, ColourErrors]]:
-        """Yield errors by light, and for several lights also over all of them."""
-        lights = self.choice.sampling.lights
-        for row, light in enumerate(lights):
-            yield light, self.choice.errors.under(row)
-        if len(lights) > 1:
-            yield "all lights", self.choice.errors
-
-    def worst(self, errors: ColourErrors) -> str:
-        """Return the material with the largest error."""
-        return self.materials[int(errors.delta_e.max(axis=0).argmax())]
-
-
-def _print_json(result: Result) -> None:
-    sampling, sensor = result.choice.sampling, result.sensor
-    fields = {
-        "method": result.choice.method,
-        "count": len(sampling),
-        "materials": len(result.materials),
-        "observer": sensor.observer,
-        "space": sensor.space,
-        "illuminant": sensor.illuminant,
-        "wavelengths": sampling.wavelengths.tolist(),
-        "to_xyz": sampling.to_xyz.tolist(),
-        "to_rgb": sampling.to_rgb(sensor).tolist(),
-        "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
-        "errors": {
-            name: {"mean": errors.mean, "p95": errors.p95, "max": errors.max, "worst": result.worst(errors)}
-            for name, errors in result.errors()
-        },
-    }
-    print_json(fields)
-
-
-def _print_csv(result: Result) -> None:
-    lights = result.choice.sampling.lights
-    header = ["wavelength", *"XYZ", *"rgb", *(f"power {light}" for light in lights)]
-    print_csv(header, _rows(result))
-
-
-def _rows(result: Result) -> Iterator[list[float]]:
-    """Yield wavelength, weights to XYZ, weights to RGB and powers, per wavelength."""
-    sampling = result.choice.sampling
-    parts = (sampling.wavelengths[:, None], sampling.to_xyz, sampling.to_rgb(result.sensor), sampling.powers.T)
-    for row in zip(*(part.tolist() for part in parts), strict=True):
-        yield [number for numbers in row for number in numbers]
-
-
-def _print_table(result: Result) -> None:
-    sampling = result.choice.sampling
-    weights = make_table((), ("nm", *"XYZRGB"), title=f"{len(sampling)} wavelengths, {result.choice.method}: weights")
-    powers = make_table((), ("nm", *sampling.lights), title="power of the lights")
-    for nm, *others in _rows(result):
-        cells = [f"{other:.4f}" for other in others]
-        weights.add_row(f"{nm:.1f}", *cells[:6])
-        powers.add_row(f"{nm:.1f}", *cells[6:])
-    errors_table = make_table(("light",), ("mean", "95 %", "max"), title=f"ΔE00 of {len(result.materials)} materials")
-    errors_table.add_column("worst material")
-    for name, errors in result.errors():
-        numbers = (errors.mean, errors.p95, errors.max)
-        errors_table.add_row(name, *(f"{number:.3f}" for number in numbers), result.worst(errors))
-    show(weights, powers, errors_table)
-
-
-PRINTERS: dict[str, Callable[[Result], None]] = {"table": _print_table, "json": _print_json, "csv": _print_csv}
+def _print(choice: Choice, camera: Sensor, materials: tuple[str, ...], style: str) -> None:
+    """Print wavelengths, weights, powers, and errors by light."""
+    sampling = choice.sampling
+    to_rgb = sampling.to_rgb(camera)
+    errors = {light: choice.errors.under(row) for row, light in enumerate(sampling.lights)}
+    if len(errors) > 1:
+        errors["all lights"] = choice.errors
+    worst = {name: materials[int(each.delta_e.max(axis=0).argmax())] for name, each in errors.items()}
+    # wavelength, weights to XYZ and to RGB, and powers of the lights
+    parts = (sampling.wavelengths[:, None], sampling.to_xyz, to_rgb, sampling.powers.T)
+    rows = [[number for part in parts for number in part[row].tolist()] for row in range(len(sampling))]
+    if style == "json":
+        fields = {
+            "method": choice.method,
+            "count": len(sampling),
+            "materials": len(materials),
+            "observer": camera.observer,
+            "space": camera.space,
+            "illuminant": camera.illuminant,
+            "wavelengths": sampling.wavelengths.tolist(),
+            "to_xyz": sampling.to_xyz.tolist(),
+            "to_rgb": to_rgb.tolist(),
+            "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
+            "errors": {
+                name: {"mean": each.mean, "p95": each.p95, "max": each.max, "worst": worst[name]}
+                for name, each in errors.items()
+            },
+        }
+        print_json(fields)
+    elif style == "csv":
+        print_csv(["wavelength", *"XYZ", *"rgb", *(f"power {light}" for light in sampling.lights)], rows)
+    else:
+        weights = make_table((), ("nm", *"XYZRGB"), title=f"{len(sampling)} wavelengths, {choice.method}: weights")
+        powers = make_table((), ("nm", *sampling.lights), title="power of the lights")
+        for nm, *others in rows:
+            cells = [f"{other:.4f}" for other in others]
+            weights.add_row(f"{nm:.1f}", *cells[:6])
+            powers.add_row(f"{nm:.1f}", *cells[6:])
+        table = make_table(("light",), ("mean", "95 %", "max"), title=f"ΔE00 of {len(materials)} materials")
+        table.add_column("worst material")
+        for name, each in errors.items():
+            table.add_row(name, *(f"{number:.3f}" for number in (each.mean, each.p95, each.max)), worst[name])
+        show(weights, powers, table)

@@ -1,38 +1,22 @@
-"""Colours and spectra as text: fields, patches, sparklines, columns, and classical coordinates."""
+"""Colours and spectra as text: patches, sparklines, columns, and classical coordinates."""
 
 from __future__ import annotations
 
 import colorsys
-import sys
-import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.text import printable
-
-from .console import columns, emit, say
+from .console import columns, say
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.lookup import Cube
 
 BLOCKS = "▁▂▃▄▅▆▇█"
-NAME_WIDTH = 12
-"""Characters of the names of fields."""
 CELL_WIDTH = 20
 """Characters of a wavelength and its reflectance, with the space between columns."""
-
-
-def print_fields(fields: Mapping[str, str], patches: Mapping[str, str] | None = None) -> None:
-    """Print names and values in two columns, and on a terminal the patches of colour that belong to a value."""
-    patches = patches if patches and sys.stdout.isatty() else {}
-    for name, text in fields.items():
-        patch = f"  {patches[name]}" if patches.get(name) else ""
-        lines = textwrap.wrap(printable(text), columns() - NAME_WIDTH, break_on_hyphens=False)
-        indent = "\n" + " " * NAME_WIDTH
-        emit(f"{name:<{NAME_WIDTH}}{indent.join(lines)}{patch}")
 
 
 def print_columns(wavelengths: Array, values: Array) -> None:
@@ -45,15 +29,9 @@ def print_columns(wavelengths: Array, values: Array) -> None:
 
 def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
     """Return a patch of colour for a terminal, ``width`` characters wide."""
-    return click.style(" " * width, bg=display_codes(cube, rgb))
-
-
-def display_codes(cube: Cube, rgb: Array) -> tuple[int, int, int]:
-    """Return 8-bit sRGB codes for a terminal."""
     from uplift.colorimetry.srgb import to_display_codes
 
-    red, green, blue = (int(code) for code in to_display_codes(rgb, cube.data.sensor))
-    return red, green, blue
+    return click.style(" " * width, bg=to_display_codes(rgb, cube.data.sensor).astype(int).tolist())
 
 
 def hex_code(cube: Cube, rgb: Array) -> str:

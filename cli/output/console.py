@@ -1,7 +1,7 @@
 """Standard output and standard error: the one door through which text reaches the terminal.
 
-Texts may come from files. `say` and the cells of `make_table` escape what a terminal would obey; `emit` prints text
-that is safe already; `print_json` and `print_csv` print data.
+Texts may come from files. `say`, `print_fields` and the cells of `make_table` escape what a terminal would obey; `emit`
+prints text that is safe already; `print_json` and `print_csv` print data.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import os
 import shutil
 import sys
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -19,7 +19,7 @@ import click
 from uplift.common.text import json_escapes, printable
 
 if TYPE_CHECKING:
-    from rich.console import Console
+    from rich.text import Text
 
     from uplift.common.csv import CsvWriter
 
@@ -48,26 +48,42 @@ def flush_stdout() -> None:
         raise
 
 
-def paragraph(text: str) -> None:
-    """Print prose with control characters escaped, wrapped to the window."""
-    emit(textwrap.fill(printable(text), columns(), break_long_words=False, break_on_hyphens=False))
+def columns() -> int:
+    """Return the characters of a line of the window, COLUMNS or 80."""
+    return max(shutil.get_terminal_size().columns, MIN_WIDTH)
 
 
-def json_text(values: Any, indent: int | None = 2) -> str:
+def has_colours() -> bool:
+    """Return whether standard output shows colours."""
+    is_plain = bool(os.environ.get("NO_COLOR")) or os.environ.get("TERM", "dumb") in ("dumb", "unknown")
+    return sys.stdout.isatty() and not is_plain
+
+
+def paragraph(text: str, indent: int = 0, prefix: str = "", suffix: str = "") -> None:
+    """Print prose with control characters escaped, wrapped to the window; words such as URLs stay whole."""
+    lines = textwrap.wrap(printable(text), columns() - indent, break_long_words=False, break_on_hyphens=False)
+    emit(prefix + ("\n" + " " * indent).join(lines) + suffix)
+
+
+def print_fields(fields: Mapping[str, str], patches: Mapping[str, str] | None = None) -> None:
+    """Print names and values in two columns, and on a terminal the patches of colour that belong to a value."""
+    patches = patches if patches and has_colours() else {}
+    names = {name: printable(name) for name in fields}
+    width = max(12, *(len(name) + 1 for name in names.values()))
+    for name, text in fields.items():
+        patch = f"  {patches[name]}" if patches.get(name) else ""
+        paragraph(text, width, f"{names[name]:<{width}}", patch)
+
+
+def json_text(values: Any, indent: int | None = 2, *, ascii_only: bool = False) -> str:
     """Return standard JSON. Raises ValueError for NaN and infinity, which it cannot represent."""
-    return json_escapes(json.dumps(values, indent=indent, ensure_ascii=False, allow_nan=False))
+    return json_escapes(json.dumps(values, indent=indent, ensure_ascii=ascii_only, allow_nan=False))
 
 
-def terminal_json(values: Any, indent: int | None = None) -> str:
-    """Return standard JSON, in the characters that standard output has."""
-    text = json_text(values, indent)
+def print_json(values: Any, indent: int | None = 2, *, before: str = "", nl: bool = True) -> None:
+    """Print standard JSON, in the characters that standard output has."""
     is_unicode = (sys.stdout.encoding or "utf-8").lower().startswith("utf")
-    return text if is_unicode else json.dumps(json.loads(text), indent=indent)
-
-
-def print_json(values: Any, indent: int | None = 2) -> None:
-    """Print standard JSON."""
-    emit(terminal_json(values, indent))
+    emit(before + json_text(values, indent, ascii_only=not is_unicode), nl=nl)
 
 
 def print_json_answers(objects: Iterable[Any], *, single: bool) -> None:
@@ -76,7 +92,7 @@ def print_json_answers(objects: Iterable[Any], *, single: bool) -> None:
         print_json(next(iter(objects)), indent=None)
         return
     for number, values in enumerate(objects):
-        emit(("[\n" if number == 0 else ",\n") + terminal_json(values), nl=False)
+        print_json(values, indent=None, before=",\n" if number else "[\n", nl=False)
     emit("\n]")
 
 
@@ -103,25 +119,14 @@ class _Lines:
     """Standard output with control characters escaped, but for the ends of lines."""
 
     def write(self, text: str) -> int:
-        sys.stdout.write("\n".join(map(printable, text.split("\n"))))
-        return len(text)
+        return sys.stdout.write("\n".join(map(printable, text.split("\n"))))
 
 
-def columns() -> int:
-    """Return the characters of a line of the window, COLUMNS or 80."""
-    return max(shutil.get_terminal_size().columns, MIN_WIDTH)
+def swatch(codes: Iterable[int], text: str = "   ") -> Text:
+    """Return a cell with a background of 8-bit sRGB."""
+    from rich.text import Text
 
-
-def console() -> Console:
-    """Return a rich console on standard output."""
-    from rich.console import Console
-
-    return Console(file=sys.stdout, width=columns(), highlight=False, markup=False, emoji=False)
-
-
-def has_colours() -> bool:
-    """Return whether standard output shows colours."""
-    return console().color_system is not None
+    return Text(text, style="on rgb({},{},{})".format(*codes))
 
 
 def make_table(texts: Iterable[str] = (), numbers: Iterable[str] = (), **options: Any) -> SafeTable:
@@ -140,9 +145,10 @@ def make_table(texts: Iterable[str] = (), numbers: Iterable[str] = (), **options
 
 def show(*tables: SafeTable) -> None:
     """Print tables. Texts are wrapped to the window; rows whose names and numbers do not fit are longer than a line."""
-    out = console()
+    from rich.console import Console
+
     for number, table in enumerate(tables):
         if number:
-            out.print()
-        out.width = max(columns(), table.narrowest())
-        out.print(table)
+            say()
+        width = max(columns(), table.narrowest())
+        Console(file=sys.stdout, width=width, highlight=False, markup=False, emoji=False).print(table)

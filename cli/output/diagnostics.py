@@ -1,4 +1,4 @@
-"""Errors and warnings on standard error: one line each, or JSON."""
+"""Errors and warnings on standard error: one line each, or JSON, with hints in terms of command-line options."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ from typing import Any
 
 import click
 
-from uplift.common.errors import OutputError, UpliftError, UpliftWarning
+from uplift.common.errors import Diagnostic, OutputError, UpliftError, UpliftWarning
 from uplift.common.text import printable
 
 from .console import emit, json_text
-from .hints import hint_for
 
 BAD_INPUT, INTERNAL_ERROR = 2, 70
 """Exit codes; 70 is EX_SOFTWARE of sysexits.h."""
@@ -21,6 +20,29 @@ EXIT_CODES = {"internal-error": INTERNAL_ERROR, "interrupted": 128 + signal.SIGI
 """Exit codes by code of the error."""
 MAX_DETAIL = 200
 """Characters of the message of an internal error."""
+HINTS = {
+    "atlas-changed": "name the folder of the recorded file with --atlas-dir, or build the cube again",
+    "atlas-not-found": "name its folder with --atlas-dir, or build the cube again",
+    "chart-without-cubes": "measure one with 'uplift chart'",
+    "colour-not-a-light": "use --out-of-gamut clip for the nearest colour towards white",
+    "colour-not-in-scene": "use --fill-missing, or build the cube with the image in --scene",
+    "cube-not-found": "build a cube with 'uplift build'",
+    "encoded-floats-not-mapped": "use --out-of-gamut clip, or --encoding linear",
+    "entry-crowded": "use --dim auto for a lattice that is large enough; 'uplift report' shows details",
+    "file-exists": "use --force to replace it, or choose another name",
+    "invalid-codes": "leave out --encoded for linear floats",
+    "mixed-scales": "correct the row, or use --scale percent or fraction if it is right",
+    "not-a-cube": "name a cube by 'uplift build', or use 'uplift lights' for an emission table",
+    "not-an-emission-table": "build one with 'uplift lights build', or use 'uplift query' and the like for a cube",
+    "rgb-out-of-gamut": "map it inside with --out-of-gamut, or use --encoded for 8-bit codes",
+    "sparse-cube": "use --fill-missing where the command has it, or a cube built without --scene",
+}
+"""Hints in place of the library's, which name parameters of Python, by the code of an error or a warning."""
+
+
+def hint_for(diagnostic: Diagnostic) -> str:
+    """Return the hint of the command line for an error or warning, or else the library's own."""
+    return HINTS.get(diagnostic.code, diagnostic.hint)
 
 
 class CommandFailure(click.ClickException):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import click
 import pytest
@@ -60,6 +62,12 @@ def run(home: Path) -> Run:
         return result
 
     return run
+
+
+@pytest.fixture
+def ask(run: Run) -> Callable[..., Any]:
+    """Run ``uplift`` with ``--format json`` and return the answer."""
+    return lambda *args, **options: json.loads(run(*args, "--format", "json", **options).stdout)
 
 
 @pytest.fixture

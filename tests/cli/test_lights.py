@@ -7,7 +7,7 @@ import json
 import numpy as np
 import OpenEXR
 import pytest
-from uplift_cli.output.hints import hint_for
+from uplift_cli.output.diagnostics import hint_for
 
 import uplift
 from uplift.lights.table import emission_digest

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 from PIL import Image
@@ -17,17 +15,11 @@ def wood(home):
     return "wood.png"
 
 
-def test_a_page_of_own_images_with_a_cube(run, home, cubes, wood):
-    result = run(
-        "relight", wood, wood, "--cube", cubes / "moments-8-macbeth.uplift", "--light", "A", "-o", "relit.html",
-        "--format", "json",
-    )  # fmt: skip
-    found = json.loads(result.stdout)
+def test_a_page_of_own_images_with_a_cube(ask, home, cubes, wood):
+    cube = cubes / "moments-8-macbeth.uplift"
+    found = ask("relight", wood, wood, "--cube", cube, "--light", "A", "-o", "relit.html")
     assert found["output"] == "relit.html"
-    assert [row["spectra"] for row in found["differences"][:2]] == [
-        "without atlas",
-        "moments-8-macbeth.uplift",
-    ]
+    assert [row["spectra"] for row in found["differences"][:2]] == ["without atlas", cube.name]
     assert all(0 < row["mean"] <= row["max"] + 1e-9 for row in found["differences"])
     assert (home / "relit.html").read_text(encoding="utf-8").count("<section") == 2
 
@@ -60,7 +52,6 @@ def test_bad_input_is_refused(refuse, misuse, home, wood):
 def test_samples_are_copied_and_may_be_copied_again(run, refuse, home):
     for _ in range(2):
         assert run("samples").stdout == f".: {len(sample_names())} sample files\n"
-    assert {path.name for path in home.iterdir()} == set(sample_names())
     (home / "wood.png").write_text("mine")
     assert refuse("samples").code == "file-exists"
     run("samples", "--force")

@@ -6,7 +6,7 @@ import json
 import shutil
 
 import pytest
-from uplift_cli.output.hints import hint_for
+from uplift_cli.output.diagnostics import hint_for
 
 import uplift
 

@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from uplift_cli.output.hints import hint_for
+from uplift_cli.output.diagnostics import hint_for
 
 from tests.io.texture.conftest import channels, planes, write_exr
 from tests.sparse_cubes import near_black, with_absent_points

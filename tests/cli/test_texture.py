@@ -7,7 +7,7 @@ import re
 import numpy as np
 import OpenEXR
 import pytest
-from uplift_cli.output.hints import hint_for
+from uplift_cli.output.diagnostics import hint_for
 
 from tests.io.texture.conftest import planes, write_exr
 from uplift.io.texture.sequence import converter_for
