@@ -117,7 +117,7 @@ class ColourReader:
         """Decode codes, and convert colours of another space to the sensor's."""
         import numpy as np
 
-        from uplift.lookup.validation import decode_codes
+        from uplift.lookup.blocks import decode_codes
 
         space = self.space
         values = np.array([colour.numbers for colour in colours], dtype=float)

@@ -123,6 +123,7 @@ def command(
     from uplift.design.mixing.coats import COATS, ramp
     from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, dispersive
     from uplift.lookup import load
+    from uplift.lookup.blocks import as_wavelengths
 
     if (over is None) != (output is None):
         raise click.UsageError("--over IMAGE and --output EXR require each other.")
@@ -137,7 +138,7 @@ def command(
     check_outputs((plot_path, output), inputs=(cube_path, over, *files), force=force)
     cube = load(cube_path)
     sensor, space = cube.data.sensor, find_input_space(input_space)
-    further = np.array([]) if theories or over is not None else cube.resolve_wavelengths(wavelengths)
+    further = np.array([]) if theories or over is not None else as_wavelengths(wavelengths, cube.wavelengths)
     grid = np.concatenate([sensor.wavelengths, further])  # for colours, followed by those of the output
     resolver = SpectrumResolver(cube, read_atlas(*files) if files else Atlas(), grid, space)
     names, parts, spectra, on_black = zip(*map(resolver.ingredient, words), strict=True)

@@ -9,7 +9,7 @@ from tests.helpers import raises
 from uplift.common.errors import OptionError
 from uplift.lookup import MODES
 from uplift.lookup.blocks import BLOCK, blockwise
-from uplift.lookup.interpolate import TABULATED
+from uplift.lookup.cube import TABULATED
 
 AT = [450.0, 550.0, 650.0]
 

@@ -175,7 +175,7 @@ FACES = st.tuples(st.integers(1, 6), st.integers(0, 2), arrays(float, 3, element
 def test_weights_are_a_partition_of_unity_including_entries(small_cube, rgb):
     nodes = around(small_cube.data, rgb)
     assert (nodes.weights >= 0).all()
-    assert ((nodes.lattice_weight >= 0) & (nodes.lattice_weight <= 1)).all()
+    assert ((nodes.hits.lattice_weight >= 0) & (nodes.hits.lattice_weight <= 1)).all()
     data = small_cube.data
     ones = nodes.weighted_sum(np.ones((data.lattice.size, 1)), np.ones((len(data.atlas.names), 1)))
     np.testing.assert_allclose(ones, 1, atol=1e-14)

@@ -17,8 +17,7 @@ from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import weighted_sum
 from uplift.lights.lattice import BEND, DENOMINATOR, Cells
 from uplift.lights.table import EmissionData, read_emission, write_emission
-from uplift.lookup.blocks import Function, blockwise
-from uplift.lookup.validation import as_float_type, as_thread_count, as_wavelengths
+from uplift.lookup.blocks import Function, as_float_type, as_thread_count, as_wavelengths, blockwise
 from uplift.models.arithmetic import blocked_matmul
 
 EMISSION = Path(__file__).with_name("emission.uplift")
@@ -174,7 +173,7 @@ class EmissionTable:
             raise OptionError(
                 f"unknown treatment of colours outside '{outside}'", hint=f"use one of {', '.join(TREATMENTS)}"
             )
-        at = self.wavelengths if wavelengths is None else as_wavelengths(wavelengths)
+        at = as_wavelengths(wavelengths, self.wavelengths)
         kind, count = as_float_type(dtype), as_thread_count(threads)
         nodes, entries = (
             _resample(spectra, self.wavelengths, at).astype(kind, copy=False)

@@ -1,19 +1,25 @@
-"""Process large inputs in blocks of bounded memory, on several threads."""
+"""Arguments of queries as plain arrays, and functions of them applied in blocks of bounded memory."""
 
 from __future__ import annotations
 
+import contextlib
 from collections import deque
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from uplift.colorimetry.gamut import as_rgb, raise_out_of_gamut
+from uplift.colorimetry.sensor import SLACK, Sensor
 from uplift.common.arrays import Array
+from uplift.common.errors import ColourError, OptionError
+from uplift.cube import CubeData
 
 BLOCK = 4096
 """Rows per block: their temporary arrays fit into a core's cache."""
 
+FLOAT_TYPES = (np.dtype(np.float64), np.dtype(np.float32))
 Function = Callable[[Array], NDArray[Any]]
 """From rows (k, K) to rows (k, N)."""
 
@@ -40,3 +46,68 @@ def blockwise(
         with ThreadPoolExecutor(threads) as pool:
             deque(pool.map(work, starts), maxlen=0)
     return result.reshape(*rows.shape[:-1], width)
+
+
+def as_colours(rgb: ArrayLike, sensor: Sensor) -> Array:
+    """Convert to linear RGB (…, 3), float64, clipped where rounding moved it outside [0, 1].
+
+    `ColourError` quotes the first colour outside.
+    """
+    array = np.asarray(as_rgb(rgb), dtype=float)
+    # Faster than a test of each colour; NaN fails both comparisons.
+    if array.size and not (array.min() >= -SLACK and array.max() <= 1 + SLACK):
+        raise_out_of_gamut(array[~sensor.contains(array)])
+    return np.clip(array, 0, 1)
+
+
+def as_wavelengths(wavelengths: ArrayLike | None, default: Array) -> Array:
+    """Convert to wavelengths (N,) in nm, None to the default; `OptionError` if they are not positive numbers."""
+    if wavelengths is None:
+        return default
+    with contextlib.suppress(TypeError, ValueError):
+        array = np.atleast_1d(np.asarray(wavelengths, dtype=float))
+        if array.ndim == 1 and array.size and (np.isfinite(array) & (array > 0)).all():
+            return array
+    raise OptionError("wavelengths must be a list of positive numbers in nm", code="invalid-wavelengths")
+
+
+def as_float_type(dtype: DTypeLike) -> np.dtype[Any]:
+    """Convert to float64 or float32; `OptionError` for other types."""
+    with contextlib.suppress(TypeError):
+        if np.dtype(dtype) in FLOAT_TYPES:
+            return np.dtype(dtype)
+    raise OptionError(f"dtype must be float64 or float32, got {dtype!r}")
+
+
+def as_thread_count(threads: int) -> int:
+    """Convert to a whole number from 1; `OptionError` for anything else."""
+    if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 1:
+        raise OptionError(f"threads must be a whole number from 1, got {threads!r}")
+    return int(threads)
+
+
+def as_coefficient_count(count: int | None, data: CubeData) -> int:
+    """Return the number of coefficients of nodes, the default, or of entries; `OptionError` for other numbers."""
+    counts = (data.model.count, data.entry_spectra.model.count)
+    if count is None:
+        return counts[0]
+    if isinstance(count, bool) or count not in counts:
+        numbers = " or ".join(str(each) for each in sorted(set(counts)))
+        raise OptionError(f"count must be {numbers} for this cube, got {count!r}")
+    return int(count)
+
+
+def decode_codes(sensor: Sensor, codes: ArrayLike) -> Array:
+    """Convert 8-bit codes (…) to linear values by the encoding of a sensor; `ColourError` outside 0 to 255."""
+    try:
+        array = np.asarray(codes, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ColourError("8-bit codes must be numbers", code="invalid-codes") from error
+    outside = array[~((array >= 0) & (array <= 255))]
+    if outside.size:
+        raise ColourError(
+            f"8-bit codes must be in [0, 255], got {outside[0]:g}",
+            code="invalid-codes",
+            hint="pass linear RGB to the query without decoding it",
+        )
+    return sensor.decode(array)

@@ -17,29 +17,19 @@ from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData, read, write
-from uplift.lookup.blocks import Function, blockwise
-from uplift.lookup.interpolate import (
-    MODES,
-    TABULATED,
-    cells,
-    coefficients,
-    extended_coefficients,
-    node_errors,
-    tabulate,
-    tabulate_coefficients,
-)
-from uplift.lookup.validation import (
+from uplift.lookup.blocks import (
+    Function,
     as_coefficient_count,
     as_colours,
     as_float_type,
     as_thread_count,
     as_wavelengths,
+    blockwise,
     decode_codes,
 )
+from uplift.lookup.interpolate import MODES, cells, coefficients, extended_coefficients, node_errors
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from uplift.colorimetry.sensor import Light, Sensor
 
 FOLDER = Path(__file__).parent
@@ -49,15 +39,20 @@ PACKAGED = {"srgb": DEFAULT, "acescg": FOLDER / "acescg.uplift"}
 """Cubes of the package by the name of their space in lower case. They have D65 and no atlas."""
 MAX_TABLE_BYTES = 1 << 28
 """Largest table of the spectra of all lattice points that a query computes."""
+TABULATED = ("spectra", "nearest")
+"""Modes that can use a table, which are methods of `uplift.lookup.node_table.NodeTable`."""
 OBSERVER = "uplift.colorimetry.observer"
 """Module that reads the tables of illuminants. It is imported by name, when a light is."""
 NOTEBOOK = "uplift.viz.notebook"
-"""Module of the figures. It lies above this one, so it is imported by name, when a figure is requested."""
+"""Module of the HTML. It lies above this one, so it is imported by name, when HTML is requested."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Cube:
     """A spectral uplifting cube.
+
+    Its methods raise `ColourError` for colours outside [0, 1], not finite, or not in the scene of a sparse cube, and
+    `OptionError` for other invalid arguments. Results do not depend on the number of threads.
 
     Parameters
     ----------
@@ -128,9 +123,8 @@ class Cube:
     ) -> NDArray[Any]:
         """Interpolate the coefficients of the model between the lattice points and atlas entries.
 
-        All spectra of a result have one number of coefficients. With the number of the lattice the entries have their
-        exact colours, and spectra fitted with as few coefficients. With the number of the entries they have their
-        spectra, and those of the lattice do not change.
+        With the ``count`` of the lattice the entries have their exact colours, and spectra fitted with as few
+        coefficients. With that of the entries they have their spectra, and those of the lattice do not change.
 
         Parameters
         ----------
@@ -141,19 +135,12 @@ class Cube:
         dtype : {float64, float32}, default float64
             Type of the result.
         threads : int, default 1
-            Number of threads; the result does not depend on it.
+            Number of threads.
 
         Returns
         -------
         ndarray, shape (..., count)
             Coefficients.
-
-        Raises
-        ------
-        ColourError
-            A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
-        OptionError
-            An unsupported count or type, or fewer than one thread.
         """
         width = as_coefficient_count(count, self.data)
         colours = as_colours(rgb, self.data.sensor)
@@ -161,7 +148,9 @@ class Cube:
         function: Function = partial(coefficients, self.data)
         if width != self.coefficient_count:
             function = partial(extended_coefficients, self.data)
-            if self._is_table_worthwhile(colours.size // 3, width * kind.itemsize):
+            if self._is_table_worthwhile(colours, width * kind.itemsize):
+                from uplift.lookup.node_table import tabulate_coefficients
+
                 function = tabulate_coefficients(self.data, width, kind, threads).values
         return blockwise(function, colours, width, kind, threads)
 
@@ -189,19 +178,12 @@ class Cube:
         dtype : {float64, float32}, default float64
             Type of the result; float32 differs by less than 1e-6.
         threads : int, default 1
-            Number of threads; the result does not depend on it.
+            Number of threads.
 
         Returns
         -------
         ndarray, shape (..., N)
             Reflectances in [0, 1].
-
-        Raises
-        ------
-        ColourError
-            A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
-        OptionError
-            An unknown mode, invalid wavelengths, an unsupported type, or fewer than one thread.
 
         Examples
         --------
@@ -211,19 +193,19 @@ class Cube:
         """
         if mode not in MODES:
             raise OptionError(f"unknown mode '{mode}'", code="unknown-mode", hint=f"use one of {', '.join(MODES)}")
-        at, kind, count = self.resolve_wavelengths(wavelengths), as_float_type(dtype), as_thread_count(threads)
+        at, kind, count = as_wavelengths(wavelengths, self.wavelengths), as_float_type(dtype), as_thread_count(threads)
         colours = as_colours(rgb, self.data.sensor)
-        function: Function
-        if mode in TABULATED and self._is_table_worthwhile(colours.size // 3, len(at) * kind.itemsize):
-            function = partial(TABULATED[mode], tabulate(self.data, at, kind, count))
-        else:
-            function = partial(_reflectance, self.data, mode, at)
+        function: Function = partial(MODES[mode], self.data, wavelengths=at)
+        if mode in TABULATED and self._is_table_worthwhile(colours, len(at) * kind.itemsize):
+            from uplift.lookup.node_table import tabulate
+
+            function = getattr(tabulate(self.data, at, kind, count), mode)
         return blockwise(function, colours, len(at), kind, count)
 
-    def _is_table_worthwhile(self, colours: int, row_bytes: int) -> bool:
+    def _is_table_worthwhile(self, colours: Array, row_bytes: int) -> bool:
         """Whether to compute the spectra of all lattice points once, instead of repeatedly per block."""
-        bytes_needed = self.data.lattice.size * row_bytes
-        return bytes_needed <= MAX_TABLE_BYTES and colours >= int(self.data.points.present.sum())
+        points = self.data.points.present
+        return bool(points.size * row_bytes <= MAX_TABLE_BYTES and colours.size // 3 >= np.count_nonzero(points))
 
     def covers(self, rgb: ArrayLike) -> Mask:
         """Test whether the cube can answer colours: always, unless it was built for a scene.
@@ -236,12 +218,7 @@ class Cube:
         Returns
         -------
         ndarray of bool, shape (...)
-            True where the cube can answer.
-
-        Raises
-        ------
-        ColourError
-            A colour outside [0, 1] or not finite.
+            True where it can.
         """
         colours = as_colours(rgb, self.data.sensor)
         if self.data.complete_cells is None:
@@ -249,9 +226,7 @@ class Cube:
         return self.data.complete_cells[cells(self.data, colours.reshape(-1, 3))].reshape(colours.shape[:-1])
 
     def fill_missing(self, rgb: ArrayLike | None = None, other: Cube | None = None, *, threads: int = 1) -> Cube:
-        """Add missing lattice points of a sparse cube, with the spectra of another cube.
-
-        The spectra are fitted by the model of this cube, and have exact colours.
+        """Add missing lattice points of a sparse cube: its model, fitted to the spectra of another, with exact colours.
 
         Parameters
         ----------
@@ -266,11 +241,6 @@ class Cube:
         -------
         Cube
             The filled cube; this cube if no point is missing.
-
-        Raises
-        ------
-        ColourError
-            Cubes of different RGB spaces, or a colour that ``other`` cannot answer.
         """
         from uplift.lookup.fill import fill_missing, missing_points
 
@@ -282,74 +252,41 @@ class Cube:
         return Cube(fill_missing(self.data, points, source.data, as_thread_count(threads)))
 
     def standard_error(self, rgb: ArrayLike, light: str | Light | None = None) -> Array | None:
-        """Estimate the difference that 68 % of measurements have from answers.
+        """Estimate the difference that 68 % of measurements have from answers, as learnt from left-out atlas entries.
 
-        The estimate is learnt from atlas entries that are left out of the fit. It holds for materials like those of
-        the atlas, which colours alone do not identify; see `unlike_atlas`. Errors are not normal: for 95 % of
-        measurements, `error_bound` is learnt separately.
+        It holds for materials like those of the atlas, which colours alone do not identify; see `unlike_atlas`.
 
         Parameters
         ----------
         rgb : array_like, shape (..., 3)
             Linear RGB in [0, 1].
         light : str or Light, optional
-            Illuminant, by its name in colour-science. ``data.error_illuminant`` by default.
+            Illuminant, by its name in colour-science. ``data.error_illuminant`` by default; others need a cube with
+            left-out entries, or raise `OptionError`.
 
         Returns
         -------
         ndarray, shape (...), or None
             ΔE00; None if the atlas is too small to estimate it.
-
-        Raises
-        ------
-        ColourError
-            A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
-        OptionError
-            Another light, and a cube of an earlier version, which has no left-out entries.
-        UnknownNameError
-            An unknown illuminant.
         """
-        return self._errors(rgb, light, 0)
+        errors = expected_errors(self, rgb, light)
+        return None if errors is None else errors[..., 0]
 
     def error_bound(self, rgb: ArrayLike, light: str | Light | None = None) -> Array | None:
-        """Estimate the difference that 95 % of measurements stay within; see `standard_error`.
+        """Estimate the difference that 95 % of measurements stay within, which is learnt separately.
 
         Parameters
         ----------
-        rgb : array_like, shape (..., 3)
-            Linear RGB in [0, 1].
-        light : str or Light, optional
-            Illuminant, by its name in colour-science. ``data.error_illuminant`` by default.
+        rgb, light
+            As in `standard_error`.
 
         Returns
         -------
         ndarray, shape (...), or None
-            ΔE00; None if the atlas is too small to estimate it.
-
-        Raises
-        ------
-        ColourError
-            A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
-        OptionError
-            Another light, and a cube of an earlier version, which has no left-out entries.
-        UnknownNameError
-            An unknown illuminant.
+            ΔE00.
         """
-        return self._errors(rgb, light, 1)
-
-    def _errors(self, rgb: ArrayLike, light: str | Light | None, column: int) -> Array | None:
-        """Standard errors, column 0, or error bounds, column 1. Nodes have those under one light."""
-        if self.data.points.standard_error is None:
-            return None
-        lit: Light | None = light if not isinstance(light, str) else None
-        if isinstance(light, str):
-            lit = import_module(OBSERVER).light(light, self.observer, *self.data.sensor.range)
-        function: Function = partial(node_errors, self.data)
-        if lit is not None and lit.name != self.data.error_illuminant:
-            from uplift.lookup.light_errors import light_errors
-
-            function = light_errors(self.data, lit)
-        return blockwise(function, as_colours(rgb, self.data.sensor), 2)[..., column]
+        errors = expected_errors(self, rgb, light)
+        return None if errors is None else errors[..., 1]
 
     def unlike_atlas(self, rgb: ArrayLike) -> Mask:
         """Find colours that are far from all atlas entries, where standard errors rest on no evidence.
@@ -362,39 +299,13 @@ class Cube:
         Returns
         -------
         ndarray of bool, shape (...)
-            True for colours farther from every entry, in CIE L*a*b*, than 95 % of the entries are from another one; and
-            for all colours if the atlas has fewer than two entries.
-
-        Raises
-        ------
-        ColourError
-            A colour outside [0, 1] or not finite.
+            True for colours farther from every entry, in CIE L*a*b*, than 95 % of the entries are from another one.
         """
         from uplift.colorimetry.expected_error import nearest_distances
 
         colours = rgb_to_lab(self.data.sensor, as_colours(rgb, self.data.sensor))
         distances = nearest_distances(colours.reshape(-1, 3), self.data.entry_lab)
         return (distances > self.data.familiar_distance).reshape(colours.shape[:-1])
-
-    def resolve_wavelengths(self, wavelengths: ArrayLike | None = None) -> Array:
-        """Return wavelengths as an array, by default those of the sensor.
-
-        Parameters
-        ----------
-        wavelengths : array_like, shape (N,), optional
-            Wavelengths in nm.
-
-        Returns
-        -------
-        ndarray, shape (N,)
-            Wavelengths in nm.
-
-        Raises
-        ------
-        OptionError
-            Values that are not positive numbers.
-        """
-        return self.wavelengths if wavelengths is None else as_wavelengths(wavelengths)
 
     def decode(self, codes: ArrayLike) -> Array:
         """Convert 8-bit codes to linear RGB, by the encoding of the RGB space.
@@ -408,11 +319,6 @@ class Cube:
         -------
         ndarray, shape (...)
             Linear RGB.
-
-        Raises
-        ------
-        ColourError
-            Codes outside 0 to 255.
         """
         return decode_codes(self.data.sensor, codes)
 
@@ -431,28 +337,6 @@ class Cube:
         """
         return np.interp(np.asarray(rgb, dtype=float), self.data.sensor.decoding, np.arange(256))
 
-    def plot(self, rgb: ArrayLike, wavelengths: ArrayLike | None = None) -> Figure:
-        """Plot the reflectance spectra of colours, each in its own colour.
-
-        Parameters
-        ----------
-        rgb : array_like, shape (..., 3)
-            Linear RGB in [0, 1].
-        wavelengths : array_like, shape (N,), optional
-            Wavelengths in nm, by default those of the sensor.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            The figure; ``savefig`` writes it.
-
-        Raises
-        ------
-        ColourError
-            A colour outside [0, 1], not finite, or not in the scene of a sparse cube.
-        """
-        return import_module(NOTEBOOK).plot_cube(self, rgb, wavelengths)
-
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Write the cube file, atomically.
 
@@ -462,11 +346,6 @@ class Cube:
             File to write.
         force : bool, default False
             Replace an existing file.
-
-        Raises
-        ------
-        OutputError
-            The file exists and ``force`` is false, or cannot be written.
         """
         write(self.data, path, force=force)
 
@@ -499,8 +378,20 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
     return Cube(read(DEFAULT if path is None else find_file(path)))
 
 
-def _reflectance(data: CubeData, mode: str, wavelengths: Array, rgb: Array) -> Array:
-    return MODES[mode](data, rgb, wavelengths)
+def expected_errors(cube: Cube, rgb: ArrayLike, light: str | Light | None = None) -> Array | None:
+    """Standard errors and error bounds (…, 2) of a cube that has estimates. Those of nodes are under one light."""
+    data = cube.data
+    if data.points.standard_error is None:
+        return None
+    lit: Light | None = light if not isinstance(light, str) else None
+    if isinstance(light, str):
+        lit = import_module(OBSERVER).light(light, cube.observer, *data.sensor.range)
+    function: Function = partial(node_errors, data)
+    if lit is not None and lit.name != data.error_illuminant:
+        from uplift.lookup.light_errors import light_errors
+
+        function = light_errors(data, lit)
+    return blockwise(function, as_colours(rgb, data.sensor), 2)
 
 
 def find_file(path: str | os.PathLike[str]) -> str | os.PathLike[str]:

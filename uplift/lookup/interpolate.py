@@ -17,16 +17,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
-from numpy.typing import DTypeLike
 
 from uplift.common.arrays import Array, Indices, Mask, Values
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData
-from uplift.lattice import weighted_sum
-from uplift.lookup.blocks import blockwise
+from uplift.lattice import BoxHits, weighted_sum
 from uplift.lookup.refine import refine_to_rgb, with_colours
 from uplift.models import evaluate, reflectance
 
@@ -39,38 +36,32 @@ class Nodes:
     """(n, 8) lattice points."""
     weights: Array
     """(n, 8) their trilinear weights w, summing to 1."""
-    rows: Indices
-    """(k,) colours in entry boxes."""
-    entry: Indices
-    """(k,) their entries."""
-    lattice_weight: Array
-    """(k,) weight t of the lattice: the share of the way from the entry to the face of its box. The entry has 1 − t."""
-    exit_rgb: Array
-    """(k, 3) linear RGB at which the lattice is evaluated: where the ray leaves the box."""
+    hits: BoxHits
+    """The colours in entry boxes. There the lattice has weight t and is evaluated where the ray leaves the box."""
 
     def mix(self, lattice: Values, entry: Values) -> Values:
         """Mix values (n, K) of the lattice, in place, with those (k, K) of entries: t · lattice + (1 − t) · entry."""
-        if self.rows.size:
-            weight = self.lattice_weight.astype(lattice.dtype)[:, None]
-            lattice[self.rows] = weight * lattice[self.rows] + (1 - weight) * entry
+        if self.hits.rows.size:
+            weight = self.hits.lattice_weight.astype(lattice.dtype)[:, None]
+            lattice[self.hits.rows] = weight * lattice[self.hits.rows] + (1 - weight) * entry
         return lattice
 
     def weighted_sum(self, lattice: Values, atlas: Values) -> Values:
         """Σ w · values of the lattice points (dim³, K), mixed with the entries (E, K): (n, K), in their type."""
-        return self.mix(weighted_sum(lattice, self.points, self.weights), atlas[self.entry])
+        return self.mix(weighted_sum(lattice, self.points, self.weights), atlas[self.hits.entry])
 
     def nearest(self) -> tuple[Indices, Indices, Indices]:
         """Return the nodes of largest weight: lattice points (n,), and rows and entries (m,) where it is an entry."""
         best = self.weights.argmax(axis=1)[:, None]
         points = np.take_along_axis(self.points, best, axis=1)[:, 0]
         weights = np.take_along_axis(self.weights, best, axis=1)[:, 0]
-        is_entry = self.lattice_weight * (1 + weights[self.rows]) <= 1  # 1 − t ≥ t · w
-        return points, self.rows[is_entry], self.entry[is_entry]
+        is_entry = self.hits.lattice_weight * (1 + weights[self.hits.rows]) <= 1  # 1 − t ≥ t · w
+        return points, self.hits.rows[is_entry], self.hits.entry[is_entry]
 
     def lattice_rgb(self, rgb: Array) -> Array:
         """Return the colours (n, 3) at which the lattice is evaluated for linear RGB (n, 3)."""
         evaluated = rgb.copy()
-        evaluated[self.rows] = self.exit_rgb
+        evaluated[self.hits.rows] = self.hits.exit_rgb
         return evaluated
 
 
@@ -85,7 +76,7 @@ def around(data: CubeData, rgb: Array) -> Nodes:
     if data.complete_cells is not None:
         require_covered(data.complete_cells[lattice.index(low)], rgb)
     points, weights = lattice.cell_corners(low, fraction)
-    return Nodes(points, weights, *hits)
+    return Nodes(points, weights, hits)
 
 
 def cells(data: CubeData, rgb: Array) -> Indices:
@@ -150,7 +141,7 @@ def refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the weighted coefficients of the lattice and of entries, moved to exact colours."""
     nodes = around(data, rgb)
     lattice = evaluate(data.model, _exact_lattice(data, nodes, rgb), wavelengths)
-    if not nodes.rows.size:
+    if not nodes.hits.rows.size:
         return lattice
     return nodes.mix(lattice, evaluate(data.entry_spectra.model, _exact_entries(data, nodes), wavelengths))
 
@@ -172,7 +163,7 @@ def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     return weighted_sum(values, row.reshape(corners.shape), weights)
 
 
-Mode = Callable[[CubeData, Array, Array], Array]
+Mode = Callable[..., Array]
 """From a cube, linear RGB (n, 3) and wavelengths (N,) in nm to reflectance (n, N)."""
 MODES: dict[str, Mode] = {"spectra": spectra, "moments": moments, "refined": refined, "nearest": nearest}
 
@@ -213,11 +204,11 @@ def extended_multipliers(data: CubeData, rgb: Array) -> Array:
     """
     nodes, model = around(data, rgb), data.entry_spectra.model
     extended = _append_zeros(data, _exact_lattice(data, nodes, rgb))
-    if not nodes.rows.size:
+    if not nodes.hits.rows.size:
         return extended
-    inside = replace(nodes, rows=np.arange(len(nodes.rows)))
-    mixed = inside.mix(model.to_storage(extended[nodes.rows]), model.to_storage(_exact_entries(data, nodes)))
-    extended[nodes.rows] = refine_to_rgb(data, model, model.from_storage(mixed), rgb[nodes.rows])
+    inside = replace(nodes, hits=nodes.hits._replace(rows=np.arange(len(nodes.hits.rows))))
+    mixed = inside.mix(model.to_storage(extended[nodes.hits.rows]), model.to_storage(_exact_entries(data, nodes)))
+    extended[nodes.hits.rows] = refine_to_rgb(data, model, model.from_storage(mixed), rgb[nodes.hits.rows])
     return extended
 
 
@@ -228,7 +219,7 @@ def node_errors(data: CubeData, rgb: Array) -> Array:
     entries = np.repeat(data.atlas.error[:, None], 2, axis=1)
     entries[data.atlas.measured_count :] *= factors  # errors of looks are expected ones
     lattice = weighted_sum(errors, nodes.points, nodes.weights) * factors
-    return nodes.mix(lattice, entries[nodes.entry])
+    return nodes.mix(lattice, entries[nodes.hits.entry])
 
 
 def _lattice_coefficients(data: CubeData, nodes: Nodes) -> Array:
@@ -243,7 +234,7 @@ def _exact_lattice(data: CubeData, nodes: Nodes, rgb: Array) -> Array:
 
 def _exact_entries(data: CubeData, nodes: Nodes) -> Array:
     """Multipliers (k, K) of the entry of each colour in a box, that have exactly the colour of the entry."""
-    entry_spectra, (entries, row) = data.entry_spectra, np.unique(nodes.entry, return_inverse=True)
+    entry_spectra, (entries, row) = data.entry_spectra, np.unique(nodes.hits.entry, return_inverse=True)
     return refine_to_rgb(data, entry_spectra.model, entry_spectra.multipliers[entries], data.atlas.rgb[entries])[row]
 
 
@@ -254,73 +245,7 @@ def _append_zeros(data: CubeData, multipliers: Array) -> Array:
 
 def _mix_entries(data: CubeData, nodes: Nodes, lattice: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the lattice, mixed with the spectra of entries in their boxes."""
-    if not nodes.rows.size:
+    if not nodes.hits.rows.size:
         return lattice
-    entries, row = np.unique(nodes.entry, return_inverse=True)
+    entries, row = np.unique(nodes.hits.entry, return_inverse=True)
     return nodes.mix(lattice, data.entry_spectra.reflectance(entries, wavelengths)[row])
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class NodeTable:
-    """Values of all nodes, float64 or float32, for queries of more colours than the lattice has points."""
-
-    data: CubeData
-    lattice: Values
-    """(dim³, K) values of the lattice points, NaN at absent points."""
-    atlas: Values
-    """(E, K) values of the atlas entries."""
-    wavelengths: Array | None = None
-    """(K,) wavelengths in nm of a table of reflectances; None for other values."""
-
-    @classmethod
-    def of_present_points(
-        cls, data: CubeData, points: Values, atlas: Values, wavelengths: Array | None = None
-    ) -> NodeTable:
-        """Make a table from values (m, K) of the present points."""
-        if data.complete_cells is None:
-            return cls(data, points, atlas, wavelengths)
-        lattice = np.full((data.lattice.size, points.shape[1]), np.nan, points.dtype)
-        lattice[data.points.present] = points
-        return cls(data, lattice, atlas, wavelengths)
-
-    def spectra(self, rgb: Array) -> Values:
-        """Reflectance (n, N) in mode ``spectra``."""
-        mixed = np.clip(self.values(rgb), 0, 1)
-        rows = inexact_rows(self.data, rgb)
-        if rows.size and self.wavelengths is not None:
-            mixed[rows] = spectra(self.data, rgb[rows], self.wavelengths)
-        return mixed
-
-    def nearest(self, rgb: Array) -> Values:
-        """Reflectance (n, N) in mode ``nearest``."""
-        points, rows, entry = around(self.data, rgb).nearest()
-        values = self.lattice[points]
-        values[rows] = self.atlas[entry]
-        return values
-
-    def values(self, rgb: Array) -> Values:
-        """Weighted values (n, K) of the nodes."""
-        return around(self.data, rgb).weighted_sum(self.lattice, self.atlas)
-
-
-TABULATED = {"spectra": NodeTable.spectra, "nearest": NodeTable.nearest}
-"""Modes that can use a table."""
-
-
-def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1) -> NodeTable:
-    """Compute the reflectances of all nodes at wavelengths (N,) in nm: dim³ × N numbers."""
-    evaluate_rows = partial(reflectance, data.model, wavelengths=wavelengths)
-    stored = data.points.coefficients[data.points.present]
-    present = blockwise(evaluate_rows, stored, len(wavelengths), dtype, threads)
-    entries = data.entry_spectra.reflectance(np.arange(len(data.atlas.names)), wavelengths)
-    return NodeTable.of_present_points(data, present, entries.astype(dtype, copy=False), wavelengths)
-
-
-def tabulate_coefficients(data: CubeData, count: int, dtype: DTypeLike = np.float64, threads: int = 1) -> NodeTable:
-    """Tabulate the coefficients of all nodes, ``count`` each: as many as the nodes or the entries have."""
-    present = data.points.coefficients[data.points.present]
-    entries = data.atlas.coefficients
-    if count != data.model.count:
-        present = blockwise(partial(extend_coefficients, data), present, count, dtype, threads)
-        entries = data.entry_spectra.coefficients
-    return NodeTable.of_present_points(data, present.astype(dtype, copy=False), entries.astype(dtype, copy=False))

@@ -46,7 +46,7 @@ class LightErrors:
         nodes, radii = around(self.data, rgb), np.array(self.expected.radii)
         squares = self.expected(rgb_to_lab(self.data.sensor, rgb))
         remaining = np.tile(radii * np.sqrt(self.expected.floor), (len(rgb), 1))
-        remaining = nodes.mix(remaining, self.entries[nodes.entry])
+        remaining = nodes.mix(remaining, self.entries[nodes.hits.entry])
         return np.asarray(np.sqrt(radii**2 * squares + remaining**2))
 
 

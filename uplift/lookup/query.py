@@ -16,8 +16,8 @@ from uplift.common.arrays import Array
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData
 from uplift.lattice import Status
-from uplift.lookup.blocks import BLOCK
-from uplift.lookup.cube import Cube
+from uplift.lookup.blocks import BLOCK, as_wavelengths
+from uplift.lookup.cube import Cube, expected_errors
 from uplift.lookup.interpolate import coefficients
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models import evaluate
@@ -83,7 +83,7 @@ def query(
 
     ``requested_rgb`` are the colours before gamut mapping, ``lights`` those of `QueryResult.standard_errors`.
     """
-    at = cube.resolve_wavelengths(wavelengths)
+    at = as_wavelengths(wavelengths, cube.wavelengths)
     requested = rgb if requested_rgb is None else requested_rgb
     for start in range(0, len(rgb), BLOCK):
         block = slice(start, start + BLOCK)
@@ -109,7 +109,7 @@ def query_xyz(
     if not np.isfinite(values).all():
         raise ColourError("XYZ must be finite", code="rgb-not-finite", hint="fix its source")
     rgb = np.asarray(values @ sensor.xyz_to_rgb.T)
-    at = cube.resolve_wavelengths(wavelengths)
+    at = as_wavelengths(wavelengths, cube.wavelengths)
     mapped = map_to_gamut(rgb, sensor, MAPPING)
     for row, result in enumerate(query(cube, mapped.rgb, at, mode, lights=lights)):
         yield _outside(cube, result, rgb[row], at, lights) if mapped.outside[row] else result
@@ -181,18 +181,21 @@ def _block(
     xyz = at_sensor @ sensor.light.xyz.T
     delta_e = delta_e_rgb(sensor, rgb, round_trip)
     relit = {light.name: at_sensor @ light.xyz.T for light in lights}
-    errors, bounds = cube.standard_error(rgb), cube.error_bound(rgb)
-    known = () if errors is None else lights
-    errors_by_light = {light.name: np.asarray(cube.standard_error(rgb, light)) for light in known}
-    bounds_by_light = {light.name: np.asarray(cube.error_bound(rgb, light)) for light in known}
-    unlike = None if errors is None else cube.unlike_atlas(rgb)
+    # Standard errors and error bounds (n, 2), under the build illuminant and under each light.
+    errors = expected_errors(cube, rgb)
+    by_light = {} if errors is None else {light.name: np.asarray(expected_errors(cube, rgb, light)) for light in lights}
+    unlike = np.zeros(len(rgb), dtype=bool) if errors is None else cube.unlike_atlas(rgb)
+    # A colour is that of an entry if their 8-bit codes are close.
+    codes, entry_codes = cube.encode(rgb), cube.encode(data.atlas.rgb)
     low, fraction = data.lattice.cell(rgb)
     statuses = data.points.status[data.lattice.cell_corners(low, fraction)[0]]
     # Mixtures of realisable colours are realisable, so only cells with an unrealisable corner are tested.
     realisable = ~(statuses == Status.UNREALISABLE).any(axis=1)
     if not realisable.all():
         realisable[~realisable] = solid(sensor.matrix).contains(rgb[~realisable])
-    for row, cell in enumerate(low):
+    for row, cell in enumerate(low.tolist()):
+        difference = np.abs(entry_codes - codes[row]).max(axis=1)
+        entry = data.atlas.names[difference.argmin()] if difference.min(initial=np.inf) <= CODE_TOLERANCE else None
         yield QueryResult(
             rgb=rgb[row],
             requested_rgb=requested[row],
@@ -201,24 +204,14 @@ def _block(
             round_trip=round_trip[row],
             xyz=xyz[row],
             delta_e_2000=float(delta_e[row]),
-            cell=(int(cell[0]), int(cell[1]), int(cell[2])),
+            cell=tuple(cell),
             statuses=tuple(map(Status, sorted(set(statuses[row].tolist())))),
-            entry=_entry(cube, rgb[row]),
-            standard_error=None if errors is None else float(errors[row]),
-            error_bound=None if bounds is None else float(bounds[row]),
-            standard_errors={name: float(each[row]) for name, each in errors_by_light.items()},
-            error_bounds={name: float(each[row]) for name, each in bounds_by_light.items()},
+            entry=entry,
+            standard_error=None if errors is None else float(errors[row, 0]),
+            error_bound=None if errors is None else float(errors[row, 1]),
+            standard_errors={name: float(each[row, 0]) for name, each in by_light.items()},
+            error_bounds={name: float(each[row, 1]) for name, each in by_light.items()},
             light_xyz={name: each[row] for name, each in relit.items()},
-            unlike_atlas=unlike is not None and bool(unlike[row]),
+            unlike_atlas=bool(unlike[row]),
             realisable=bool(realisable[row]),
         )
-
-
-def _entry(cube: Cube, rgb: Array) -> str | None:
-    """Name of the atlas entry of a colour (3,), if one has it."""
-    atlas = cube.data.atlas
-    if not atlas.names:
-        return None
-    difference = np.abs(cube.encode(atlas.rgb) - cube.encode(rgb)).max(axis=1)
-    nearest = int(difference.argmin())
-    return atlas.names[nearest] if difference[nearest] <= CODE_TOLERANCE else None

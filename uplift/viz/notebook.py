@@ -6,10 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from markupsafe import Markup, escape
-from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, resample
-from uplift.colorimetry.gamut import as_rgb
 from uplift.colorimetry.observer import sensor
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
@@ -29,16 +27,13 @@ SWATCH = "display:inline-block;width:1.4em;height:1.4em;margin:1px;background:"
 SPARKLINE = (120, 24)  # width and height of the plot of an entry in pixels; the height is reflectance from 0 to 1
 
 
-def plot_cube(cube: Cube, rgb: ArrayLike, wavelengths: ArrayLike | None = None) -> Figure:
-    """Plot the reflectance spectra of colours (..., 3), each in its own colour, at wavelengths (N,) in nm."""
-    colours = np.asarray(as_rgb(rgb), dtype=float).reshape(-1, 3)
-    at = cube.resolve_wavelengths(wavelengths)
-    spectra = cube.reflectance(colours, at)
+def plot_cube(cube: Cube, rgb: Array) -> Figure:
+    """Plot the reflectance spectra of linear RGB (n, 3), each in its own colour."""
     figure = new_figure(6.0, 3.2)
     axes = figure.subplots()
-    for spectrum, code in zip(spectra, hex_codes(colours, cube.data.sensor), strict=True):
-        axes.plot(at, spectrum, color=GREY, linewidth=2.4)
-        axes.plot(at, spectrum, color=code, linewidth=1.6, label=code)
+    for spectrum, code in zip(cube.reflectance(rgb), hex_codes(rgb, cube.data.sensor), strict=True):
+        axes.plot(cube.wavelengths, spectrum, color=GREY, linewidth=2.4)
+        axes.plot(cube.wavelengths, spectrum, color=code, linewidth=1.6, label=code)
     style_spectrum_axes(axes)
     return figure
 

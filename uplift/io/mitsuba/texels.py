@@ -13,9 +13,8 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.lights.lookup import EmissionTable
 from uplift.lookup import Cube
-from uplift.lookup.blocks import blockwise
+from uplift.lookup.blocks import as_colours, blockwise
 from uplift.lookup.interpolate import extended_multipliers, refined_multipliers
-from uplift.lookup.validation import as_colours
 from uplift.models import evaluate
 from uplift.models.model import Model
 

@@ -27,7 +27,7 @@ from uplift.io.texture.image import Part, Values
 from uplift.io.texture.uplifter import SPECTRAL_LAYOUT, Converted, Converter, ReadColours, spectral_channels
 from uplift.lights.lookup import MAX_VALUE, EmissionTable
 from uplift.lights.table import emission_digest
-from uplift.lookup.validation import as_wavelengths
+from uplift.lookup.blocks import as_wavelengths
 
 DEPTHS = ("float", "half")
 """Types of channels, the default first."""
@@ -136,7 +136,7 @@ def prepare_lights(
             hint="use float where a component exceeds 65504",
         )
     check_encoding(encoding)
-    at = table.wavelengths if wavelengths is None else as_wavelengths(wavelengths)
+    at = as_wavelengths(wavelengths, table.wavelengths)
     channels = spectral_channels("S0", at)
     settings = {"as": "emission", "wavelengths": at.tolist(), "depth": depth, "encoding": encoding}
     settings |= {} if space is None else {"space": space}

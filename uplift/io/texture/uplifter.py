@@ -26,7 +26,7 @@ from uplift.io.texture.colours import ColourChannels, Counts, Floats, check_enco
 from uplift.io.texture.image import Image, Part, Values
 from uplift.lattice import Status
 from uplift.lookup import Cube
-from uplift.lookup.blocks import blockwise
+from uplift.lookup.blocks import as_wavelengths, blockwise
 from uplift.lookup.interpolate import refined_multipliers
 
 Sampler = Callable[[Floats], Floats]
@@ -124,10 +124,10 @@ class Spectrum(PixelEncoding):
     header = SPECTRAL_LAYOUT
 
     def channels(self, cube: Cube) -> tuple[str, ...]:
-        return spectral_channels("T", cube.resolve_wavelengths(self.wavelengths))
+        return spectral_channels("T", as_wavelengths(self.wavelengths, cube.wavelengths))
 
     def describe(self, cube: Cube) -> dict[str, Any]:
-        return {"as": self.name, "wavelengths": cube.resolve_wavelengths(self.wavelengths).tolist()}
+        return {"as": self.name, "wavelengths": as_wavelengths(self.wavelengths, cube.wavelengths).tolist()}
 
     def make_sampler(self, cube: Cube, threads: int) -> Sampler:
         from uplift.lookup import bulk

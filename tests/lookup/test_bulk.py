@@ -84,7 +84,7 @@ def test_results_keep_the_shape_of_the_input(sample, shape):
 def test_results_do_not_depend_on_chunks_and_threads(small_cube, monkeypatch):
     rgb = colours(small_cube.data)
     whole = bulk.spectra(small_cube, AT, threads=1)(rgb)
-    monkeypatch.setattr("uplift.lookup.bulk.sampler.CHUNKS", (256, 64))
+    monkeypatch.setattr("uplift.lookup.bulk.CHUNKS", (256, 64))
     for threads in (1, 2, 5):
         again = bulk.spectra(small_cube, AT, threads=threads)(rgb)
         np.testing.assert_allclose(again, whole, rtol=0, atol=1e-6)
