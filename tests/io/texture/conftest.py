@@ -7,6 +7,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import OpenEXR
+import OpenImageIO
 import pytest
 
 from uplift.io import texture
@@ -33,6 +34,18 @@ def read_channels(path, names, part=0):
 def write_exr(path, planes, **header):
     """Write planes (h, w) as a single part."""
     OpenEXR.File({"type": OpenEXR.scanlineimage, **header}, planes).write(str(path))
+    return path
+
+
+def write_image(path, values, **attributes):
+    """Write values (h, w, n) in the format of the suffix. An attribute is a value, or a type and a value."""
+    spec = OpenImageIO.ImageSpec(values.shape[1], values.shape[0], values.shape[2], str(values.dtype))
+    for name, value in attributes.items():
+        spec.attribute(name, *value) if isinstance(value, tuple) else spec.attribute(name, value)
+    image = OpenImageIO.ImageOutput.create(str(path))
+    assert image.open(str(path), spec)
+    assert image.write_image(values)
+    image.close()
     return path
 
 

@@ -57,8 +57,14 @@ def icc(space, tags):
     return head.ljust(128, b"\0") + struct.pack(">I", len(tags)) + table + body
 
 
-def save(path, data, codes=128):
-    Image.fromarray(np.full((3, 4, 3), codes, np.uint8)).save(path, icc_profile=data)
+def save(path, statement, codes=128):
+    """Save an image with a profile, or with code points of a PNG file."""
+    Image.fromarray(np.full((3, 4, 3), codes, np.uint8)).save(
+        path, icc_profile=statement if isinstance(statement, bytes) else None
+    )
+    if isinstance(statement, tuple):
+        data, chunk = path.read_bytes(), b"cICP" + bytes([*statement, 0, 1])
+        path.write_bytes(data[:33] + struct.pack(">I", 4) + chunk + struct.pack(">I", zlib.crc32(chunk)) + data[33:])
     return path
 
 
@@ -74,110 +80,81 @@ SRGB_PROFILES = {
     "parameters": by_matrix("sRGB", SRGB_PARA),
     "a table": by_matrix("sRGB", SRGB_TABLE),
 }
+CODES = np.array([120, 128, 110])
 
 
 @pytest.mark.parametrize("data", SRGB_PROFILES.values(), ids=SRGB_PROFILES)
-@pytest.mark.parametrize("suffix", ["png", "jpg"])
-def test_srgb_profiles_change_nothing(data, suffix, spectral, tmp_path):
-    plain, *_ = convert(spectral, save(tmp_path / f"b.{suffix}", None))
-    rgb, spaces, codes = convert(spectral, save(tmp_path / f"a.{suffix}", data))
+def test_srgb_profiles_change_nothing(data, spectral, tmp_path):
+    plain, *_ = convert(spectral, save(tmp_path / "b.png", None))
+    rgb, spaces, codes = convert(spectral, save(tmp_path / "a.png", data))
     assert (spaces, codes) == ((), ())
     np.testing.assert_array_equal(rgb, plain)
 
 
-OTHERS = [
-    (by_matrix("Display P3", SRGB_PARA), "Display P3", colour.models.eotf_sRGB),
-    (by_matrix("Adobe RGB (1998)", GAMMA), "Adobe RGB (1998)", lambda codes: codes ** (round(2.2 * 256) / 256)),
-    (by_matrix("sRGB", LINEAR), "sRGB", lambda codes: codes),
-    (by_matrix("ITU-R BT.2020", SRGB_TABLE), "ITU-R BT.2020", colour.models.eotf_sRGB),
-]
-CODES = np.array([120, 128, 110])
-
-
-@pytest.mark.parametrize("suffix", ["png", "tif"])
-@pytest.mark.parametrize(("data", "space", "curve"), OTHERS)
-def test_colours_of_other_profiles_are_converted(suffix, data, space, curve, spectral, tmp_path):
-    rgb, spaces, codes = convert(spectral, save(tmp_path / f"a.{suffix}", data, CODES))
-    expected = conversion(observer.primaries(space), SRGB) @ curve(CODES / 255)
-    assert (spaces, codes) == ((space,), ())
-    np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-4)
-
-
-def test_profiles_without_curves_trigger_a_warning(spectral, tmp_path):
-    plain, *_ = convert(spectral, save(tmp_path / "b.png", None))
-    rgb, spaces, codes = convert(spectral, save(tmp_path / "a.png", by_matrix("sRGB", b"mft2 and so on")))
-    assert (spaces, codes) == ((), ("colour-space-unreadable",))
-    np.testing.assert_array_equal(rgb, plain)
-
-
-@pytest.mark.parametrize("suffix", ["jpg", "tif"])  # PNG files lose them when they are read
-@pytest.mark.parametrize("data", [by_matrix("sRGB", GAMMA)[:300], b"no profile"], ids=["cut short", "none"])
-def test_damaged_profiles_trigger_a_warning(suffix, data, spectral, tmp_path):
-    assert convert(spectral, save(tmp_path / f"a.{suffix}", data))[2] == ("colour-space-unreadable",)
-
-
-def chunk(name, data):
-    return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+P3, ADOBE, BT2020 = "Display P3", "Adobe RGB (1998)", "ITU-R BT.2020"
 
 
 @pytest.mark.parametrize(
-    ("points", "space", "curve"),
+    ("suffix", "statement", "space", "curve"),
     [
-        ((1, 13), None, colour.models.eotf_sRGB),
-        ((12, 13), "Display P3", colour.models.eotf_sRGB),
-        ((9, 8), "ITU-R BT.2020", lambda codes: codes),
-        ((9, 14), "ITU-R BT.2020", colour.models.oetf_inverse_BT2020),
-        ((1, 4), "sRGB", lambda codes: codes**2.2),
+        ("png", by_matrix(P3, SRGB_PARA), P3, colour.models.eotf_sRGB),
+        ("tif", by_matrix(ADOBE, GAMMA), ADOBE, lambda codes: codes ** (round(2.2 * 256) / 256)),
+        ("jpg", by_matrix("sRGB", LINEAR), "sRGB", lambda codes: codes),
+        ("png", by_matrix(BT2020, SRGB_TABLE), BT2020, colour.models.eotf_sRGB),
+        ("png", (12, 13), P3, colour.models.eotf_sRGB),
+        ("png", (9, 8), BT2020, lambda codes: codes),
+        ("png", (9, 14), BT2020, colour.models.oetf_inverse_BT2020),
+        ("png", (1, 4), "sRGB", lambda codes: codes**2.2),
     ],
 )
-def test_code_points_of_a_png_are_used(points, space, curve, spectral, tmp_path):
-    rgb, spaces, codes = convert(spectral, with_code_points(tmp_path / "a.png", points))
-    expected = conversion(observer.primaries(space or "sRGB"), SRGB) @ curve(CODES / 255)
-    assert (spaces, codes) == (() if space is None else (f"CICP {points[0]}, {points[1]}",), ())
-    np.testing.assert_allclose(rgb, expected, rtol=0, atol=1e-3 if points[1] == 14 else 2e-4)
+def test_colours_of_profiles_and_code_points_are_converted(suffix, statement, space, curve, spectral, tmp_path):
+    path, name = save(tmp_path / f"a.{suffix}", statement, CODES), space
+    if isinstance(statement, tuple):
+        name = f"CICP {statement[0]}, {statement[1]}"
+    rgb, spaces, codes = convert(spectral, path)
+    given = np.asarray(Image.open(path))[0, 0] / 255
+    expected = conversion(observer.primaries(space), SRGB) @ curve(given)
+    assert (spaces, codes) == ((name,), ())
+    np.testing.assert_allclose(rgb, expected, rtol=0, atol=1e-3 if statement == (9, 14) else 2e-4)
 
 
-@pytest.mark.parametrize("points", [(9, 16), (2, 13)])
-def test_unknown_code_points_trigger_a_warning(points, spectral, tmp_path):
-    assert convert(spectral, with_code_points(tmp_path / "a.png", points))[2] == ("colour-space-unreadable",)
-
-
-def with_code_points(path, points):
-    data = save(path, None, CODES).read_bytes()
-    path.write_bytes(data[:33] + chunk(b"cICP", bytes([*points, 0, 1])) + data[33:])
-    return path
+@pytest.mark.parametrize(
+    ("suffix", "statement"),
+    [
+        ("png", by_matrix("sRGB", b"mft2 and so on")),
+        ("jpg", by_matrix("sRGB", GAMMA)[:300]),  # PNG files lose damaged profiles when they are read
+        ("tif", b"no profile"),
+        ("png", (9, 16)),
+        ("png", (2, 13)),
+    ],
+)
+def test_unusable_statements_trigger_a_warning(suffix, statement, spectral, tmp_path):
+    path = save(tmp_path / f"a.{suffix}", statement)
+    assert convert(spectral, path)[1:] == ((), ("colour-space-unreadable",))
 
 
 def exr(path, rgb, **header):
-    values = np.broadcast_to(np.asarray(rgb, np.float32), (3, 4, 3))
-    return write_exr(path, planes(values), **header)
+    return write_exr(path, planes(np.broadcast_to(np.asarray(rgb, np.float32), (3, 4, 3))), **header)
 
 
 ACES = colour.RGB_COLOURSPACES["ACEScg"]
 AP1 = tuple(float(number) for number in (*ACES.primaries.ravel(), *ACES.whitepoint))
+INTEROP, OTHER = {"colorInteropID": "lin_ap1_scene"}, {"colorInteropID": "lin_rec2020_scene"}
 
 
 @pytest.mark.parametrize(
-    "header",
+    ("header", "name"),
     [
-        {"colorInteropID": "lin_ap1_scene"},
-        {"chromaticities": AP1},
-        {"colorInteropID": "lin_ap1_scene", "chromaticities": tuple(AP1)},
-        {"colorInteropID": "unknown", "chromaticities": tuple(AP1)},
+        (INTEROP, None),
+        ({"chromaticities": AP1}, None),
+        ({**INTEROP, "chromaticities": AP1}, None),
+        ({"colorInteropID": "unknown", "chromaticities": AP1}, None),
+        *((OTHER, name) for name in ("AP1", "ACEScg", "lin_ap1_scene", ",".join(map(str, AP1)))),
     ],
 )
-def test_spaces_of_openexr_are_converted(header, spectral, tmp_path):
-    rgb, spaces, codes = convert(spectral, exr(tmp_path / "a.exr", [0.3, 0.4, 0.2], **header))
-    expected = conversion(observer.primaries("ACEScg"), SRGB) @ [0.3, 0.4, 0.2]
-    assert (len(spaces), codes) == (1, ())
-    np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-5)
-
-
-@pytest.mark.parametrize("name", ["AP1", "ACEScg", "lin_ap1_scene", ",".join(map(str, AP1))])
-def test_the_caller_overrides_the_file(name, small_cube, tmp_path):
-    named = texture.prepare(small_cube, depth="float", space=name, threads=1)
-    path = exr(tmp_path / "a.exr", [0.3, 0.4, 0.2], colorInteropID="lin_rec2020_scene")
-    rgb, spaces, codes = convert(named, path)
+def test_spaces_of_openexr_are_converted_and_the_caller_overrides_them(header, name, spectral, small_cube, tmp_path):
+    named = texture.prepare(small_cube, depth="float", space=name, threads=1) if name else spectral
+    rgb, spaces, codes = convert(named, exr(tmp_path / "a.exr", [0.3, 0.4, 0.2], **header))
     expected = conversion(observer.primaries("ACEScg"), SRGB) @ [0.3, 0.4, 0.2]
     assert (len(spaces), codes) == (1, ())
     np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-5)

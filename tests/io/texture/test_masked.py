@@ -57,7 +57,10 @@ def spectra(cube, colours):
     return cube.reflectance(colours.reshape(-1, 3), WAVELENGTHS).reshape(*SHAPE, -1)
 
 
-def test_numbers_choose_the_cube(converted, cubes, colours, tmp_path):
+@pytest.mark.parametrize("band", [1 << 25, 1])
+def test_numbers_choose_the_cube(converted, cubes, colours, tmp_path, monkeypatch, band):
+    monkeypatch.setattr("uplift.io.texture.writer.MAX_BAND_BYTES", band)
+    monkeypatch.setattr("uplift.io.texture.image.MAX_BAND_BYTES", band)
     numbers = np.random.default_rng(1).integers(0, 3, SHAPE, dtype=np.uint8)
     found = converted(cubes, png(tmp_path / "ids.png", numbers))
     for number, cube in enumerate(cubes):
@@ -78,12 +81,6 @@ def test_grey_mixes_two_cubes(converted, cubes, colours, tmp_path, sensor, kind)
     found = converted(cubes[:2], mask)
     one, two = (spectra(cube, colours) for cube in cubes[:2])
     np.testing.assert_allclose(found, (1 - ramp)[..., None] * one + ramp[..., None] * two, atol=3e-6)
-
-
-def test_mixtures_have_the_colour_of_the_pixel(converted, cubes, colours, tmp_path, sensor):
-    mask = png(tmp_path / "mask.png", np.random.default_rng(2).integers(0, 256, SHAPE, dtype=np.uint8))
-    found = converted(cubes[:2], mask, texture.Spectrum(tuple(sensor.wavelengths)))
-    np.testing.assert_allclose(sensor.rgb(found.astype(float)), colours, atol=1e-4)
 
 
 def test_colours_are_weights_of_three_cubes(converted, cubes, colours, tmp_path):
@@ -115,13 +112,10 @@ def test_multipliers_mix_as_moments_and_stay_exact(converted, cubes, colours, tm
     np.testing.assert_array_equal(found[:, ::3], alone)
 
 
-def test_bands_read_the_rows_of_the_mask(converted, cubes, colours, tmp_path, monkeypatch):
-    numbers = np.random.default_rng(4).integers(0, 2, SHAPE, dtype=np.uint8)
-    mask = png(tmp_path / "ids.png", numbers)
-    expected = converted(cubes[:2], mask)
-    monkeypatch.setattr("uplift.io.texture.writer.MAX_BAND_BYTES", 1)
-    monkeypatch.setattr("uplift.io.texture.image.MAX_BAND_BYTES", 1)
-    np.testing.assert_array_equal(converted(cubes[:2], mask), expected)
+def float_mask(value):
+    weights = np.full(SHAPE, 0.5, np.float32)
+    weights[3, 4] = value
+    return weights
 
 
 @pytest.mark.parametrize(
@@ -132,31 +126,26 @@ def test_bands_read_the_rows_of_the_mask(converted, cubes, colours, tmp_path, mo
         (np.full(SHAPE, 255, np.uint8), 3),
         (np.zeros((*SHAPE, 3), np.uint8) + np.uint8([1, 0, 0]), 2),
         (np.eye(20, 30, dtype=np.uint8)[..., None] * np.uint8([9, 0, 0]), 3),  # black pixels
+        *((float_mask(value), 2) for value in (np.nan, -0.1, 1.1, np.inf)),
     ],
 )
 def test_masks_that_do_not_fit_are_refused(image, cubes, tmp_path, values, count):
+    mask = tmp_path / "mask.exr"
+    mask = write_exr(mask, {"Y": values}) if values.dtype == np.float32 else png(mask.with_suffix(".png"), values)
     with raises(TextureError) as caught:
-        texture.convert(prepared(cubes[:count], png(tmp_path / "mask.png", values)), image, tmp_path / "out.exr")
-    assert caught.value.path == tmp_path / "mask.png"
+        texture.convert(prepared(cubes[:count], mask), image, tmp_path / "out.exr")
+    assert caught.value.path == mask
     assert not (tmp_path / "out.exr").exists()
-
-
-@pytest.mark.parametrize("value", [np.nan, -0.1, 1.1, np.inf])
-def test_float_weights_outside_are_refused(image, cubes, tmp_path, value):
-    weights = np.full(SHAPE, 0.5, np.float32)
-    weights[3, 4] = value
-    mask = write_exr(tmp_path / "mask.exr", {"Y": weights})
-    with raises(TextureError):
-        texture.convert(prepared(cubes[:2], mask), image, tmp_path / "out.exr")
 
 
 def test_cubes_that_do_not_fit_are_refused(cubes, small_sigmoid_cube, tmp_path):
     mask = png(tmp_path / "mask.png", np.zeros(SHAPE, np.uint8))
-    with raises(OptionError):
-        prepared(cubes[:1], mask)
-    with raises(OptionError):
-        prepared((cubes[0], small_sigmoid_cube), mask, texture.Multipliers())
-    with raises(OptionError, "cubes-of-different-spaces"):
-        prepared((cubes[0], uplift.load("ACEScg")), mask)
+    for others, encoding, code in (
+        ((), SPECTRUM, "option"),
+        ((small_sigmoid_cube,), texture.Multipliers(), "option"),
+        ((uplift.load("ACEScg"),), SPECTRUM, "cubes-of-different-spaces"),
+    ):
+        with raises(OptionError, code):
+            prepared((cubes[0], *others), mask, encoding)
     with raises(TextureError, "file-not-found"):
         prepared(cubes[:2], tmp_path / "none.png")
