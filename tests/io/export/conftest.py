@@ -1,4 +1,4 @@
-"""Fixtures: a cube of unusual phase and number of moments."""
+"""Fixtures: a cube of unusual phase and number of moments, and one of sigmoids with an atlas."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tests.helpers import with_points
-from uplift.lookup import Cube
+from uplift.lookup import Cube, load
 from uplift.models import Moments, Phase
 
 
@@ -18,3 +18,8 @@ def warped_cube(small_cube) -> Cube:
     atlas = replace(data.atlas, coefficients=data.atlas.coefficients[:, :5], spectra=None)
     model = Moments(5, Phase(400, 700, "vision"))
     return Cube(with_points(replace(data, model=model, atlas=atlas), coefficients=data.points.coefficients[:, :5]))
+
+
+@pytest.fixture(scope="session")
+def sigmoid_cube(repository) -> Cube:
+    return load(repository / "cubes" / "sigmoid-8-macbeth.uplift")

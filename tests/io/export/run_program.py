@@ -59,8 +59,8 @@ def c(path, rgb, wavelengths, form="header", compiler=("cc", "-std=c99")):
     return _compiled(path, rgb, wavelengths, compiler, "rgb, wavelengths, 4, found", load)
 
 
-def cpp(path, rgb, wavelengths):
-    return c(path, rgb, wavelengths, "header", ("c++", "-std=c++11", "-x", "c++"))
+def cpp(path, rgb, wavelengths, form="header"):
+    return c(path, rgb, wavelengths, form, ("c++", "-std=c++11", "-x", "c++"))
 
 
 def cuda(path, rgb, wavelengths, form="file"):

@@ -69,9 +69,7 @@ def test_nan_and_infinity_are_0(table, tmp_path):
     np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-6)
 
 
-@pytest.mark.parametrize(
-    "options", [{"style": "hlsl"}, {"style": "glsl", "form": "textures"}, {"style": "glsl", "form": "header"}]
-)
+@pytest.mark.parametrize("options", [{"style": "hlsl"}, {"style": "glsl", "form": "header"}])
 def test_unknown_options_are_refused(table, tmp_path, options):
     with pytest.raises(OptionError):
         write_light_program(table.data, tmp_path / "cube.h", **options)

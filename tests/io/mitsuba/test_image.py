@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from tests.helpers import warns
-from tests.io.mitsuba.images import write_channels, write_image
+from tests.io.texture.conftest import planes, write_exr
 from tests.parts import LLVM, need
+from uplift.colorimetry.gamut import map_to_gamut
 from uplift.io import texture as textures
 
 pytestmark = pytest.mark.filterwarnings("ignore:the texture calls Python:uplift.UpliftWarning")
@@ -49,10 +50,9 @@ def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, o
         np.testing.assert_allclose(found, np.array(reference.eval_3(si)), rtol=0, atol=WITHIN)
 
 
-@pytest.mark.parametrize("matrix", ["ScalarTransform3f", "ScalarTransform4f"])
-def test_uv_are_transformed(mi, texture, spectrum, matrix):
-    scale = [2, 3] if matrix == "ScalarTransform3f" else [2, 3, 1]
-    moved = texture(to_uv=getattr(mi, matrix)().scale(scale))
+@pytest.mark.parametrize(("transform", "scale"), [("ScalarTransform3f", [2, 3]), ("ScalarTransform4f", [2, 3, 1])])
+def test_uv_are_transformed(mi, texture, spectrum, transform, scale):
+    moved = texture(to_uv=getattr(mi, transform)().scale(scale))
     assert spectrum(moved, (0.1, 0.2), [500]) == pytest.approx(spectrum(texture(), (0.2, 0.6), [500]), abs=1e-6)
 
 
@@ -76,24 +76,16 @@ def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(texture, spectrum
     np.testing.assert_allclose(spectrum(found, (0.75, 0.5), [450, 650]), other, atol=1e-5)
 
 
-def test_only_encoded_files_are_decoded(mi, spectrum, small_cube, tmp_path, cube_path):
+def test_only_encoded_files_are_decoded_and_layers_are_read(mi, spectrum, small_cube, tmp_path, cube_path):
     codes = np.array([[[200, 30, 90]]], dtype=np.uint8)
     linear = small_cube.decode(codes).astype(np.float32)
     mi.Bitmap(codes).write(str(tmp_path / "image.png"))
-    mi.Bitmap(linear).write(str(tmp_path / "image.exr"))
+    layer = {f"paint.{name}": linear[..., index] for index, name in enumerate("RGB")}
+    write_exr(tmp_path / "image.exr", {**layer, "Z": np.ones((1, 1), np.float32)})
     expected = small_cube.reflectance(linear[0, 0], [450, 650], mode="refined")
     for name in ("image.png", "image.exr"):
         found = mi.load_dict({"type": "uplift", "cube": cube_path, "filename": str(tmp_path / name)})
         np.testing.assert_allclose(spectrum(found, (0.5, 0.5), [450, 650]), expected, atol=1e-5)
-
-
-def test_interface_of_textures(texture, small_cube):
-    found = texture()
-    assert found.is_spatially_varying()
-    assert tuple(found.resolution()) == (4, 3)
-    expected = small_cube.reflectance(IMAGE, mode="refined")
-    assert found.mean() == pytest.approx(expected.mean(), abs=0.02)
-    assert "4 × 3, moments, 17 multipliers, repeat" in str(found)
 
 
 @pytest.mark.parametrize(
@@ -111,28 +103,14 @@ def test_invalid_properties_raise(texture, options, message):
         texture(**options)
 
 
-def test_colours_outside_are_mapped_with_a_warning(texture, spectrum, sensor):
+@pytest.mark.parametrize(("options", "expected"), [({}, [1, 0.2, 0]), ({"out_of_gamut": "scale"}, None)])
+def test_colours_outside_are_mapped_with_a_warning(texture, spectrum, sensor, options, expected):
     image = np.array([[[1.4, 0.2, -0.01], [0.1, 0.2, np.nan]]], dtype=np.float32)
     with warns("pixels-out-of-gamut", "pixels-not-finite", "texture-in-python"):
-        found = texture(image, filter_type="nearest")
-    for u, expected in ((0.25, [1, 0.2, 0]), (0.75, [0.1, 0.2, 0])):
-        rgb = sensor.rgb(spectrum(found, (u, 0.5), sensor.wavelengths))
-        np.testing.assert_allclose(rgb, expected, rtol=0, atol=1e-4)
-    with warns("pixels-out-of-gamut", "texture-in-python"):
-        scaled = texture(image[:, :1], out_of_gamut="scale")
-    rgb = sensor.rgb(spectrum(scaled, (0.5, 0.5), sensor.wavelengths))
-    assert rgb[0] == pytest.approx(1, abs=1e-4)
-    assert rgb[1] < 0.2
-
-
-def test_layers_and_other_channels_of_openexr_are_accepted(mi, spectrum, small_cube, tmp_path, cube_path):
-    rgb = np.array([0.2, 0.4, 1.5])
-    channels = {f"paint.{name}": np.full((2, 3), value) for name, value in zip("RGB", rgb, strict=True)}
-    write_channels(tmp_path / "layers.exr", {**channels, "Z": np.ones((2, 3))})
-    with warns("pixels-out-of-gamut", "texture-in-python"):
-        found = mi.load_dict({"type": "uplift", "cube": cube_path, "filename": str(tmp_path / "layers.exr")})
-    expected = small_cube.reflectance(rgb.clip(0, 1), [450, 650], mode="refined")
-    np.testing.assert_allclose(spectrum(found, (0.5, 0.5), [450, 650]), expected, atol=1e-5)
+        found = texture(image, filter_type="nearest", **options)
+    rgb = [sensor.rgb(spectrum(found, (u, 0.5), sensor.wavelengths)) for u in (0.25, 0.75)]
+    first = map_to_gamut(image[0, 0], sensor, "scale").rgb if expected is None else expected
+    np.testing.assert_allclose(rgb, [first, [0.1, 0.2, 0]], rtol=0, atol=1e-4)
 
 
 def test_the_stochastic_filter_chooses_texels_by_their_weights(texture, spectrum):
@@ -194,8 +172,7 @@ def test_a_wavefront_agrees_with_single_rays(mi, small_cube, cube_path, tmp_path
 
 def _textures(cube, folder):
     """Write the image as textures of moments and of spectra."""
-    source = folder / "image.exr"
-    write_image(source, IMAGE)
+    source = write_exr(folder / "image.exr", planes(IMAGE))
     for name, encoding in (("moments", textures.Moments()), ("spectrum", textures.Spectrum())):
         target = folder / f"{name}.exr"
         textures.convert(textures.prepare(cube, encoding), source, target)

@@ -16,30 +16,21 @@ COLOUR = [0.5, 0.25, 0.1]
 WAVELENGTHS = np.arange(362.5, 830, 50)
 
 
-@pytest.mark.parametrize("rgb", [COLOUR, tuple(COLOUR), np.array(COLOUR), "0.5, 0.25, 0.1", "0.5 0.25 0.1"])
-def test_a_colour_has_the_spectrum_of_the_cube(mi, cube_path, spectrum, small_cube, rgb):
-    texture = mi.load_dict({"type": "uplift", "cube": cube_path, "rgb": rgb})
-    expected = small_cube.reflectance(COLOUR, WAVELENGTHS)
+@pytest.mark.parametrize("rgb", [COLOUR, np.array(COLOUR), "0.5, 0.25, 0.1", "0.5 0.25 0.1"])
+@pytest.mark.parametrize("is_default", [True, False])
+def test_a_colour_has_the_spectrum_of_the_cube(mi, cube_path, spectrum, small_cube, rgb, is_default):
+    texture = mi.load_dict({"type": "uplift", "rgb": rgb, **({} if is_default else {"cube": cube_path})})
+    expected = (load() if is_default else small_cube).reflectance(COLOUR, WAVELENGTHS)
     np.testing.assert_allclose(spectrum(texture, (0, 0), WAVELENGTHS), expected, rtol=0, atol=1e-4)
 
 
 @pytest.mark.parametrize("tag", ["rgb", "string"])
-def test_scenes_can_be_xml(mi, cube_path, tag):
-    colour = f'<{tag} name="rgb" value="0.5, 0.25, 0.1"/>'
-    texture = f'<texture type="uplift" name="reflectance"><string name="cube" value="{cube_path}"/>{colour}</texture>'
+def test_scenes_can_be_xml_and_cubes_are_found_by_the_file_resolver(mi, repository, tag):
+    mi.file_resolver().prepend(str(repository / "cubes"))
+    colour = f'<{tag} name="rgb" value="0.5, 0.25, 0.1"/><string name="cube" value="moments-8.uplift"/>'
+    texture = f'<texture type="uplift" name="reflectance">{colour}</texture>'
     scene = mi.load_string(f'<scene version="3.0.0"><bsdf type="diffuse">{texture}</bsdf></scene>')
     assert "RegularSpectrum" in str(scene)
-
-
-def test_the_cube_has_a_default(mi, spectrum):
-    texture = mi.load_dict({"type": "uplift", "rgb": COLOUR})
-    expected = load().reflectance(COLOUR, WAVELENGTHS)
-    np.testing.assert_allclose(spectrum(texture, (0, 0), WAVELENGTHS), expected, rtol=0, atol=1e-4)
-
-
-def test_cubes_are_found_by_the_file_resolver(mi, repository):
-    mi.file_resolver().prepend(str(repository / "cubes"))
-    assert mi.load_dict({"type": "uplift", "cube": "moments-8.uplift", "rgb": COLOUR})
 
 
 def test_a_modified_cube_is_read_again(mi, tmp_path, spectrum, plain_cube, small_sigmoid_cube):

@@ -7,7 +7,8 @@ import json
 import numpy as np
 import pytest
 
-from tests.io.mitsuba.images import write_channels, write_image
+from tests.helpers import raises
+from tests.io.texture.conftest import planes, write_exr
 from uplift.common.errors import TextureError
 from uplift.io import texture
 from uplift.io.mitsuba.texture_file import multipliers_of_rounded, read_texels
@@ -20,6 +21,10 @@ IMAGE = np.random.default_rng(8).random((3, 4, 3), dtype=np.float32)
 WAVELENGTHS = np.array([362.5, 402.5, 555, 650, 823])
 
 
+def flat(value, *wavelengths):
+    return {f"T.{at},000000nm": np.full((2, 2), value, np.float32) for at in wavelengths}
+
+
 @pytest.mark.parametrize(
     ("encoding", "mode", "within"),
     [
@@ -30,7 +35,7 @@ WAVELENGTHS = np.array([362.5, 402.5, 555, 650, 823])
     ids=["spectrum", "moments", "multipliers"],
 )
 def test_a_texture_has_the_spectra_of_the_cube(mi, spectrum, small_cube, tmp_path, encoding, mode, within):
-    write_image(tmp_path / "image.exr", IMAGE)
+    write_exr(tmp_path / "image.exr", planes(IMAGE))
     uplifter = texture.prepare(small_cube, encoding, depth="float")
     texture.convert(uplifter, tmp_path / "image.exr", tmp_path / "texture.exr")
     found = mi.load_dict({"type": "uplift", "filename": str(tmp_path / "texture.exr"), "filter_type": "nearest"})
@@ -39,46 +44,41 @@ def test_a_texture_has_the_spectra_of_the_cube(mi, spectrum, small_cube, tmp_pat
 
 
 def test_a_cube_is_not_accepted_with_a_texture(mi, cube_path, tmp_path):
-    write_channels(tmp_path / "texture.exr", {f"T.{at},000000nm": np.ones((2, 2)) for at in (400, 500)})
+    write_exr(tmp_path / "texture.exr", flat(1, 400, 500))
     with pytest.raises(RuntimeError, match="unreferenced"):
         mi.load_dict({"type": "uplift", "filename": str(tmp_path / "texture.exr"), "cube": cube_path})
 
 
 def test_images_of_colours_are_not_textures(tmp_path):
-    write_image(tmp_path / "image.exr", IMAGE)
+    write_exr(tmp_path / "image.exr", planes(IMAGE))
     (tmp_path / "image.png").write_bytes(b"\x89PNG")
     for name in ("image.exr", "image.png", "missing.exr"):
         assert read_texels(tmp_path / name) is None
 
 
-MODEL = json.dumps(Moments(9).describe())
-GREY = {f"moment.{order:02}": np.full((2, 2), 0.5 * (order == 0)) for order in range(9)}
+MODEL = {"uplift.model": json.dumps(Moments(9).describe())}
+GREY = {f"moment.{order:02}": np.full((2, 2), 0.5 * (order == 0), np.float32) for order in range(9)}
 
 
 @pytest.mark.parametrize(
-    ("channels", "header", "problem"),
+    ("channels", "header"),
     [
-        ({f"T.{at},000000nm": np.ones((2, 2)) for at in (400, 500, 700)}, {}, "equidistant"),
-        ({"T.400,000000nm": np.ones((2, 2))}, {}, "equidistant"),
-        ({f"T.{at}nm": np.full((2, 2), np.nan) for at in (400, 500)}, {}, "finite"),
-        (GREY, {}, "uplift.model"),
-        (GREY, {"uplift.model": "{"}, "uplift.model"),
-        (GREY, {"uplift.model": json.dumps(Moments(8).describe())}, "uplift.model"),
-        ({**GREY, "moment.01": np.full((2, 2), 0.6)}, {"uplift.model": MODEL}, "no reflectance"),
+        (flat(1, 400, 500, 700), {}),
+        (flat(1, 400), {}),
+        (flat(np.nan, 400, 500), {}),
+        (GREY, {}),
+        (GREY, {"uplift.model": "{"}),
+        (GREY, {"uplift.model": json.dumps(Moments(8).describe())}),
+        ({**GREY, "moment.01": np.full((2, 2), 0.6, np.float32)}, MODEL),
+        (None, MODEL),
     ],
 )
-def test_invalid_textures_raise(tmp_path, channels, header, problem):
-    write_channels(tmp_path / "texture.exr", channels, **header)
-    with pytest.raises(TextureError, match=problem):
-        read_texels(tmp_path / "texture.exr")
-
-
-def test_damaged_textures_raise(tmp_path):
-    write_channels(tmp_path / "texture.exr", GREY)
-    content = (tmp_path / "texture.exr").read_bytes()
-    (tmp_path / "texture.exr").write_bytes(content[:-20])
-    with pytest.raises(TextureError, match="damaged"):
-        read_texels(tmp_path / "texture.exr")
+def test_invalid_textures_raise(tmp_path, channels, header):
+    path = write_exr(tmp_path / "texture.exr", GREY if channels is None else channels, **header)
+    if channels is None:
+        path.write_bytes(path.read_bytes()[:-20])
+    with raises(TextureError):
+        read_texels(path)
 
 
 def test_moments_that_rounding_moved_outside_return():
