@@ -135,7 +135,7 @@ def main() -> None:
     """Measure, and write the data of the page."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
-        rows = [compare(camera, light) for camera in observer.camera_names() for light in LIGHTS]
+        rows = [compare(camera, light) for camera in observer.names("camera") for light in LIGHTS]
     left_out = list(families_with(on_grid(read_atlas(ATLAS), observer.grid())))
     record(
         "cameras",

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
-SPACE_NAMES = "colorimetry.observer:space_names"
-OBSERVER_NAMES = ("colorimetry.observer:observer_names", "colorimetry.observer:camera_names")
-ILLUMINANT_NAMES = "colorimetry.observer:illuminant_names"
+SPACE_NAMES = "colorimetry.observer:names:RGB space"
+OBSERVER_NAMES = ("colorimetry.observer:names:observer", "colorimetry.observer:names:camera")
+ILLUMINANT_NAMES = "colorimetry.observer:names:illuminant"
 
 
 class Number(click.ParamType):  # type: ignore[type-arg]
@@ -63,14 +63,14 @@ NUMBER = Number()
 
 
 def completion(*sources: str, files: bool = False) -> Callable[..., list[CompletionItem]]:
-    """Complete names, and the names of ``files``; sources are functions or tuples of the library, 'module:name'."""
+    """Complete names, and the names of ``files``; sources of the library are 'module:tuple' or 'module:function:argument'."""
 
     def complete(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:
         items = [CompletionItem(text, type="file")] * files  # first: bash drops the items before it
         for source in sources:
-            module, name = source.split(":")
+            module, name, *arguments = source.split(":")
             names = getattr(import_module(f"uplift.{module}"), name)
-            found = (getattr(each, "name", each) for each in (names() if callable(names) else names))
+            found = (getattr(each, "name", each) for each in (names(*arguments) if callable(names) else names))
             items += [CompletionItem(each) for each in found if each.lower().startswith(text.lower())]
         return items
 

@@ -48,21 +48,21 @@ def _gamut() -> str:
 
 def _illuminants() -> str:
     from uplift.colorimetry import lights
-    from uplift.colorimetry.observer import illuminant_names
+    from uplift.colorimetry.observer import names
 
-    return f"{inspect.getdoc(lights)}\n\n{', '.join(illuminant_names())}"
+    return f"{inspect.getdoc(lights)}\n\n{', '.join(names("illuminant"))}"
 
 
 def _observers() -> str:
-    from uplift.colorimetry.observer import observer_names
+    from uplift.colorimetry.observer import names
 
-    return f"Standard observers of colour-science:\n\n{', '.join(observer_names())}"
+    return f"Standard observers of colour-science:\n\n{', '.join(names("observer"))}"
 
 
 def _spaces() -> str:
-    from uplift.colorimetry.observer import space_names
+    from uplift.colorimetry.observer import names
 
-    return f"RGB spaces of colour-science:\n\n{', '.join(space_names())}"
+    return f"RGB spaces of colour-science:\n\n{', '.join(names("RGB space"))}"
 
 
 def _exit_codes() -> str:

@@ -32,7 +32,7 @@ def test_known_camera_matrices_are_found_and_keep_white(known):
 
 
 def test_overlapping_channels_leave_few_raw_values():
-    shares = [realisable_share(observer.sensor("camera", "D65", name), 12) for name in observer.camera_names()]
+    shares = [realisable_share(observer.sensor("camera", "D65", name), 12) for name in observer.names("camera")]
     assert 0 < shares[1] < shares[0] < 1
 
 

@@ -8,8 +8,7 @@ import pytest
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.extreme_spectra import extreme_spectra
-from uplift.colorimetry.largest_difference import largest_difference
-from uplift.colorimetry.mismatch import mismatch_volumes
+from uplift.colorimetry.mismatch import largest_difference, mismatch_volumes
 
 
 def mixed_metamers(sensor, light, rgb, count):

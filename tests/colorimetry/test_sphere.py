@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.path import Path
 
-from uplift.colorimetry.mismatch import mesh_volume
-from uplift.colorimetry.sphere import COUNTS, outline, sphere
+from uplift.colorimetry.mismatch import COUNTS, mesh_volume, outline, sphere
 
 
 @pytest.mark.parametrize("divisions", range(4))

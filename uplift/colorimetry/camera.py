@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry.sensor import Light, Sensor
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError
 from uplift.common.files import read_bytes
@@ -45,27 +43,19 @@ class Camera:
     def __post_init__(self) -> None:
         wavelengths = np.array(self.wavelengths, dtype=float)
         sensitivities = np.array(self.sensitivities, dtype=float)
+        problem = ""
         if wavelengths.ndim != 1 or len(wavelengths) < 2 or sensitivities.shape != (len(wavelengths), 3):
-            raise OptionError(
-                f"sensitivities need at least 2 wavelengths (N,) and values (N, 3), got {wavelengths.shape} and "
-                f"{sensitivities.shape}",
-                hint=LAYOUT,
-            )
-        if not (np.isfinite(wavelengths).all() and np.isfinite(sensitivities).all()):
-            raise OptionError("wavelengths and sensitivities must be finite", hint=LAYOUT)
-        bad = np.flatnonzero(np.diff(wavelengths) <= 0)
-        if len(bad):
-            first, second = wavelengths[bad[0] : bad[0] + 2]
-            raise OptionError(
-                f"wavelengths must ascend, got {first:g} nm, then {second:g} nm",
-                hint="sort the rows by wavelength, each wavelength once",
-            )
-        if (sensitivities < 0).any():
-            row, channel = np.argwhere(sensitivities < 0)[0]
-            raise OptionError(
-                f"sensitivities must not be negative, got {sensitivities[row, channel]:g} at {wavelengths[row]:g} nm",
-                hint="set noise below zero to 0",
-            )
+            shapes = f"{wavelengths.shape} and {sensitivities.shape}"
+            problem = f"sensitivities need at least 2 wavelengths (N,) and values (N, 3), got {shapes}"
+        elif not (np.isfinite(wavelengths).all() and np.isfinite(sensitivities).all()):
+            problem = "wavelengths and sensitivities must be finite"
+        elif (np.diff(wavelengths) <= 0).any():
+            first = int((np.diff(wavelengths) <= 0).argmax())
+            problem = f"wavelengths must ascend, got {wavelengths[first]:g} nm, then {wavelengths[first + 1]:g} nm"
+        elif (sensitivities < 0).any():
+            problem = f"sensitivities must not be negative, got {sensitivities.min():g}"
+        if problem:
+            raise OptionError(problem, hint=LAYOUT)
         object.__setattr__(self, "wavelengths", wavelengths)
         object.__setattr__(self, "sensitivities", sensitivities / (sensitivities.max() or 1.0))
 
@@ -79,32 +69,30 @@ class Camera:
         return np.stack(list(channels), axis=1)
 
 
-def camera_sensor(camera: Camera, wavelengths: Array, light: Light, power: Array, observer: str, cmfs: Array) -> Sensor:
+def camera_sensor(camera: Camera, standard: Sensor) -> Sensor:
     """Make the sensor of a camera's raw values, balanced so that the perfect reflector is (1, 1, 1).
 
-    Its matrix from XYZ, for distances between colours only, is the least-squares fit for smooth reflectances, whose
-    values at two wavelengths correlate as exp(−|Δλ| / `CORRELATED`).
+    Illuminant, observer and wavelengths are those of a standard sensor. The matrix from XYZ, for distances between
+    colours only, is the least-squares fit for smooth reflectances, whose values at two wavelengths correlate as
+    exp(−|Δλ| / `CORRELATED`).
     """
-    sensitivities = camera.at(wavelengths)
-    weights = sensitivities * power[:, None]
+    nm, light = standard.wavelengths, standard.light
+    sensitivities = camera.at(nm)
+    weights = sensitivities * standard.power[:, None]
     if not (weights.sum(axis=0) > 0).all():
         raise OptionError(
-            f"every channel must respond to {light.name} within {wavelengths[0]:g}–{wavelengths[-1]:g} nm",
+            f"every channel must respond to {light.name} within {nm[0]:g}–{nm[-1]:g} nm",
             hint="give wavelengths in nm, and sensitivities of red, green and blue",
         )
+    # With C the correlation, B the balanced camera and X the weights of XYZ: M = B C Xᵀ (X C Xᵀ)⁻¹.
     balanced = (weights / weights.sum(axis=0)).T
-    correlation = np.exp(-np.abs(np.subtract.outer(wavelengths, wavelengths)) / CORRELATED)
-    expected = correlation @ light.xyz.T
+    expected = np.exp(-np.abs(np.subtract.outer(nm, nm)) / CORRELATED) @ light.xyz.T
     matrix = balanced @ expected @ np.linalg.inv(light.xyz @ expected)
     if np.linalg.cond(matrix) > MAX_CONDITION:
         raise OptionError("the channels of a camera must have different sensitivities")
-    return Sensor(
+    return replace(
+        standard,
         space=camera.name,
-        illuminant=light.name,
-        observer=observer,
-        wavelengths=wavelengths,
-        cmfs=cmfs,
-        power=power,
         xyz_to_rgb=matrix / (matrix @ light.white)[:, None],
         decoding=np.arange(256) / 255,
         sensitivities=sensitivities,
@@ -117,37 +105,22 @@ def read_camera(path: StrPath) -> Camera:
     A first row without numbers is a header; lines that begin with ``#`` are comments.
     """
     text = read_bytes(path, OptionError, limit=MAX_BYTES, hint=LAYOUT).decode("utf-8-sig", errors="replace")
-    try:
-        table = np.array(list(_rows(text, path))).reshape(-1, COLUMNS)
-    except csv.Error as error:
-        problem = f"not a readable table: {error}"
-        raise OptionError(problem, path=path, hint=LAYOUT) from error
+    table: list[list[float]] = []
+    for line, row in enumerate(text.splitlines(), 1):
+        cells = [cell for cell in (cell.strip(' "') for cell in row.split(",")) if cell]
+        is_header = not table and not any(cell[0] in "+-.0123456789" for cell in cells)
+        if not cells or cells[0].startswith("#") or is_header:
+            continue
+        try:
+            table.append([parse_float(cell) for cell in cells])
+        except ValueError:
+            table.append([])
+        if len(table[-1]) != COLUMNS:
+            problem = f"a row must have {COLUMNS} numbers, got {format_value(row)}"
+            raise OptionError(problem, path=path, line=line, hint=LAYOUT)
+    numbers = np.array(table).reshape(-1, COLUMNS)
     name = Path(path).stem.encode(errors="backslashreplace").decode()
     try:
-        return Camera(name, table[:, 0], table[:, 1:])
+        return Camera(name, numbers[:, 0], numbers[:, 1:])
     except OptionError as error:
         raise OptionError(error.problem, code=error.code, path=path, hint=error.hint) from error
-
-
-def _rows(text: str, path: StrPath) -> Iterator[list[float]]:
-    """Yield the numbers of each row but the header, comments and blank lines."""
-    reader, begun = csv.reader(text.splitlines()), False
-    for cells in reader:
-        filled = [cell for cell in cells if cell.strip()]
-        if not filled or filled[0].lstrip().startswith("#"):
-            continue
-        numbers = [_number(cell) for cell in filled]
-        known = [number for number in numbers if number is not None]
-        if len(known) == len(filled) == COLUMNS:
-            yield known
-        elif begun or known:
-            problem = f"a row must have {COLUMNS} numbers, got {format_value(','.join(cells))}"
-            raise OptionError(problem, path=path, line=reader.line_num, hint=LAYOUT)
-        begun = True
-
-
-def _number(cell: str) -> float | None:
-    try:
-        return parse_float(cell)
-    except ValueError:
-        return None

@@ -16,6 +16,8 @@ from uplift.common.arrays import Array
 
 OPPONENTS = np.array([[0.0, 116, 0], [500, -500, 0], [0, 200, -200]])
 """Compressed X, Y, Z to L*a*b*, without the −16 of L*."""
+HUE_TERMS = ((-0.17, 1, -30), (0.24, 2, 0), (0.32, 3, 6), (-0.20, 4, -63))
+"""Weights, multiples and phases in degrees of the cosines of the hue in T (Sharma et al. 2005, eq. 15)."""
 
 
 def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
@@ -113,6 +115,7 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     2.0425
     """
     (l1, a1, b1), (l2, a2, b2) = (np.moveaxis(np.asarray(x, dtype=float), -1, 0) for x in (lab_1, lab_2))
+    # a′ = (1 + G) a, and from it C′ and h′ (eq. 2–7).
     g = 1.5 - 0.5 * _weight_7((np.hypot(a1, b1) + np.hypot(a2, b2)) / 2)
     a1, a2 = g * a1, g * a2
     c1, c2 = np.hypot(a1, b1), np.hypot(a2, b2)
@@ -121,11 +124,14 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
     turn = np.where(coloured, (h2 - h1 + 180) % 360 - 180, 0)
     # The paper defines a difference of exactly half a turn as +180 if h2 is larger.
     turn = np.where((turn == -180) & (h2 > h1), 180, turn)
+    # Means of L′, C′ and h′ (eq. 12–14).
     light, chroma = (l1 + l2) / 2, (c1 + c2) / 2
     total = h1 + h2
     across = np.where(total < 360, total + 360, total - 360)  # the mean hue lies on the shorter arc
     hue = np.where(coloured, np.where(np.abs(h1 - h2) <= 180, total, across) / 2, total)
-    tone = 1 - 0.17 * _cos(hue - 30) + 0.24 * _cos(2 * hue) + 0.32 * _cos(3 * hue + 6) - 0.20 * _cos(4 * hue - 63)
+    terms = (weight * np.cos(np.radians(k * hue + phase)) for weight, k, phase in HUE_TERMS)
+    tone = sum(terms, start=np.ones_like(hue))
+    # Differences over S_L, S_C and S_H, and the rotation R_T for blues (eq. 8–11 and 15–22).
     delta_l = (l2 - l1) / (1 + 0.015 * (light - 50) ** 2 / np.sqrt(20 + (light - 50) ** 2))
     delta_c = (c2 - c1) / (1 + 0.045 * chroma)
     delta_h = 2 * np.sqrt(c1 * c2) * np.sin(np.radians(turn / 2)) / (1 + 0.015 * chroma * tone)
@@ -188,7 +194,3 @@ def delta_e_rgb(sensor: Sensor, first: ArrayLike, second: ArrayLike) -> Array:
 def _weight_7(chroma: Array) -> Array:
     """√(C⁷ / (C⁷ + 25⁷))."""
     return np.sqrt(chroma**7 / (chroma**7 + 25.0**7))
-
-
-def _cos(degrees: Array) -> Array:
-    return np.cos(np.radians(degrees))

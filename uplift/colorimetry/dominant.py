@@ -14,7 +14,7 @@ from uplift.common.arrays import Array
 ACHROMATIC = 1e-5
 """Distance in x, y from white within which a colour has no dominant wavelength."""
 SLACK = 1e-9
-"""Share of an edge of the locus by which a line may miss it, so that none passes between two edges."""
+"""Fraction of an edge of the locus by which a line may miss it, so that none passes between two edges."""
 
 
 @dataclass(frozen=True)
@@ -43,43 +43,36 @@ def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
     if not colour.sum() > 0:
         return GREY
     white, outline = _outline(sensor)
-    direction = _chromaticity(colour) - white
+    direction = colour[:2] / colour.sum() - white
     if np.hypot(*direction) < ACHROMATIC:
         return GREY
-    edge, share, distance = _crossing(outline, direction)
+    # The ray white + distance · direction leaves the outline at the locus, or at the line of purples, the last edge.
+    edge, fraction, distance = _crossing(outline, direction)
     complementary = edge == len(outline) - 2
     if complementary:
-        edge, share, _ = _crossing(outline[:-1], -direction)
-    ends = sensor.wavelengths[edge : edge + 2]
-    return DominantWavelength(float(ends[0] + share * (ends[1] - ends[0])), complementary, 1 / distance)
+        edge, fraction, _ = _crossing(outline[:-1], -direction)
+    first, second = sensor.wavelengths[edge : edge + 2]
+    return DominantWavelength(float(first + fraction * (second - first)), complementary, 1 / distance)
 
 
 @lru_cache(maxsize=8)
 def _outline(sensor: Sensor) -> tuple[Array, Array]:
     """Return x, y (2,) of white, and the spectrum locus and the line of purples around it (N + 1, 2)."""
-    white = _chromaticity(sensor.light.white)
-    locus = _chromaticity(sensor.cmfs) - white
-    return white, np.concatenate([locus, locus[:1]])
-
-
-def _chromaticity(xyz: Array) -> Array:
-    """Return x, y (..., 2)."""
-    return np.asarray(xyz[..., :2] / xyz.sum(axis=-1, keepdims=True))
+    xyz = np.concatenate([sensor.light.white[None], sensor.cmfs, sensor.cmfs[:1]])
+    xy = xyz[:, :2] / xyz.sum(axis=1, keepdims=True)
+    return xy[0], xy[1:] - xy[0]
 
 
 def _crossing(path: Array, direction: Array) -> tuple[int, float, float]:
-    """Return where a ray from the origin leaves a path (n, 2): the edge, the share of its length, and the distance.
+    """Return where a ray from the origin leaves a path (n, 2): the edge, the fraction of its length, and the distance.
 
     The distance is in units of ``direction`` (2,). Of several edges, as at the end of the locus, it is the farthest.
     """
-    starts, edges = path[:-1], np.diff(path, axis=0)
-    turn = _cross(direction, edges)
-    safe = np.where(turn == 0, 1, turn)
-    distance, share = _cross(starts, edges) / safe, _cross(starts, direction) / safe
-    met = (turn != 0) & (distance > 0) & (share >= -SLACK) & (share <= 1 + SLACK)
+    # t · direction = start + f · edge, solved by Cramer's rule
+    (x, y), (u, v), (a, b) = path[:-1].T, np.diff(path, axis=0).T, direction
+    determinant = a * v - b * u
+    safe = np.where(determinant == 0, 1, determinant)
+    distance, fraction = (x * v - y * u) / safe, (x * b - y * a) / safe
+    met = (determinant != 0) & (distance > 0) & (fraction >= -SLACK) & (fraction <= 1 + SLACK)
     edge = int(np.where(met, distance, 0).argmax())
-    return edge, float(np.clip(share[edge], 0, 1)), float(distance[edge])
-
-
-def _cross(first: Array, second: Array) -> Array:
-    return np.asarray(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0])
+    return edge, float(np.clip(fraction[edge], 0, 1)), float(distance[edge])

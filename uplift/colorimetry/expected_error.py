@@ -24,6 +24,7 @@ FAMILIAR = 0.95
 """Share of the entries that are nearer to another one than colours that are like the atlas may be."""
 BLOCK_NUMBERS = 1 << 20
 """Numbers of the matrix of weights held at a time."""
+TINY = np.finfo(float).tiny
 MAX_ROWS = 1000
 """Entries that the distances between neighbours are learnt from."""
 
@@ -69,6 +70,7 @@ class ExpectedError:
 
     def combine(self, sums: Array, nearest: Array) -> Array:
         """Squares (n, K) less `floor` from weighted sums (n, K + 1) of `columns`, and the largest weights (n,)."""
+        # v(x) (Σ k e² + n₀ mean e²) / (Σ k + n₀), with v = 1 − k² of the nearest entry
         spread = (sums[:, :-1] + PRIOR_COUNT * self.squares.mean(axis=0)) / (sums[:, -1:] + PRIOR_COUNT)
         return (1 - nearest[:, None] ** 2) * spread
 
@@ -95,11 +97,13 @@ def expected_products(
 
     Shapes: ``locations`` (E, 3), ``left_out``, ``kept`` (E,), ``left_out_products``, ``kept_products`` (E, K).
     """
+    # Weights k = exp(−ΔE / length) of the other entries, and the variance v = 1 − k² that a left-out entry has.
     weights = np.exp(_distances(locations, locations) / -LENGTH)
     np.fill_diagonal(weights, 0)
     variance = np.maximum(1 - weights.max(axis=1) ** 2, MIN_VARIANCE)
     floor = (kept**2).mean()
-    share = np.maximum(1 - floor / np.maximum(left_out**2, np.finfo(float).tiny), 0) / variance
+    # Part of each square that the other entries explain, per unit of variance: (e² − f) / v e².
+    share = np.maximum(1 - floor / np.maximum(left_out**2, TINY), 0) / variance
     products, product_floor = left_out_products * share[:, None], kept_products.mean(axis=0)
 
     def expected(squares: Array, remaining: Array) -> Array:
@@ -107,7 +111,7 @@ def expected_products(
         return (variance * (sums / (weights.sum(axis=1) + PRIOR_COUNT))).T + remaining
 
     roots = np.sqrt(expected(left_out**2 * share, floor))
-    radii = Radii(*learn_radii(left_out / _positive(roots), COVERAGE))
+    radii = Radii(*learn_radii(left_out / np.maximum(roots, TINY), COVERAGE))
     return ExpectedError(locations, products, product_floor, expected(products, product_floor), radii)
 
 
@@ -115,7 +119,7 @@ def mahalanobis(covariance: Array, difference: Array) -> Array:
     """Mahalanobis distances (n,) of differences (n, d) by covariances (n, d, d), which may be singular."""
     values, axes = np.linalg.eigh(covariance)
     along = np.einsum("nij,ni->nj", axes, difference)
-    return np.asarray(np.sqrt((along**2 / _positive(values)).sum(axis=1)))
+    return np.asarray(np.sqrt((along**2 / np.maximum(values, TINY)).sum(axis=1)))
 
 
 def learn_radii(ratio: Array, coverage: Sequence[tuple[float, float]]) -> list[float]:
@@ -125,8 +129,13 @@ def learn_radii(ratio: Array, coverage: Sequence[tuple[float, float]]) -> list[f
 
     Shapes: ``ratio`` (E,).
     """
-    trust = len(ratio) / (len(ratio) + TRUST)
-    return [_radius(ratio, share, normal, trust) for share, normal in coverage]
+    count = len(ratio)
+    trust = count / (count + TRUST)
+    radii = []
+    for share, normal in coverage:
+        found = float(np.quantile(ratio, min(share * (count + 1) / count, 1), method="higher"))
+        radii.append(normal * (found / normal) ** trust if found > 0 else normal)
+    return radii
 
 
 def nearest_distances(lab: Array, locations: Array) -> Array:
@@ -156,13 +165,3 @@ def _distances(first: Array, second: Array) -> Array:
         difference = first[:, axis, None] - second[None, :, axis]
         squares += difference * difference
     return np.sqrt(squares)
-
-
-def _positive(values: Array) -> Array:
-    return np.maximum(values, np.finfo(float).tiny)
-
-
-def _radius(ratio: Array, share: float, normal: float, trust: float) -> float:
-    count = len(ratio)
-    found = float(np.quantile(ratio, min(share * (count + 1) / count, 1), method="higher"))
-    return normal * (found / normal) ** trust if found > 0 else normal

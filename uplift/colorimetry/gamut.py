@@ -24,24 +24,12 @@ from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError, OptionError
 
-__all__ = [
-    "METHODS",
-    "SRGB",
-    "Gamut",
-    "GamutMapped",
-    "Primaries",
-    "as_rgb",
-    "check_method",
-    "conversion",
-    "map_to_gamut",
-    "raise_out_of_gamut",
-]
-
 BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
 """XYZ to the cone responses of Bradford adaptation (Lam 1985; the matrix of ICC.1:2022, annex E)."""
 
 Chromaticity = tuple[float, float]
 """CIE x, y."""
+PRIMARIES = "give x,y of red, green, blue and white"
 CONES = np.array(
     [
         [0.8189330101, 0.3618667424, -0.1288597137],
@@ -109,12 +97,11 @@ class Primaries:
     white: Chromaticity
 
     def __post_init__(self) -> None:
-        if not self._span_a_gamut():
-            raise OptionError(
-                f"primaries must span a triangle with the white inside, got ({self})",
-                code="invalid-primaries",
-                hint="give x,y of red, green, blue and white",
-            )
+        with np.errstate(all="ignore"):
+            regular = abs(np.linalg.det(self._columns)) > 1e-6  # False for NaN
+            if not (regular and (self.lengths > 0).all() and np.isfinite(self.lengths).all()):
+                problem = f"primaries must span a triangle with the white inside, got ({self})"
+                raise OptionError(problem, code="invalid-primaries", hint=PRIMARIES)
 
     @classmethod
     def of(cls, numbers: Sequence[float]) -> Primaries:
@@ -135,11 +122,8 @@ class Primaries:
             There are not eight numbers, or they do not define a gamut.
         """
         if len(numbers) != 8:
-            raise OptionError(
-                f"primaries and white are eight numbers, got {len(numbers)}",
-                code="invalid-primaries",
-                hint="give x,y of red, green, blue and white",
-            )
+            problem = f"primaries and white are eight numbers, got {len(numbers)}"
+            raise OptionError(problem, code="invalid-primaries", hint=PRIMARIES)
         pairs = [(float(x), float(y)) for x, y in zip(numbers[::2], numbers[1::2], strict=True)]
         return cls(*pairs)
 
@@ -149,6 +133,7 @@ class Primaries:
     @cached_property
     def rgb_to_xyz(self) -> Array:
         """Matrix from linear RGB to XYZ; white has Y = 1; shape (3, 3)."""
+        # Equation 4.4: the columns are the chromaticities (x, y, 1 − x − y), times their lengths.
         return self._columns * self.lengths
 
     @cached_property
@@ -157,12 +142,6 @@ class Primaries:
         x, y = self.white
         white = np.array([x, y, 1 - x - y]) / y if y else np.full(3, np.nan)
         return np.asarray(np.linalg.solve(self._columns, white))
-
-    def _span_a_gamut(self) -> bool:
-        with np.errstate(all="ignore"):
-            if not abs(np.linalg.det(self._columns)) > 1e-6:  # False for NaN
-                return False
-            return bool(((self.lengths > 0) & np.isfinite(self.lengths)).all())
 
     @property
     def _columns(self) -> Array:
@@ -214,8 +193,8 @@ def scale(rgb: Array, gamut: Gamut) -> Array:
 
     The dominant wavelength is kept. So is the chromaticity of colours that are only too bright.
     """
-    rgb = _without_overflow(rgb)
-    inside = _toward_grey(rgb, np.maximum(_luminance(rgb, gamut), 0), np.inf)
+    luminance = rgb @ gamut.rgb_to_xyz[1, :, None]
+    inside = _toward_grey(rgb, np.maximum(luminance, 0), np.inf)
     return inside / np.maximum(inside.max(axis=1, keepdims=True), 1)
 
 
@@ -224,13 +203,22 @@ def desaturate(rgb: Array, gamut: Gamut) -> Array:
 
     A luminance of at least that of white gives white. A luminance of at most 0 gives black.
     """
-    rgb = _without_overflow(rgb)
-    return _toward_grey(rgb, np.clip(_luminance(rgb, gamut), 0, 1), 1)
+    luminance = rgb @ gamut.rgb_to_xyz[1, :, None]
+    return _toward_grey(rgb, np.clip(luminance, 0, 1), 1)
+
+
+def _toward_grey(rgb: Array, grey: Array, top: float) -> Array:
+    """Mix with grey (n, 1) in [0, top], keeping as much colour as all components in [0, top] allow."""
+    # grey + f (rgb − grey) meets 0 at f = grey / (grey − low), and the top at (top − grey) / (high − grey).
+    low, high = rgb.min(axis=1, keepdims=True), rgb.max(axis=1, keepdims=True)
+    below, above = np.ones_like(grey), np.ones_like(grey)
+    np.divide(grey, grey - low, out=below, where=low < 0)
+    np.divide(top - grey, high - grey, out=above, where=high > top)
+    return grey + np.minimum(below, above) * (rgb - grey)
 
 
 def desaturate_oklab(rgb: Array, gamut: Gamut) -> Array:
     """Move toward grey at constant lightness and hue of Oklab, which keeps the hue of reds and yellows better."""
-    rgb = _without_overflow(rgb)
     lab = oklab(rgb, gamut)
     # One row per response, then one per component: contiguous rows are twice as fast here.
     grey = np.ascontiguousarray(cube_roots(np.clip(lab[:, :1], 0, 1) * [1, 0, 0]).T)
@@ -239,9 +227,16 @@ def desaturate_oklab(rgb: Array, gamut: Gamut) -> Array:
     inner, outer = np.zeros(len(rgb)), np.ones(len(rgb))
     for _ in range(HALVINGS):
         middle = (inner + outer) / 2
-        fits = _nearly_inside(to_rgb @ _cube(grey + middle * chroma))
+        trial = to_rgb @ _cube(grey + middle * chroma)
+        high = trial.max(axis=0)
+        fits = (trial.min(axis=0) >= -NEARLY * high) & (high <= 1 + NEARLY)
         inner, outer = np.where(fits, middle, inner), np.where(fits, outer, middle)
     return desaturate((to_rgb @ _cube(grey + inner * chroma)).T, gamut)
+
+
+def _cube(values: Array) -> Array:
+    """Third power, ten times as fast as numpy's ``**``."""
+    return values * values * values
 
 
 Mapping = Callable[[Array, Gamut], Array]
@@ -255,35 +250,6 @@ MAPPINGS: dict[str, Mapping] = {
 """Mappings by the name of their method."""
 METHODS = ("error", *MAPPINGS)
 """Names of the methods; ``"error"`` raises instead of moving a colour."""
-
-
-def _without_overflow(rgb: Array) -> Array:
-    return rgb * np.minimum(1, LARGEST / np.maximum(np.abs(rgb).max(axis=1, keepdims=True), 1))
-
-
-def _luminance(rgb: Array, gamut: Gamut) -> Array:
-    """Y (n, 1)."""
-    return rgb @ gamut.rgb_to_xyz[1, :, None]
-
-
-def _toward_grey(rgb: Array, grey: Array, top: float) -> Array:
-    """Mix with grey (n, 1) in [0, top], keeping as much colour as all components in [0, top] allow."""
-    low, high = rgb.min(axis=1, keepdims=True), rgb.max(axis=1, keepdims=True)
-    below, above = np.ones_like(grey), np.ones_like(grey)
-    np.divide(grey, grey - low, out=below, where=low < 0)
-    np.divide(top - grey, high - grey, out=above, where=high > top)
-    return grey + np.minimum(below, above) * (rgb - grey)
-
-
-def _nearly_inside(rgb: Array) -> Mask:
-    """Whether (n,) linear RGB (3, n) lies within [0, 1], up to `NEARLY`."""
-    low, high = rgb.min(axis=0), rgb.max(axis=0)
-    return np.asarray((low >= -NEARLY * high) & (high <= 1 + NEARLY))
-
-
-def _cube(values: Array) -> Array:
-    """Third power, ten times as fast as numpy's ``**``."""
-    return values * values * values
 
 
 @dataclass(frozen=True, eq=False)
@@ -363,16 +329,22 @@ def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMa
         rows = requested[outside].astype(float)
         if method == "error":
             raise_out_of_gamut(rows)
-        inside[outside] = np.clip(_map_rows(rows, gamut, method), 0, 1)  # removes rounding errors
+        finite = np.isfinite(rows).all(axis=1)
+        if not finite.all():
+            problem = f"linear RGB {_format_rgb(rows[finite.argmin()])} is not finite"
+            raise ColourError(problem, code="rgb-not-finite", hint="fix its source")
+        rows *= np.minimum(1, LARGEST / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1))
+        blocks = (rows[first : first + BLOCK] for first in range(0, len(rows), BLOCK))
+        mapped = np.concatenate([MAPPINGS[method](block, gamut) for block in blocks])
+        inside[outside] = np.clip(mapped, 0, 1)  # removes rounding errors
     return GamutMapped(requested, inside, outside)
 
 
 def check_method(method: str) -> None:
     """Validate the name of a gamut mapping method."""
     if method not in METHODS:
-        raise OptionError(
-            f"unknown gamut mapping '{method}'", code="unknown-gamut-mapping", hint=f"use one of {', '.join(METHODS)}"
-        )
+        problem, hint = f"unknown gamut mapping '{method}'", f"use one of {', '.join(METHODS)}"
+        raise OptionError(problem, code="unknown-gamut-mapping", hint=hint)
 
 
 def as_rgb(rgb: ArrayLike) -> Values:
@@ -394,17 +366,6 @@ def raise_out_of_gamut(outside: Array) -> NoReturn:
         code="rgb-out-of-gamut",
         hint="map it with uplift.colorimetry.gamut.map_to_gamut, or convert 8-bit codes with Cube.decode",
     )
-
-
-def _map_rows(rgb: Array, gamut: Gamut, method: str) -> Array:
-    finite = np.isfinite(rgb).all(axis=1)
-    if not finite.all():
-        first = rgb[int(finite.argmin())]
-        raise ColourError(
-            f"linear RGB {_format_rgb(first)} is not finite", code="rgb-not-finite", hint="fix its source"
-        )
-    blocks = (rgb[first : first + BLOCK] for first in range(0, len(rgb), BLOCK))
-    return np.concatenate([MAPPINGS[method](block, gamut) for block in blocks])
 
 
 def _format_rgb(rgb: Array) -> str:

@@ -5,6 +5,12 @@ body: the object-colour solid of the six sensors, cut at r. In each direction it
 reflectance (`uplift.colorimetry.extreme_spectra`). The directions are spread evenly after the space is scaled so that
 the responses of the second light that the sensor does not share have the same size in all directions.
 
+ΔE00 is not convex, so the search for the metamer that differs most from a given one starts in 20 parts of the volume:
+the triangles of directions within each triangle of the icosahedron. The metamer of a start is the extreme in the
+direction in which ΔE00 rises fastest at the outer corner that is most different. Each step goes to the extreme in the
+direction in which ΔE00 rises fastest at the current one, and ends where the new metamer differs no more. Finally,
+directions close to that of the best metamer are tried.
+
 References
 ----------
 Finlayson & Morovic 2005, "Metamer sets", JOSA A 22(5). Logvinenko, Funt & Godau 2014, "Metamer mismatching", IEEE
@@ -13,27 +19,83 @@ Transactions on Image Processing 23(1).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import lab
+from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_jacobian
 from uplift.colorimetry.extreme_spectra import extreme_spectra, first_basis
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.colorimetry.solid import solid
-from uplift.colorimetry.sphere import COUNTS, Sphere, sphere
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import ColourError
 
+COUNTS = (12, 42, 162, 642, 2562)
+"""Directions after 0 to 4 divisions of the icosahedron."""
+ANGLES = 120
+MIN_ROUNDNESS = 1e-12
+"""Smallest ratio of the variances along the axes of a shape that is made round."""
 DIVISIONS = 2
 """Divisions of the icosahedron: 162 directions."""
 MIN_SCALE = 1e-6
 """Smallest scale of a direction, relative to the light: the volume of the build illuminant is a point."""
 BLOCK_PROBLEMS = 1 << 14
 """Colours times directions processed at a time."""
+PARTS = 20
+"""Triangles of the icosahedron; a triangle of a divided one belongs to that of its number modulo this."""
+MAX_STEPS = 20
+DIFFERENCE_STEP = 1e-3
+"""Step in L*a*b* of the differences that approximate the derivative of ΔE00."""
+REFINEMENTS = 3
+MIN_RISE = 1e-9
+"""Rise of ΔE00 below which the search ends."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sphere:
+    """Directions as the corners of a triangle mesh."""
+
+    directions: Array
+    """(D, 3) Unit vectors; those of coarser meshes come first."""
+    faces: Indices
+    """(F, 3) Triangles, their corners counter-clockwise from outside."""
+    parents: Indices
+    """(D,) A neighbour of each direction in the coarser mesh; −1 for the corners of the icosahedron."""
+
+
+def sphere(divisions: int) -> Sphere:
+    """Divide every triangle of an icosahedron into four, so many times."""
+    golden = (1 + 5**0.5) / 2
+    signs = np.array([(1, 1), (1, -1), (-1, 1), (-1, -1)]) * (1, golden)
+    corners = np.concatenate([np.roll(np.pad(signs, ((0, 0), (1, 0))), shift, axis=1) for shift in range(3)])
+    triples = np.array(np.meshgrid(*[np.arange(12)] * 3, indexing="ij")).reshape(3, -1).T
+    triples = triples[(triples[:, 0] < triples[:, 1]) & (triples[:, 0] < triples[:, 2])]
+    a, b, c = (corners[triples[:, column]] for column in range(3))
+    near = [np.isclose(((p - q) ** 2).sum(axis=1), 4) for p, q in ((a, b), (b, c), (c, a))]
+    outwards = np.einsum("ni,ni->n", np.cross(b - a, c - a), a) > 0
+    faces = triples[np.logical_and.reduce([*near, outwards])]
+    found = Sphere(corners / np.linalg.norm(corners, axis=1)[:, None], faces, np.full(12, -1))
+    for _ in range(divisions):
+        found = _divided(found)
+    return found
+
+
+def _divided(coarse: Sphere) -> Sphere:
+    """Add the middle of every edge."""
+    edges = np.sort(coarse.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, which = np.unique(edges, axis=0, return_inverse=True)
+    middles = coarse.directions[edges].sum(axis=1)
+    middles /= np.linalg.norm(middles, axis=1)[:, None]
+    (a, b, c), (ab, bc, ca) = coarse.faces.T, (which.reshape(-1, 3) + len(coarse.directions)).T
+    faces = np.concatenate([np.stack(each, axis=1) for each in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))])
+    return Sphere(np.concatenate([coarse.directions, middles]), faces, np.concatenate([coarse.parents, edges[:, 0]]))
+
+
+RING = np.concatenate([size * sphere(0).directions for size in (0.4, 0.15, 0.05)])
+"""Changes of a direction of length 1 that are tried around the most different metamer."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -89,46 +151,33 @@ class MismatchVolumes:
 
 def mismatch_volumes(sensor: Sensor, light: Light, rgb: Array, divisions: int = DIVISIONS) -> MismatchVolumes:
     """Compute the mismatch volumes of colours under a light. Shapes: ``rgb`` (n, 3)."""
-    _require_realisable(sensor, rgb)
+    outside = np.flatnonzero(~solid(sensor.matrix).contains(rgb))
+    if outside.size:
+        values = ", ".join(f"{value:.6g}" for value in rgb[outside[0]])
+        raise _unrealisable(f"no reflectance has the colour ({values}) under {sensor.illuminant}")
     directions, scale = sphere(divisions), _scale(sensor, light)
+    # A direction d of the scaled space S⁻¹ x is maximised by the response dᵀ S⁻¹ X of each wavelength.
     response = directions.directions @ np.linalg.solve(scale, light.xyz)
     xyz = np.empty((len(rgb), len(response), 3))
     basis = np.empty(xyz.shape, dtype=np.intp)
-    for block in _blocks(len(rgb), len(response)):
+    rows = max(BLOCK_PROBLEMS // len(response), 1)
+    for block in (slice(first, first + rows) for first in range(0, len(rgb), rows)):
         _solve(sensor, light, rgb[block], response, directions.parents, xyz[block], basis[block])
     return MismatchVolumes(sensor, light, rgb, directions, scale, xyz, basis)
 
 
-def mesh_volume(points: Array, faces: Indices) -> Array:
-    """Compute the volumes (n,) of closed triangle meshes with corners (n, D, 3) and faces (F, 3)."""
-    centred = points - points.mean(axis=1, keepdims=True)
-    a, b, c = (centred[:, faces[:, corner]] for corner in range(3))
-    return np.asarray(np.einsum("kfi,kfi->k", a, np.cross(b, c)) / 6)
-
-
-def _require_realisable(sensor: Sensor, rgb: Array) -> None:
-    outside = np.flatnonzero(~solid(sensor.matrix).contains(rgb))
-    if outside.size:
-        values = ", ".join(f"{value:.6g}" for value in rgb[outside[0]])
-        raise ColourError(
-            f"no reflectance has the colour ({values}) under {sensor.illuminant}",
-            code="colour-unrealisable",
-            hint="give a colour with less chroma",
-        )
+def _unrealisable(problem: str) -> ColourError:
+    return ColourError(problem, code="colour-unrealisable", hint="give a colour with less chroma")
 
 
 def _scale(sensor: Sensor, light: Light) -> Array:
     """Square root of the products of the responses of the light that those of the sensor do not explain."""
+    # With P the projection to the sensor's responses, S = ((X − P X)(X − P X)ᵀ)^½.
     explained = np.linalg.lstsq(sensor.matrix.T, light.xyz.T, rcond=None)[0]
     rest = light.xyz - explained.T @ sensor.matrix
     squares, axes = np.linalg.eigh(rest @ rest.T)
     lengths = np.sqrt(np.maximum(squares, MIN_SCALE**2 * (light.xyz**2).sum()))
     return np.asarray((axes * lengths) @ axes.T)
-
-
-def _blocks(count: int, directions: int) -> Iterator[slice]:
-    rows = max(BLOCK_PROBLEMS // directions, 1)
-    return (slice(first, first + rows) for first in range(0, count, rows))
 
 
 def _solve(
@@ -147,10 +196,143 @@ def _solve(
             start.reshape(-1, 3),
         )
         if not found.solved.all():
-            raise ColourError(
-                "rounding prevents a decision whether a reflectance has a colour",
-                code="colour-unrealisable",
-                hint="give a colour with less chroma",
-            )
+            raise _unrealisable("rounding prevents a decision whether a reflectance has a colour")
         xyz[:, first:last] = (found.reflectance @ light.xyz.T).reshape(len(rgb), -1, 3)
         basis[:, first:last] = found.basis.reshape(len(rgb), -1, 3)
+
+
+@dataclass(frozen=True, eq=False)
+class LargestDifference:
+    """The metamers that differ most from given ones, n of them."""
+
+    delta_e_2000: Array
+    """(n,) ΔE00 of the most different metamer that was found."""
+    outer: Array
+    """(n,) Largest ΔE00 to a corner of the polyhedron around the volume, at least ``delta_e_2000``. A difference
+    that grows along all straight lines from the given colour would be bounded by it; ΔE00 nearly does."""
+    xyz: Array
+    """(n, 3) XYZ of the most different metamers."""
+
+
+def largest_difference(volumes: MismatchVolumes, xyz: Array) -> LargestDifference:
+    """Find the metamers that differ most from given ones. Shapes: ``xyz`` (n, 3)."""
+    white = volumes.light.white
+    reference = lab(xyz, white)
+    sampled = delta_e_2000(volumes.lab, reference[:, None])
+    corners = volumes.corners
+    outer = delta_e_2000(lab(corners, white), reference[:, None])
+    faces = outer.reshape(len(outer), -1, PARTS).argmax(axis=1) * PARTS + np.arange(PARTS)
+    row, faces = np.repeat(np.arange(len(xyz)), PARTS), faces.ravel()
+    basis = volumes.basis[row, volumes.directions.faces[faces, 0]]
+    search = _Search(volumes, reference)
+    slope = search.slope(row, corners[row, faces])
+    found = search.ascend(row, slope, basis)
+    best = _Metamers(
+        np.concatenate([sampled, found.delta_e.reshape(-1, PARTS)], axis=1),
+        np.concatenate([volumes.xyz, found.xyz.reshape(-1, PARTS, 3)], axis=1),
+        np.concatenate(
+            [np.broadcast_to(volumes.normals, volumes.xyz.shape), found.direction.reshape(-1, PARTS, 3)], axis=1
+        ),
+        np.concatenate([volumes.basis, found.basis.reshape(-1, PARTS, 3)], axis=1),
+    ).best()
+    for _ in range(REFINEMENTS):
+        best = search.around(best)
+    return LargestDifference(best.delta_e, np.maximum(outer.max(axis=1), best.delta_e), best.xyz)
+
+
+class _Metamers(NamedTuple):
+    delta_e: Array
+    """(..., )"""
+    xyz: Array
+    """(..., 3)"""
+    direction: Array
+    """(..., 3) of XYZ, in which the metamer is the extreme."""
+    basis: Indices
+    """(..., 3)"""
+
+    def best(self) -> _Metamers:
+        """Of (n, k) metamers the (n,) most different ones."""
+        rows = np.arange(len(self.delta_e))
+        return _Metamers(*(each[rows, self.delta_e.argmax(axis=1)] for each in self))
+
+
+@dataclass(frozen=True, eq=False)
+class _Search:
+    volumes: MismatchVolumes
+    reference: Array
+    """(n, 3) L*a*b* of the given metamers."""
+
+    def extremes(self, row: Indices, direction: Array, basis: Indices) -> _Metamers:
+        """Metamers (m,) of colours (m,) in directions (m, 3) of XYZ."""
+        light = self.volumes.light
+        extreme = extreme_spectra(self.volumes.sensor.matrix, self.volumes.rgb[row], direction @ light.xyz, basis)
+        xyz = extreme.reflectance @ light.xyz.T
+        return _Metamers(delta_e_2000(self._lab(xyz), self.reference[row]), xyz, direction, extreme.basis)
+
+    def ascend(self, row: Indices, slope: Array, basis: Indices) -> _Metamers:
+        """Metamers (m,) where the steps from the extremes in the directions (m, 3) end."""
+        found = self.extremes(row, slope, basis)
+        rises = np.arange(len(row))
+        for _ in range(MAX_STEPS):
+            trial = self.extremes(row[rises], self.slope(row[rises], found.xyz[rises]), found.basis[rises])
+            better = trial.delta_e > found.delta_e[rises] + MIN_RISE
+            rises = rises[better]
+            if not len(rises):
+                break
+            for each, new in zip(found, trial, strict=True):
+                each[rises] = new[better]
+        return found
+
+    def around(self, best: _Metamers) -> _Metamers:
+        """The most different of metamers (n,) and of those in directions around theirs."""
+        count = len(best.delta_e)
+        scale = self.volumes.scale
+        middle = best.direction @ scale
+        middle /= np.linalg.norm(middle, axis=1)[:, None]
+        directions = (middle[:, None] + RING) @ np.linalg.inv(scale)
+        row = np.repeat(np.arange(count), len(RING))
+        ring = self.extremes(row, directions.reshape(-1, 3), np.repeat(best.basis, len(RING), axis=0))
+        return _Metamers(
+            *(
+                np.concatenate([old[:, None], new.reshape(count, len(RING), *new.shape[1:])], axis=1)
+                for old, new in zip(best, ring, strict=True)
+            )
+        ).best()
+
+    def slope(self, row: Indices, xyz: Array) -> Array:
+        """Derivative (m, 3) of ΔE00 with respect to XYZ (m, 3)."""
+        at, steps = self._lab(xyz)[:, None], DIFFERENCE_STEP * np.eye(3)
+        reference = self.reference[row, None]
+        rise = delta_e_2000(at + steps, reference) - delta_e_2000(at - steps, reference)
+        jacobian = lab_jacobian(xyz, self.volumes.light.white)
+        return np.asarray((rise[:, None, :] @ jacobian)[:, 0] / (2 * DIFFERENCE_STEP))
+
+    def _lab(self, xyz: Array) -> Array:
+        return lab(xyz, self.volumes.light.white)
+
+
+def mesh_volume(points: Array, faces: Indices) -> Array:
+    """Compute the volumes (n,) of closed triangle meshes with corners (n, D, 3) and faces (F, 3)."""
+    centred = points - points.mean(axis=1, keepdims=True)
+    a, b, c = (centred[:, faces[:, corner]] for corner in range(3))
+    return np.asarray(np.einsum("kfi,kfi->k", a, np.cross(b, c)) / 6)
+
+
+def outline(points: Array, faces: Indices, angles: int = ANGLES) -> Array:
+    """Compute the outline of a triangle mesh that is projected to a plane.
+
+    Shapes: ``points`` (D, 2), ``faces`` (F, 3) → (angles, 2).
+    """
+    centre = points.mean(axis=0)
+    values, axes = np.linalg.eigh(np.cov(points.T))
+    lengths = np.sqrt(np.maximum(values, MIN_ROUNDNESS * values.max() + np.finfo(float).tiny))
+    round_points = (points - centre) @ axes / lengths
+    turns = np.arange(angles) * (2 * np.pi / angles)
+    along, across = (np.stack([np.cos(turns + shift), np.sin(turns + shift)]) for shift in (0.0, np.pi / 2))
+    edges = np.unique(np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+    first, second = (round_points[edges[:, end]] for end in (0, 1))
+    side_1, side_2 = first @ across, second @ across
+    crosses = (side_1 <= 0) != (side_2 <= 0)
+    share = np.divide(side_1, side_1 - side_2, out=np.zeros_like(side_1), where=crosses)
+    radius = np.where(crosses, first @ along + share * ((second - first) @ along), 0).max(axis=0)
+    return np.asarray(centre + (radius[:, None] * along.T * lengths) @ axes.T)

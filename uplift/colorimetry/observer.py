@@ -7,7 +7,7 @@ Names that are unknown raise `UnknownNameError`, whose hint gives the nearest on
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -18,22 +18,28 @@ from uplift.colorimetry.camera import CAMERA, Camera, camera_sensor, read_camera
 from uplift.colorimetry.gamut import Primaries
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, Lamps
 from uplift.colorimetry.sensor import Light, Sensor
-from uplift.colorimetry.spaces import look_up_space
+from uplift.colorimetry.spaces import look_up_space, primaries_of
 from uplift.colorimetry.srgb import decode_portably
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import OptionError, unknown_name
 
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
-CRT = "Typical CRT Brainard 1997"
-"""Phosphors of a cathode-ray tube, measured by D. H. Brainard."""
 COMMON_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 """Names of colour-science, by the area of the gamut in CIE 1976 u′, v′."""
-LAMP_TABLES = ("SDS_ILLUMINANTS", "SDS_LIGHT_SOURCES")
+TABLES = {
+    "illuminant": "SDS_ILLUMINANTS",
+    "light source": "SDS_LIGHT_SOURCES",
+    "observer": "MSDS_CMFS",
+    "camera": "MSDS_CAMERA_SENSITIVITIES",
+    "display": "MSDS_DISPLAY_PRIMARIES",
+    "RGB space": "RGB_COLOURSPACES",
+}
+"""Tables of colour-science by the kind of their names."""
 VISIBLE = (400.0, 700.0)
 """Range in nm that a lamp must cover."""
 SAME_LAMP = 1e-3
-"""Difference, as a share of the largest power, below which two lamps are one."""
+"""Difference, as a fraction of the largest power, below which two lamps are one."""
 START, END, STEP = 380.0, 780.0, 5.0
 """Range and step in nm that every table of the CIE covers."""
 
@@ -83,24 +89,24 @@ def sensor(
         camera = find_camera(observer)
         if camera.name in colour_science().RGB_COLOURSPACES:
             raise OptionError(f"a camera must not have the name of an RGB space, got '{camera.name}'")
-        standard = (DEFAULT_OBSERVER, matching_functions())
-        return camera_sensor(camera, grid(), light(illuminant), illuminant_spd(illuminant), *standard)
-    colour = colour_science()
-    if isinstance(observer, Camera) or observer in colour.MSDS_CAMERA_SENSITIVITIES:
+        return camera_sensor(camera, sensor(illuminant=illuminant))
+    if isinstance(observer, Camera) or observer in colour_science().MSDS_CAMERA_SENSITIVITIES:
         raise OptionError(
             "a camera in place of an observer has its own RGB space",
             code="camera-without-space",
             hint=f'use space="{CAMERA}"',
         )
+    colour = colour_science()
     rgb_space = look_up_space(space)
     build_light = light(illuminant, observer)
+    # XYZ to RGB is M_space · M_Bradford: the white of the illuminant becomes the white of the space.
     white = colour.xy_to_XYZ(rgb_space.whitepoint)
     adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(build_light.white, white, transform="Bradford")
     matrix = rgb_space.matrix_XYZ_to_RGB @ adapt
     return Sensor(
         space=rgb_space.name,
         illuminant=build_light.name,
-        observer=_look_up(colour.MSDS_CMFS, observer, "observer").name,
+        observer=_look_up("observer", observer).name,
         wavelengths=grid(),
         cmfs=matching_functions(observer),
         power=illuminant_spd(illuminant),
@@ -134,7 +140,7 @@ def find_camera(camera: str | Camera) -> Camera:
         return camera
     if camera.casefold().endswith(".csv"):
         return read_camera(camera)
-    found = _look_up(colour_science().MSDS_CAMERA_SENSITIVITIES, camera, "camera")
+    found = _look_up("camera", camera)
     return Camera(found.name, found.wavelengths, found.values)
 
 
@@ -151,8 +157,7 @@ def display_sensors(
 
 def primaries(space: str) -> Primaries:
     """Return the primaries and white of an RGB space."""
-    rgb_space = look_up_space(space)
-    return Primaries.of([*rgb_space.primaries.ravel(), *rgb_space.whitepoint])
+    return primaries_of(look_up_space(space))
 
 
 def light(
@@ -180,16 +185,14 @@ def light(
     """
     power = illuminant_spd(illuminant, start, end, step)
     weights = matching_functions(observer, start, end, step) * power[:, None]
-    name = _look_up(colour_science().SDS_ILLUMINANTS, illuminant, "illuminant").name
-    return Light(name, (weights / weights[:, 1].sum()).T)
+    return Light(_look_up("illuminant", illuminant).name, (weights / weights[:, 1].sum()).T)
 
 
 def aligned(sensor: Sensor, start: float = START, end: float = END, step: float = STEP) -> tuple[Any, Any]:
     """Return the observer and illuminant of a sensor as objects of colour-science."""
-    colour = colour_science()
-    shape = colour.SpectralShape(start, end, step)
-    cmfs, light = colour.MSDS_CMFS[sensor.observer], colour.SDS_ILLUMINANTS[sensor.illuminant]
-    return cmfs.copy().align(shape), light.copy().align(shape)
+    shape = colour_science().SpectralShape(start, end, step)
+    found = _look_up("observer", sensor.observer), _look_up("illuminant", sensor.illuminant)
+    return found[0].copy().align(shape), found[1].copy().align(shape)
 
 
 def axis_nodes(spacing: str, dim: int) -> Array:
@@ -211,12 +214,41 @@ def matching_functions(
     observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
 ) -> Array:
     """Return colour-matching functions. Shape (N, 3)."""
-    return _samples("MSDS_CMFS", observer, "observer", start, end, step)
+    return samples("observer", observer, start, end, step)
 
 
 def illuminant_spd(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
     """Return the relative spectral power of an illuminant. Shape (N,)."""
-    return _samples("SDS_ILLUMINANTS", illuminant, "illuminant", start, end, step)
+    return samples("illuminant", illuminant, start, end, step)
+
+
+@functools.cache
+def samples(kind: str, name: str, start: float = START, end: float = END, step: float = STEP) -> Array:
+    """Sample spectra by name, with constant extrapolation; the result is read-only. Shape (N,) or (N, 3).
+
+    ``kind`` is one of the keys of `TABLES`, such as ``"display"`` for the power of the primaries of a display.
+    """
+    found = _look_up(kind, name).copy().align(colour_science().SpectralShape(start, end, step))
+    values = np.array(found.values, dtype=float)
+    values.setflags(write=False)
+    return values
+
+
+def names(kind: str) -> tuple[str, ...]:
+    """Return the names that `sensor` takes: of an ``"illuminant"``, ``"observer"``, ``"camera"`` or ``"RGB space"``.
+
+    >>> names("camera")
+    ('Nikon 5100 (NPL)', 'Sigma SDMerill (NPL)')
+    """
+    return tuple(getattr(colour_science(), TABLES[kind]))
+
+
+def _look_up(kind: str, name: str) -> Any:
+    table = getattr(colour_science(), TABLES[kind])
+    try:
+        return table[name]
+    except KeyError:
+        raise unknown_name(name, table, kind) from None
 
 
 def lamps(observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP) -> Lamps:
@@ -225,60 +257,17 @@ def lamps(observer: str = DEFAULT_OBSERVER, start: float = START, end: float = E
     Lights that are measured on less than 400–700 nm, and lights with the spectrum of an earlier one, are left out.
     """
     luminance = matching_functions(observer, start, end, step)[:, 1]
-    colour = colour_science()
-    names: list[str] = []
-    powers: list[Array] = []
-    for table in LAMP_TABLES:
-        for name, found in getattr(colour, table).items():
-            if found.wavelengths[0] > VISIBLE[0] or found.wavelengths[-1] < VISIBLE[1]:
+    found: dict[str, Array] = {}
+    for kind in ("illuminant", "light source"):
+        for name in names(kind):
+            nm = _look_up(kind, name).wavelengths
+            if nm[0] > VISIBLE[0] or nm[-1] < VISIBLE[1]:
                 continue
-            power = np.maximum(_samples(table, name, "lamp", start, end, step), 0.0)
+            power = np.maximum(samples(kind, name, start, end, step), 0.0)
             power = power * (luminance.sum() / (power @ luminance))
-            if all(np.abs(power - other).max() > SAME_LAMP * other.max() for other in powers):
-                names.append(name)
-                powers.append(power)
-    return Lamps(tuple(names), np.array(powers))
-
-
-def display_primaries(display: str = CRT, start: float = START, end: float = END, step: float = STEP) -> Array:
-    """Return the relative spectral power of the primaries of a display. Shape (N, 3)."""
-    return _samples("MSDS_DISPLAY_PRIMARIES", display, "display", start, end, step)
-
-
-def illuminant_names() -> tuple[str, ...]:
-    """Return the names of all illuminants.
-
-    >>> "FL11" in illuminant_names()
-    True
-    """
-    return tuple(colour_science().SDS_ILLUMINANTS)
-
-
-def observer_names() -> tuple[str, ...]:
-    """Return the names of all standard observers.
-
-    >>> DEFAULT_OBSERVER in observer_names()
-    True
-    """
-    return tuple(colour_science().MSDS_CMFS)
-
-
-def camera_names() -> tuple[str, ...]:
-    """Return the names of all cameras.
-
-    >>> camera_names()
-    ('Nikon 5100 (NPL)', 'Sigma SDMerill (NPL)')
-    """
-    return tuple(colour_science().MSDS_CAMERA_SENSITIVITIES)
-
-
-def space_names() -> tuple[str, ...]:
-    """Return the names of all RGB spaces.
-
-    >>> "sRGB" in space_names()
-    True
-    """
-    return tuple(colour_science().RGB_COLOURSPACES)
+            if all(np.abs(power - other).max() > SAME_LAMP * other.max() for other in found.values()):
+                found[name] = power
+    return Lamps(tuple(found), np.array(list(found.values())))
 
 
 def smallest_space(
@@ -292,38 +281,6 @@ def smallest_space(
     >>> smallest_space(np.full(81, 0.5))
     'sRGB'
     """
-    for space in COMMON_SPACES:
-        candidate = sensor(space, illuminant, observer)
-        if candidate.contains(candidate.rgb(reflectances)).all():
-            return space
-    return None
-
-
-def holding_note(
-    reflectances: ArrayLike, illuminant: str = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
-) -> str:
-    """Describe the smallest of the common RGB spaces that holds all colours of reflectances.
-
-    Shapes: ``reflectances`` (E, N).
-    """
-    space = smallest_space(reflectances, illuminant, observer)
-    if space is None:
-        return f"none of {', '.join(COMMON_SPACES)} holds all"
-    return f"{space} holds all {len(np.asarray(reflectances))}"
-
-
-def _look_up(table: Mapping[str, Any], name: str, kind: str) -> Any:
-    try:
-        return table[name]
-    except KeyError:
-        raise unknown_name(name, table, kind) from None
-
-
-@functools.cache
-def _samples(table: str, name: str, kind: str, start: float, end: float, step: float) -> Array:
-    """Sample a table of colour-science, with constant extrapolation; the result is read-only."""
-    colour = colour_science()
-    found = _look_up(getattr(colour, table), name, kind).copy().align(colour.SpectralShape(start, end, step))
-    samples = np.array(found.values, dtype=float)
-    samples.setflags(write=False)
-    return samples
+    candidates = (sensor(space, illuminant, observer) for space in COMMON_SPACES)
+    holding = (each.space for each in candidates if each.contains(each.rgb(reflectances)).all())
+    return next(holding, None)

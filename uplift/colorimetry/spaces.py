@@ -1,16 +1,21 @@
-"""RGB spaces by name: of colour-science, of OpenColorIO, or by chromaticities."""
+"""RGB spaces by name: of colour-science, of OpenColorIO, or by chromaticities.
+
+Names of OpenColorIO are those of the configuration in ``$OCIO``, and of the built-in one of ACES.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import functools
+import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry.gamut import Gamut, Primaries, conversion
-from uplift.colorimetry.ocio import AP0, OcioSpace, find_ocio_space, ocio_names
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
@@ -18,6 +23,12 @@ from uplift.common.colour_science import colour_science
 from uplift.common.errors import OptionError, unknown_name
 from uplift.common.text import format_value, parse_float
 
+VARIABLE = "OCIO"
+"""Environment variable with the path of a configuration."""
+BUILT_IN = "ocio://studio-config-latest"
+REFERENCE = "ACES2065-1"
+AP0 = Primaries((0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.077), (0.32168, 0.33767))
+"""Primaries of the reference (SMPTE ST 2065-1)."""
 SHORT_NAMES = {
     "ap0": "ACES2065-1",
     "ap1": "ACEScg",
@@ -72,6 +83,43 @@ class ImageSpace:
         return bool(255 * np.abs(difference).max() <= MAX_CURVE_DIFFERENCE)
 
 
+@dataclass(frozen=True, eq=False)
+class LinearGamut:
+    """A gamut by its matrix from linear RGB to XYZ, shape (3, 3)."""
+
+    rgb_to_xyz: Array
+
+
+@dataclass(frozen=True, eq=False)
+class OcioSpace:
+    """A colour space of a configuration of OpenColorIO."""
+
+    name: str
+    """Its name in the configuration."""
+    is_linear: bool
+    """Whether its values are linear."""
+    processor: Any
+    """CPU processor to linear RGB of `AP0`."""
+
+    def to_ap0(self, values: Array) -> Array:
+        """Convert values. Shapes: ``values`` (…, 3) → (…, 3)."""
+        converted = np.array(values, dtype=np.float32, order="C")
+        if converted.size:
+            self.processor.applyRGB(converted.reshape(-1, 3))
+        return converted.astype(float)
+
+    @functools.cached_property
+    def matrix(self) -> Array:
+        """Matrix (3, 3) of a linear space to linear RGB of `AP0`."""
+        return self.to_ap0(np.eye(3)).T
+
+    def as_image_space(self) -> ImageSpace:
+        """Describe colours of the space."""
+        if self.is_linear:
+            return ImageSpace(self.name, LinearGamut(AP0.rgb_to_xyz @ self.matrix), lambda codes: codes)
+        return ImageSpace(self.name, AP0, self.to_ap0, floats_are_codes=True, mixes_channels=True)
+
+
 def find_space(text: str) -> ImageSpace:
     """Find an RGB space by name, or by chromaticities.
 
@@ -82,61 +130,78 @@ def find_space(text: str) -> ImageSpace:
     ('ITU-R BT.2020', 'ACEScg')
     """
     if NUMBERS.fullmatch(text):
-        return ImageSpace(text, _parse_primaries(text))
+        try:
+            numbers = [parse_float(word) for word in re.split(r"[,;\s]+", text.strip())]
+        except ValueError as error:
+            problem = f"primaries must be the name of a space or eight numbers, got {format_value(text)}"
+            hint = "give x,y of red, green, blue and white"
+            raise OptionError(problem, code="invalid-primaries", hint=hint) from error
+        return ImageSpace(text, Primaries.of(numbers))
     if (found := find_ocio_space(text, built_in=False)) is not None:
-        return from_ocio(found)
+        return found.as_image_space()
     try:
         space = look_up_space(text, ocio=False)
     except KeyError:
-        found = find_ocio_space(text)
-        if found is None:
-            known = (*colour_science().RGB_COLOURSPACES, *ocio_names())
-            raise unknown_name(text, known, "RGB space") from None
-        return from_ocio(found)
-    return ImageSpace(space.name, Primaries.of([*space.primaries.ravel(), *space.whitepoint]), space.cctf_decoding)
-
-
-def from_ocio(space: OcioSpace) -> ImageSpace:
-    """Make the image space of a colour space of OpenColorIO."""
-    if space.is_linear:
-        matrix = space.to_ap0(np.eye(3)).T
-        return ImageSpace(space.name, LinearGamut(AP0.rgb_to_xyz @ matrix), lambda codes: codes)
-    return ImageSpace(space.name, AP0, space.to_ap0, floats_are_codes=True, mixes_channels=True)
-
-
-@dataclass(frozen=True, eq=False)
-class LinearGamut:
-    """A gamut by its matrix from linear RGB to XYZ, shape (3, 3)."""
-
-    rgb_to_xyz: Array
-
-
-def _parse_primaries(text: str) -> Primaries:
-    try:
-        numbers = [parse_float(word) for word in re.split(r"[,;\s]+", text.strip())]
-    except ValueError as error:
-        raise OptionError(
-            f"primaries must be the name of a space or eight numbers, got {format_value(text)}",
-            code="invalid-primaries",
-            hint="give x,y of red, green, blue and white",
-        ) from error
-    return Primaries.of(numbers)
+        if (found := find_ocio_space(text)) is not None:
+            return found.as_image_space()
+        names = _configuration(BUILT_IN).getColorSpaceNames()
+        raise unknown_name(text, (*colour_science().RGB_COLOURSPACES, *names), "RGB space") from None
+    return ImageSpace(space.name, primaries_of(space), space.cctf_decoding)
 
 
 def look_up_space(name: str, *, ocio: bool = True) -> Any:
-    """Find an RGB space of colour-science."""
+    """Find an RGB space of colour-science, also by the name of OpenColorIO of a space with the same primaries."""
     table = colour_science().RGB_COLOURSPACES
     for each in (name, SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name)):
         if each in table:
             return table[each]
-    found = find_ocio_space(name) if ocio else None
-    if found is not None:
+    if ocio and (found := find_ocio_space(name)) is not None:
         for each in (*FIRST_SPACES, *table):
-            if _same_primaries(table[each], found):
+            difference = found.matrix - conversion(primaries_of(table[each]), AP0)
+            if np.abs(difference).max() <= MAX_MATRIX_DIFFERENCE:
                 return table[each]
     raise unknown_name(name, table, "RGB space")
 
 
-def _same_primaries(space: Any, found: OcioSpace) -> bool:
-    expected = conversion(Primaries.of([*space.primaries.ravel(), *space.whitepoint]), AP0)
-    return bool(np.abs(found.to_ap0(np.eye(3)).T - expected).max() <= MAX_MATRIX_DIFFERENCE)
+def primaries_of(space: Any) -> Primaries:
+    """Return the primaries and white of an RGB space of colour-science."""
+    return Primaries.of([*space.primaries.ravel(), *space.whitepoint])
+
+
+def find_ocio_space(name: str, *, built_in: bool = True) -> OcioSpace | None:
+    """Find a colour space of OpenColorIO by name, alias or role."""
+    for place in filter(None, (os.environ.get(VARIABLE), BUILT_IN if built_in else None)):
+        config = _configuration(place)
+        space = config.getColorSpace(name) if name.isprintable() else None
+        if space is not None and not space.isData():
+            import PyOpenColorIO
+
+            with _usable(place):
+                processor = PyOpenColorIO.Config.GetProcessorToBuiltinColorSpace(config, space.getName(), REFERENCE)
+                cpu = processor.getOptimizedCPUProcessor(PyOpenColorIO.OPTIMIZATION_LOSSLESS)
+            return OcioSpace(space.getName(), space.getEncoding() == "scene-linear", cpu)
+    return None
+
+
+@functools.lru_cache(maxsize=4)
+def _configuration(place: str) -> Any:
+    import PyOpenColorIO
+
+    with _usable(place):
+        return PyOpenColorIO.Config.CreateFromFile(place)
+
+
+@contextlib.contextmanager
+def _usable(place: str) -> Iterator[None]:
+    """Translate the exceptions of OpenColorIO to `OptionError`."""
+    import PyOpenColorIO
+
+    try:
+        yield
+    except PyOpenColorIO.Exception as error:
+        reason = " ".join(str(error).split())
+        raise OptionError(
+            f"the configuration of OpenColorIO cannot be used: {reason}",
+            path=place,
+            hint="correct the environment variable OCIO, or unset it to use the built-in configuration",
+        ) from error

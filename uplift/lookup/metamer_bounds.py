@@ -7,11 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.colorimetry.delta_e import lab
-from uplift.colorimetry.largest_difference import LargestDifference, largest_difference
-from uplift.colorimetry.mismatch import DIVISIONS, MismatchVolumes, mismatch_volumes
+from uplift.colorimetry.mismatch import (
+    DIVISIONS,
+    LargestDifference,
+    MismatchVolumes,
+    largest_difference,
+    mismatch_volumes,
+    outline,
+)
 from uplift.colorimetry.sensor import Light, in_unit_cube
 from uplift.colorimetry.solid import solid_volume
-from uplift.colorimetry.sphere import outline
 from uplift.common.arrays import Array
 from uplift.lookup.cube import Cube
 from uplift.lookup.light_errors import lab_errors

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from uplift.atlas import Atlas, on_grid, read_atlas, resample
-from uplift.colorimetry.observer import grid, holding_note
+from uplift.colorimetry.observer import COMMON_SPACES, grid, smallest_space
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning
@@ -100,7 +100,8 @@ def entries_in_gamut(atlas: Atlas, sensor: Sensor) -> MeasuredEntries:
     inside = sensor.contains(rgb)
     note = ""
     if not inside.all():
-        note = f"; {holding_note(resample(atlas, grid()).values, sensor.illuminant, sensor.observer)}"
+        space = smallest_space(resample(atlas, grid()).values, sensor.illuminant, sensor.observer)
+        note = f"; {space} holds all {len(atlas)}" if space else f"; none of {', '.join(COMMON_SPACES)} holds all"
     for row in np.flatnonzero(~inside):
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
         warn(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from uplift.colorimetry.observer import illuminant_spd
-from uplift.colorimetry.written_colour import is_number, parse_colour
+from uplift.colorimetry.srgb import is_number, parse_colour
 from uplift.common.arrays import StrPath
 from uplift.common.errors import LookError, UpliftError, unknown_name
 from uplift.common.text import format_value, shorten

@@ -12,8 +12,7 @@ import numpy as np
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import solid
-from uplift.colorimetry.srgb import hex_codes
-from uplift.colorimetry.written_colour import parse_colour
+from uplift.colorimetry.srgb import hex_codes, parse_colour
 from uplift.common.arrays import Array
 from uplift.common.errors import LookError, UpliftError, UpliftWarning
 from uplift.cube import AtlasTable, EntrySpectra

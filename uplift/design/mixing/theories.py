@@ -40,6 +40,8 @@ from uplift.design.mixing.pigments import (
 from uplift.lookup import Cube
 
 Mix = Callable[[Array, Array], Array]  # from components (..., n, K) and parts (..., n) to the mixture (..., K)
+CRT = "Typical CRT Brainard 1997"
+"""Phosphors of a cathode-ray tube, measured by D. H. Brainard."""
 OIL = Surface.of_index(1.5)
 # For each sixth of the hues: indices of red, green and blue among (largest, rising, smallest, falling).
 SEXTANTS = np.array([[0, 1, 2], [3, 0, 2], [2, 0, 1], [2, 3, 0], [1, 2, 0], [0, 2, 3]])
@@ -162,7 +164,7 @@ def phosphor_curves() -> tuple[Array, Array]:
 
     The curve of white is scaled to a maximum of 1 (Fishkin 1983, section 7.2), so that no curve amplifies light.
     """
-    phosphors = observer.display_primaries(observer.CRT).T
+    phosphors = observer.samples("display", CRT).T
     matching = observer.matching_functions()
     white = observer.light(DEFAULT_ILLUMINANT).white
     curves = phosphors * np.linalg.solve((phosphors @ matching).T, white)[:, None]

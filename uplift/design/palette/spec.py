@@ -16,7 +16,7 @@ from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.atlas.sources import find_atlas_file
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
-from uplift.colorimetry.written_colour import MAX_NUMBER, WrittenColour, is_number, parse_colour
+from uplift.colorimetry.srgb import MAX_NUMBER, WrittenColour, is_number, parse_colour
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError, PaletteError, unknown_name
 from uplift.common.spec_file import Key, SpecFile, SpecModel, problem, read_toml, resolves

@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, Primaries
-from uplift.colorimetry.ocio import find_ocio_space
-from uplift.colorimetry.spaces import ImageSpace, from_ocio
+from uplift.colorimetry.spaces import ImageSpace, find_ocio_space
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
@@ -88,7 +87,7 @@ def read_profile(spec: Any) -> Profile | None:
         found = None
         with contextlib.suppress(OptionError):
             found = find_ocio_space(interop)
-        return Profile(interop, None if found is None else from_ocio(found))
+        return Profile(interop, None if found is None else found.as_image_space())
     if (chromaticities := spec.getattribute("chromaticities")) is not None:
         primaries = _primaries(chromaticities)
         name = "chromaticities"
