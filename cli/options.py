@@ -63,7 +63,10 @@ NUMBER = Number()
 
 
 def completion(*sources: str, files: bool = False) -> Callable[..., list[CompletionItem]]:
-    """Complete names, and the names of ``files``; sources of the library are 'module:tuple' or 'module:function:argument'."""
+    """Complete names, and the names of ``files``.
+
+    Sources are tuples or functions of the library with their arguments: 'module:name', 'module:name:argument'.
+    """
 
     def complete(ctx: click.Context, param: click.Parameter, text: str) -> list[CompletionItem]:
         items = [CompletionItem(text, type="file")] * files  # first: bash drops the items before it

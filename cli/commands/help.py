@@ -50,19 +50,19 @@ def _illuminants() -> str:
     from uplift.colorimetry import lights
     from uplift.colorimetry.observer import names
 
-    return f"{inspect.getdoc(lights)}\n\n{', '.join(names("illuminant"))}"
+    return f"{inspect.getdoc(lights)}\n\n" + ", ".join(names("illuminant"))
 
 
 def _observers() -> str:
     from uplift.colorimetry.observer import names
 
-    return f"Standard observers of colour-science:\n\n{', '.join(names("observer"))}"
+    return "Standard observers of colour-science:\n\n" + ", ".join(names("observer"))
 
 
 def _spaces() -> str:
     from uplift.colorimetry.observer import names
 
-    return f"RGB spaces of colour-science:\n\n{', '.join(names("RGB space"))}"
+    return "RGB spaces of colour-science:\n\n" + ", ".join(names("RGB space"))
 
 
 def _exit_codes() -> str:
