@@ -36,8 +36,3 @@ def warns(*codes: str) -> Iterator[list[UpliftWarning]]:
 def with_points(data: CubeData, **arrays: Any) -> CubeData:
     """Return ``data`` with some arrays of its point table replaced."""
     return replace(data, points=replace(data.points, **arrays))
-
-
-def residual(forward, multipliers, target):
-    """Target minus RGB (n, 3) of multipliers (n, C)."""
-    return target - forward.rgb(multipliers)

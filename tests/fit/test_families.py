@@ -25,7 +25,6 @@ from uplift.fit.families import (
     families_with,
     krige_families,
     learn_relevance,
-    noise_variance,
     shipped_library,
 )
 
@@ -57,16 +56,6 @@ def test_measured_families_are_the_shipped_atlases():
     for measured in families.values():
         assert measured.min() >= 0
         assert measured.max() <= 1
-
-
-def test_otsu_spectra_have_their_colours_and_no_seams():
-    light = observer.light("D65").xyz
-    ramp = np.linspace([0.30, 0.38, 0.30], [0.40, 0.38, 0.30], 400)
-    spectra = ship_library.blurred_otsu(ramp, light)
-    np.testing.assert_allclose(spectra @ light.T, ramp, atol=1e-12)
-    steps = np.abs(np.diff(spectra, axis=0)).max(axis=1)
-    assert steps.max() < 0.02
-    assert steps.max() < 10 * np.median(steps)
 
 
 def test_families_can_be_left_out():
@@ -120,12 +109,7 @@ def test_it_is_the_conditional_mean(sizes):
     lab = RNG.uniform([0, -60, -60], [100, 60, 60], (50, 3))
     kriging = krige_families(families)
     np.testing.assert_allclose(kriging(lab, np.ones(len(sizes))), conditional_mean(families, lab), atol=1e-9)
-
-
-def test_the_sum_of_the_contributions_times_relevance_is_the_answer():
-    kriging = krige_families([samples(9), samples(14), samples(0)])
-    lab = RNG.uniform(0, 80, (6, 3))
-    relevance = np.array([0.3, 2.0, 1.0])
+    relevance = RNG.uniform(0, 2, len(sizes))
     expected = np.einsum("f,fnk->nk", relevance, kriging.contributions(lab))
     np.testing.assert_allclose(kriging(lab, relevance), expected, atol=1e-12)
 
@@ -136,13 +120,7 @@ def test_a_large_family_does_not_outweigh_a_small_one():
     large = FamilySamples(place.repeat(300, axis=0), np.full((300, 1), 1.0), np.ones(300), 5.0, 0.0)
     both = krige_families([small, large])(place, np.ones(2))
     assert abs(both.item()) < 0.01
-    same_family = FamilySamples(
-        np.concatenate([small.locations, large.locations]),
-        np.concatenate([small.deviations, large.deviations]),
-        np.ones(303),
-        5.0,
-        0.0,
-    )
+    same_family = FamilySamples(*map(np.concatenate, zip(small[:3], large[:3], strict=True)), 5.0, 0.0)
     assert krige_families([same_family])(place, np.ones(1)).item() > 0.1
 
 
@@ -191,12 +169,3 @@ def test_without_entries_or_differences_relevances_are_1():
     unused = learn_relevance(LIGHTS, PLACES, PLAIN, 0 * PARTS, exact)
     for learnt in (learn(PLAIN, slice(0, 0)), learn(exact), unused):
         np.testing.assert_allclose(learnt, 1, atol=1e-12)
-
-
-@pytest.mark.parametrize("parts", [1, 3])
-def test_noise_counts_independent_parts(parts):
-    """Residuals of 40 values are combinations of a few independent ones of variance 4."""
-    directions = np.linalg.qr(RNG.normal(size=(40, parts)))[0].T
-    residuals = 2 * RNG.normal(size=(4000, parts)) @ directions
-    assert noise_variance(residuals) == pytest.approx(4, rel=0.1)
-    assert noise_variance(0 * residuals) == 0

@@ -1,9 +1,12 @@
-"""Seeds: nearest nodes and corners in any order of the atlas, and starts between entries and prior.
+"""Seeds: nearest nodes and corners in any order of the atlas, starts between entries and prior, and the size of lattice
+that an atlas needs.
 
 Cells of the lattice of 6³ are 20 to 60 ΔE*ab long, so that corners are far from their entries; those of 64³ are near.
 """
 
 from __future__ import annotations
+
+import warnings
 
 import numpy as np
 import pytest
@@ -11,14 +14,31 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from uplift.colorimetry.delta_e import delta_e_1976, rgb_to_lab
+import uplift
+from tests.conftest import MACBETH
+from uplift.atlas import on_grid
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
+from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.fit.base import learn_base
+from uplift.fit.entries import fit_entries
+from uplift.fit.families import shipped_library
 from uplift.fit.kriging import Kernel, Kriging
-from uplift.fit.prior import Prior
+from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem
-from uplift.fit.seeds import FAR, FULL_ENTRY, NEAR, EntryBlend, InitialGuess, learnt_blend, seed
+from uplift.fit.seeds import (
+    DIMS,
+    FAR,
+    FULL_ENTRY,
+    NEAR,
+    choose_lattice,
+    initial_guess,
+    lattice_error,
+    learnt_blend,
+    seed,
+)
 from uplift.lattice import Lattice
-from uplift.models import Moments
+from uplift.models import Moments, reflectance
 
 LATTICE = Lattice(np.linspace(0, 1, 6))
 atlases = arrays(float, st.tuples(st.integers(1, 12), st.just(3)), elements=st.floats(0, 1), unique=True)
@@ -89,9 +109,8 @@ def prior(sensor):
 @pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
 def test_corners_start_between_the_entry_and_the_prior(prior, share):
     seeds = seed(LATTICE, RGB)
-    start = InitialGuess(prior, seeds, ENTRIES, EntryBlend(share, share))(seeds.points, LATTICE.points[seeds.points])
-    own = ENTRIES[seeds.entry]
-    expected = prior(LATTICE.points[seeds.points])
+    nodes, own = LATTICE.points[seeds.points], ENTRIES[seeds.entry]
+    start, expected = initial_guess(seeds.points, nodes, prior, seeds, ENTRIES, (share, share)), prior(nodes)
     mixed = share * MODEL.to_storage(own) + (1 - share) * MODEL.to_storage(expected)
     np.testing.assert_array_equal(start[seeds.primary], own[seeds.primary])
     corners = ~seeds.primary
@@ -103,11 +122,11 @@ def starts_by_distance(prior, lattice, share):
     seeds = seed(lattice, RGB)
     nodes = lattice.points[seeds.points]
     lab, own = (rgb_to_lab(prior.sensor, rgb) for rgb in (nodes, RGB[seeds.entry]))
-    return seeds, delta_e_1976(lab, own), InitialGuess(prior, seeds, ENTRIES, share)(seeds.points, nodes)
+    return seeds, delta_e_1976(lab, own), initial_guess(seeds.points, nodes, prior, seeds, ENTRIES, share)
 
 
 def test_far_corners_start_from_the_prior_alone_but_the_nearest_point_from_the_entry(prior):
-    seeds, distance, start = starts_by_distance(prior, LATTICE, EntryBlend(near=1.0))
+    seeds, distance, start = starts_by_distance(prior, LATTICE, (1.0, 0.0))
     far = ~seeds.primary & (distance > FAR)
     assert far.sum() >= 5
     np.testing.assert_array_equal(start[far], prior(LATTICE.points[seeds.points[far]]))
@@ -120,21 +139,25 @@ def test_seed_corners_start_from_the_entry_at_any_distance(prior):
     np.testing.assert_array_equal(start, ENTRIES[seeds.entry])
 
 
-@pytest.mark.parametrize("near", [0.5, 1.0])
-def test_the_share_falls_continuously_with_distance(near):
-    distance = np.linspace(0, 2 * FAR, 1001)
-    share = EntryBlend(near)(distance)
-    assert (share[distance <= NEAR] == near).all()
-    assert (share[distance >= FAR] == 0).all()
-    steps = np.diff(share) / np.diff(distance)
-    assert steps.max() <= 0
-    assert steps.min() == pytest.approx(-near / (FAR - NEAR))
+def test_corners_between_near_and_far_have_a_share(prior):
+    """Of lattices whose cells are smaller."""
+    shares = []
+    for dim in (12, 16, 24):
+        lattice = Lattice(np.linspace(0, 1, dim))
+        seeds, distance, start = starts_by_distance(prior, lattice, (1.0, 0.0))
+        between = ~seeds.primary & (distance > NEAR) & (distance < FAR)
+        own, expected = ENTRIES[seeds.entry[between]], prior(lattice.points[seeds.points[between]])
+        share = ((FAR - distance[between]) / (FAR - NEAR))[:, None]
+        mixed = share * MODEL.to_storage(own) + (1 - share) * MODEL.to_storage(expected)
+        np.testing.assert_allclose(MODEL.to_storage(start[between]), mixed, atol=1e-6)
+        shares.extend(share)
+    assert len(shares) >= 4
 
 
 def test_all_other_points_start_from_the_prior(prior):
     seeds = seed(LATTICE, RGB)
     points = np.setdiff1d(np.arange(LATTICE.size), seeds.points)
-    start = InitialGuess(prior, seeds, ENTRIES)(points, LATTICE.points[points])
+    start = initial_guess(points, LATTICE.points[points], prior, seeds, ENTRIES, FULL_ENTRY)
     np.testing.assert_array_equal(start, prior(LATTICE.points[points]))
 
 
@@ -142,5 +165,46 @@ def test_all_other_points_start_from_the_prior(prior):
 def test_the_share_of_entries_follows_the_nugget(prior, nugget, share):
     kriging = Kriging(np.zeros((1, 3)), np.zeros((1, 5)), Kernel(12.0, nugget))
     learnt = Prior(MODEL, prior.sensor, prior.base, kriging)
-    assert learnt_blend(learnt).near == pytest.approx(share)
-    assert learnt_blend(learnt).far == 0
+    assert learnt_blend(learnt) == pytest.approx((share, 0))
+
+
+@pytest.fixture(scope="module")
+def stage(sensor):
+    """Problem, prior and the entries of the ColorChecker."""
+    spectra = on_grid(uplift.read_atlas(MACBETH), sensor.wavelengths)
+    spectra = spectra[sensor.contains(sensor.rgb(spectra))]
+    lights = tuple(map(observer.light, SCENE_LIGHTS))
+    problem = Problem(sensor, Moments(9), lights, lights[1])
+    entries = fit_entries(problem, spectra, sensor.rgb(spectra))
+    return problem, fit_prior(problem, entries, learn_base(problem, shipped_library(), entries)[0]), entries
+
+
+@pytest.mark.parametrize("seed_corners", [True, False])
+def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, monkeypatch, seed_corners):
+    """The lattice of the cube is evaluated at the entries without their boxes."""
+    monkeypatch.setattr("uplift.pipeline.build.learnt_blend", lambda prior: (0.6, 0.0))
+    problem, prior, entries = stage
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        data = uplift.build(MACBETH, dim=16, seed_corners=seed_corners).data
+    trial = lattice_error(problem, data.lattice, prior, FULL_ENTRY if seed_corners else (0.6, 0.0), entries)
+    corners, weights = data.lattice.corners(entries.rgb)
+    spectra = reflectance(data.model, data.points.coefficients, sensor.wavelengths)
+    answered = (weights[..., None] * spectra[corners]).sum(axis=1)
+    own = reflectance(data.model, data.atlas.coefficients, sensor.wavelengths)
+    plain = np.max([delta_e_spectra(lit, answered, own) for lit in problem.lights], axis=0)
+    np.testing.assert_allclose(trial, plain, atol=1e-3)
+
+
+def test_the_smallest_lattice_that_keeps_all_entries_is_chosen(stage):
+    problem, prior, entries = stage
+    blend = learnt_blend(prior)
+    _, dim, lost = choose_lattice(problem, prior, blend, entries, 0.5)
+    assert lost == 0
+    for axis in observer.AXES:
+        smaller = Lattice(observer.axis_nodes(axis, DIMS[DIMS.index(dim) - 1]))
+        assert lattice_error(problem, smaller, prior, blend, entries).max() > 0.5
+
+
+def test_without_an_atlas_the_smallest_lattice_is_chosen():
+    assert uplift.build(dim="auto").data.lattice.dim == DIMS[0]

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+
 import jax
 import numpy as np
 import optimistix
 import pytest
 from scipy.optimize import least_squares, minimize
 
-from tests.helpers import raises, residual
-from uplift import build
+from tests.helpers import raises
+from uplift import build, load
 from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.common.errors import UpliftError
 from uplift.fit import optimistix_solvers
-from uplift.fit.batch import CPU_BATCH_ROWS
+from uplift.fit.batch import CPU_BATCH_ROWS, batches, shard
 from uplift.fit.entries import fit_entries, objective
 from uplift.fit.optimistix_solvers import LeastChange, stock_solver
 from uplift.fit.problem import Problem
@@ -33,29 +37,16 @@ SMALL = {"dim": 4, "coefficients": 5, "entry_coefficients": 5}
 
 @pytest.mark.parametrize("model", [Moments(9), Sigmoid()], ids=["moments", "sigmoid"])
 def test_distances_are_at_most_those_of_scipy(model, sensor):
+    """With as many unknowns as equations the solution is unique."""
     forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     found = solve(forward, np.zeros((40, model.count)), TARGETS, tolerance=1e-9, max_passes=40)
-    for target, distance in zip(TARGETS, found.distance, strict=True):
+    for target, multipliers, distance in zip(TARGETS, found.multipliers, found.distance, strict=True):
         oracle = least_squares(
-            lambda p, target=target: residual(forward, p[None], target[None])[0], np.zeros(model.count)
+            lambda p, target=target: forward.residual(p[None], target[None])[0], np.zeros(model.count), xtol=1e-15
         )
         assert distance <= 1e-9 or distance <= np.abs(oracle.fun).max() * 1.01
-
-
-def test_three_unknowns_have_the_multipliers_of_scipy(sensor):
-    """With as many unknowns as equations the solution is unique."""
-    model = Sigmoid()
-    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    found = solve(forward, np.zeros((40, 3)), TARGETS, tolerance=1e-12, max_passes=40)
-    for target, multipliers in zip(TARGETS[:8], found.multipliers, strict=False):
-        oracle = least_squares(
-            lambda p, target=target: residual(forward, p[None], target[None])[0],
-            np.zeros(3),
-            xtol=1e-15,
-            ftol=1e-15,
-            gtol=1e-15,
-        )
-        np.testing.assert_allclose(multipliers, oracle.x, rtol=1e-5, atol=1e-6)
+        if model.count == 3 and np.abs(oracle.fun).max() <= 1e-9:
+            np.testing.assert_allclose(multipliers, oracle.x, rtol=1e-4, atol=1e-5)
 
 
 def test_no_distance_increases(sensor):
@@ -64,9 +55,9 @@ def test_no_distance_increases(sensor):
     forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     wild = RNG.uniform(-1, 2, (50, 3))
     start = RNG.normal(size=(50, 9))
-    before = (residual(forward, start, wild) ** 2).sum(axis=1)
+    before = (forward.residual(start, wild) ** 2).sum(axis=1)
     found = solve(forward, start, wild, tolerance=1e-6, max_passes=3)
-    after = (residual(forward, found.multipliers, wild) ** 2).sum(axis=1)
+    after = (forward.residual(found.multipliers, wild) ** 2).sum(axis=1)
     assert (after <= before * (1 + 1e-12)).all()
     assert np.isfinite(found.multipliers).all()
     assert (found.distance > 1e-6).any()
@@ -95,12 +86,12 @@ def forward(sensor):
 def test_optimistix_runs_it(forward):
     with jax.enable_x64(True):
         found = optimistix.least_squares(
-            lambda y, target: residual(forward, y, target),
+            lambda y, target: forward.residual(y, target),
             LeastChange(forward, 1e-9),
             PRIORS,
             args=INNER,
         )
-    off = residual(forward, np.asarray(found.value), INNER)
+    off = forward.residual(np.asarray(found.value), INNER)
     assert np.abs(off).max() <= 1e-9
     ours = solve(forward, PRIORS, INNER, tolerance=1e-9, max_passes=20, prior=PRIORS)
     np.testing.assert_allclose(found.value, ours.multipliers, atol=1e-9)
@@ -117,7 +108,7 @@ def test_the_answer_is_the_nearest_to_the_prior(forward):
             tol=1e-14,
             constraints={
                 "type": "eq",
-                "fun": lambda p, target=target: residual(forward, p[None], target[None])[0],
+                "fun": lambda p, target=target: forward.residual(p[None], target[None])[0],
             },
         )
         np.testing.assert_allclose(multipliers, oracle.x, atol=2e-4)
@@ -168,3 +159,48 @@ def test_a_solver_that_stops_early_is_an_error(sensor):
     goal = objective(Problem(sensor, MODEL, (light("A"),)))
     with raises(UpliftError, "solver-failed"):
         optimistix_solvers.minimise(optimistix.GaussNewton(rtol=10.0, atol=10.0), goal, measured)
+
+
+LARGE, NARROW = CPU_BATCH_ROWS
+
+
+@pytest.mark.parametrize(
+    ("count", "smaller", "sizes"),
+    [
+        (0, 4, []),
+        (NARROW + 1, 4, [NARROW, NARROW]),
+        (4 * NARROW, 4, [NARROW] * 4),
+        (4 * NARROW + 1, 4, [LARGE]),
+        (4 * NARROW + 1, 5, [NARROW] * 5),
+        (2 * LARGE + 3, 4, [LARGE, LARGE, NARROW]),
+    ],
+)
+def test_every_row_is_in_one_batch(count, smaller, sizes):
+    rows = np.arange(count) + 7
+    parts = list(batches(count, smaller))
+    np.testing.assert_array_equal(np.concatenate([rows[:0], *(rows[part] for part, _ in parts)]), rows)
+    assert [width for _, width in parts] == sizes
+    for part, width in parts:
+        padded = np.asarray(shard(rows[part], width))
+        np.testing.assert_array_equal(padded[: len(rows[part])], rows[part])
+        assert len(padded) == width
+        assert set(padded[len(rows[part]) :]) <= {rows[part][-1]}
+
+
+SEVERAL = """
+import sys, jax, uplift
+assert len(jax.devices()) == 3
+uplift.build(sys.argv[1], dim=9).save(sys.argv[2])
+"""
+
+
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+def test_several_devices_build_the_same_cube(repository, tmp_path):
+    """Three simulated devices distribute the rows unevenly."""
+    macbeth, path = repository / "atlases" / "macbeth.txt", tmp_path / "several.uplift"
+    flags = {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"}
+    subprocess.run([sys.executable, "-W", "ignore", "-c", SEVERAL, macbeth, path], env=os.environ | flags, check=True)
+    one, several = build(macbeth, dim=9).data, load(path).data
+    np.testing.assert_allclose(several.points.coefficients, one.points.coefficients, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(several.points.standard_error, one.points.standard_error, rtol=1e-6)
+    np.testing.assert_array_equal(several.points.status, one.points.status)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.helpers import residual
 from uplift.lookup import refine
 from uplift.models import Moments, Sigmoid, minimum_norm
 
@@ -35,7 +34,7 @@ def test_accumulated_distances_equal_a_direct_evaluation(setting, monkeypatch):
     monkeypatch.setattr(refine, "BLOCK_COLUMNS", 7)
     moved = multipliers.T.copy()
     distance = refine._descend(forward, moved, goal)
-    evaluated = np.abs(residual(forward, moved.T, goal.T)).max(axis=1)
+    evaluated = np.abs(forward.residual(moved.T, goal.T)).max(axis=1)
     np.testing.assert_allclose(distance, evaluated, rtol=0, atol=1e-10)
     assert distance.max() <= refine.TOLERANCE
 
@@ -44,9 +43,9 @@ def test_steps_that_increase_the_distance_are_rejected(setting):
     """The colour is unrealisable; no distance increases."""
     forward, multipliers = setting
     goal = np.tile([[3.0], [-2.0], [0.5]], 40)
-    before = np.abs(residual(forward, multipliers, goal.T))
+    before = np.abs(forward.residual(multipliers, goal.T))
     moved = multipliers.T.copy()
     refine._descend(forward, moved, goal)
-    after = residual(forward, moved.T, goal.T)
+    after = forward.residual(moved.T, goal.T)
     assert np.isfinite(after).all()
     assert ((after**2).sum(axis=1) <= (before**2).sum(axis=1) * (1 + 1e-9)).all()

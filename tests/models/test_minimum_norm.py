@@ -6,7 +6,6 @@ import jax
 import numpy as np
 
 import uplift.fit.batch  # noqa: F401  # makes the forward map a pytree
-from tests.helpers import residual
 from uplift.models import Moments
 from uplift.models.minimum_norm import anchored_step, forward_map, minimum_norm_step, solve_damped
 
@@ -25,7 +24,7 @@ def step(forward, residuals, damping=0.0):
 def numeric_jacobian(forward, multipliers, target):
     columns = []
     for nudge in 1e-6 * np.eye(len(multipliers)):
-        residuals = [residual(forward, (multipliers + s * nudge)[None], target[None])[0] for s in (-1, 1)]
+        residuals = [forward.residual((multipliers + s * nudge)[None], target[None])[0] for s in (-1, 1)]
         columns.append((residuals[0] - residuals[1]) / 2e-6)
     return np.stack(columns, axis=1)
 
@@ -33,7 +32,7 @@ def numeric_jacobian(forward, multipliers, target):
 def test_step_agrees_with_its_formula(sensor):
     """Δp = M⁻¹Jᵀ(J M⁻¹Jᵀ)⁻¹ r, J by differences and the rest by a dense solver; nothing in the null space."""
     forward = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
-    residuals = residual(forward, POINTS, TARGETS)
+    residuals = forward.residual(POINTS, TARGETS)
     metric = np.linalg.inv(forward.root @ forward.root.T)
     for p, t, r, dp in zip(POINTS, TARGETS, residuals, step(forward, residuals), strict=True):
         jacobian = numeric_jacobian(forward, p, t)
@@ -47,7 +46,7 @@ def test_step_agrees_with_its_formula(sensor):
 def test_anchored_step_agrees_with_its_formula(sensor):
     """Δx = A⁺ (t − r + A d) − d."""
     forward = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
-    residuals, displacement = residual(forward, POINTS, TARGETS), RNG.normal(size=POINTS.shape)
+    residuals, displacement = forward.residual(POINTS, TARGETS), RNG.normal(size=POINTS.shape)
     found = anchored_step(forward, POINTS, residuals, np.zeros(len(POINTS)), displacement)
     for p, t, r, d, dx in zip(POINTS, TARGETS, residuals, displacement, found, strict=True):
         a = numeric_jacobian(forward, p, t) @ forward.root
@@ -56,14 +55,14 @@ def test_anchored_step_agrees_with_its_formula(sensor):
 
 def test_damping_shortens_the_step(sensor):
     forward = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
-    residuals = residual(forward, POINTS, TARGETS)
+    residuals = forward.residual(POINTS, TARGETS)
     free, damped = (step(forward, residuals, mu) for mu in (0.0, 1.0))
     assert (np.linalg.norm(damped, axis=1) < np.linalg.norm(free, axis=1)).all()
 
 
 def test_jax_and_numpy_agree(sensor):
     forward = forward_map(MODEL, sensor.wavelengths, sensor.matrix)
-    arrays = (POINTS, residual(forward, POINTS, TARGETS), np.full(len(POINTS), 1e-2), 0.1 * POINTS)
+    arrays = (POINTS, forward.residual(POINTS, TARGETS), np.full(len(POINTS), 1e-2), 0.1 * POINTS)
     here = anchored_step(forward, *arrays)
     with jax.enable_x64(True):
         there = jax.jit(anchored_step)(forward, *arrays)

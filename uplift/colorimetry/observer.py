@@ -42,6 +42,8 @@ SAME_LAMP = 1e-3
 """Difference, as a fraction of the largest power, below which two lamps are one."""
 START, END, STEP = 380.0, 780.0, 5.0
 """Range and step in nm that every table of the CIE covers."""
+AXES = ("srgb", "linear")
+"""Spacings of `axis_nodes`."""
 
 
 def grid() -> Array:
@@ -207,7 +209,7 @@ def axis_nodes(spacing: str, dim: int) -> Array:
         return even
     if spacing == "srgb":
         return decode_portably(even)
-    raise unknown_name(spacing, ("srgb", "linear"), "axis spacing")
+    raise unknown_name(spacing, AXES, "axis spacing")
 
 
 def matching_functions(

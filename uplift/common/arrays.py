@@ -1,8 +1,9 @@
-"""Types of arrays and paths in signatures."""
+"""Types of arrays and paths in signatures; blocks of rows."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,3 +16,9 @@ Mask = NDArray[np.bool_]
 Values = NDArray[Any]
 """Array of float64 or float32."""
 StrPath = str | os.PathLike[str]
+
+
+def blocks(count: int, size: int) -> Iterator[slice]:
+    """Split rows into blocks of at most ``size``."""
+    for first in range(0, count, size):
+        yield slice(first, min(first + size, count))

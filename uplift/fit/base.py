@@ -15,16 +15,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import rgb_to_lab
-from uplift.common.arrays import Array, Mask
+from uplift.colorimetry.delta_e import lab, lab_jacobian, rgb_to_lab
+from uplift.colorimetry.sensor import Light
+from uplift.common.arrays import Array, blocks
 from uplift.fit.batch import to_storage
 from uplift.fit.entries import FittedEntries
 from uplift.fit.families import Family, FamilySamples, average_close, krige_families, learn_relevance
-from uplift.fit.match_spectra import match_spectra
 from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.solver import solve
 from uplift.lattice import Lattice, weighted_sum
-from uplift.models import Moments, evaluate
+from uplift.models import Moments, reflectance
+from uplift.models.arithmetic import blocked_matmul
+from uplift.models.duality import cosine_basis
 from uplift.models.minimum_norm import ForwardMap
 from uplift.models.model import Model
 
@@ -44,6 +46,13 @@ MAX_ENTRIES = 1000
 """Entries from which relevances are learnt."""
 BOUND = 0.1
 """Part of the distance of a smooth spectrum from 0 and 1 that always remains."""
+COLOUR_WEIGHT = 0.06
+"""Weight of a unit of CIE L*a*b* under a light: twice that of atlas entries, as the spectra are uncertain."""
+MATCH_NODES = 1024
+"""Nodes of the integrals from reflectances to moments."""
+DAMPING = 1e-4
+"""Damping of the step, relative to the mean diagonal of its matrix."""
+MATCH_ROWS = 1 << 9
 DIMMEST = 0.1
 """Brightened colours below this, linear RGB under 0.01, tend towards smooth spectra: hardly anything is so dark."""
 
@@ -60,30 +69,17 @@ class Base:
     brightening: float = BRIGHTENING
     grey: float = GREY
 
-    def __call__(self, rgb: Array) -> Array:
-        """Multipliers (n, C) of nearly the colours (n, 3), linear RGB in [0, 1], for the solver to finish."""
-        return self.model.from_storage(self.coefficients(rgb))
-
     def coefficients(self, rgb: Array) -> Array:
-        """Coefficients (n, C) of nearly the colours (n, 3), continuous in them."""
+        """Coefficients (n, C) of nearly the linear RGB (n, 3) in [0, 1], continuous in it; the solver does the rest."""
         if self.nodes is None:
             return self.model.to_storage(_grey(self.model, rgb, self.grey))
+        # s(x) = k s(x / k), as moments are linear in the spectrum
         factor = self.brightness(rgb)
         return factor * weighted_sum(self.nodes, *TABLE.corners(np.minimum(rgb / factor, 1)))
 
     def brightness(self, rgb: Array) -> Array:
-        """Factor k (n, 1) between a colour and the brightened one."""
+        """Factor k = max(x)^½ (n, 1) between a colour and the brightened one."""
         return np.asarray(np.maximum(rgb.max(axis=1), MIN_LEVEL)[:, None] ** self.brightening)
-
-    def darkened(self, bright: Array) -> Array:
-        """Colours (n, 3) of brightened ones."""
-        power = self.brightening / (1 - self.brightening)
-        return np.asarray(bright * bright.max(axis=1, keepdims=True) ** power)
-
-
-def has_freedom(model: Model) -> bool:
-    """Whether a model has several spectra of one colour, so that the prior matters."""
-    return isinstance(model, Moments) and model.count > NO_FREEDOM
 
 
 def smooth(
@@ -112,7 +108,7 @@ def learn_base(
     """Learn the base from families, and the relevance of each, 0 to 4, from atlas entries; 1 without an atlas.
 
     Spectra out of gamut, and those of atlas entries, are not used. The base is that of smooth spectra without families,
-    and for models without freedom.
+    and for models whose spectra the colour alone determines.
     """
     # Unrealisable nodes of the table are solved for the nearest realisable colours: their own multipliers would be
     # arbitrary, and would spoil the interpolation between nodes.
@@ -130,56 +126,103 @@ def learn_base(
         order = order[:: max(-(-len(order) // MAX_ENTRIES), 1)]
         rgb = entries.rgb[order]
         locations = rgb_to_lab(sensor, rgb)
-        expected = evaluate(model, plain(rgb), sensor.wavelengths)
+        expected = reflectance(model, plain.coefficients(rgb), sensor.wavelengths)
         parts = kriging.contributions(locations) * plain.brightness(rgb)
         relevance = learn_relevance(problem.lights, locations, expected, parts, entries.measured[order])
 
-    # s(x′) + d(x) / k at the nodes x′ of the table, inside (0, 1), as coefficients
-    spectra = evaluate(model, model.from_storage(plain.nodes), sensor.wavelengths)
-    colours = plain.darkened(bright)
+    # s(x′) + d(x) / k at the nodes x′ of the table, inside (0, 1), as coefficients, where x = x′ max(x′)
+    spectra = reflectance(model, plain.nodes, sensor.wavelengths)
+    colours = bright * bright.max(axis=1, keepdims=True) ** (plain.brightening / (1 - plain.brightening))
     deviations = kriging(rgb_to_lab(sensor, colours), relevance)
     deviations = deviations * np.minimum(bright.max(axis=1, keepdims=True) / DIMMEST, 1)
     goal = np.clip(spectra + deviations, BOUND * spectra, 1 - BOUND * (1 - spectra))
-    nodes = _match_nodes(problem, model, goal, plain.brightness(colours))
+    # Spectra are matched at their actual brightness. Where the result cannot be brightened, as no reflectance has such
+    # moments, the brightened spectrum is matched instead.
+    factor = plain.brightness(colours)
+    nodes = to_storage(model, match_spectra(model, sensor.wavelengths, goal * factor, problem.lights)) / factor
+    _, valid = model.try_from_storage(nodes)
+    nodes[~valid] = to_storage(model, match_spectra(model, sensor.wavelengths, goal[~valid], problem.lights))
     return replace(plain, nodes=nodes), tuple(relevance.tolist())
 
 
 def _samples(plain: Base, problem: Problem, family: Family, entries: FittedEntries | None) -> FamilySamples:
-    """Deviations of the spectra of a family from smooth ones, brightened."""
+    """Deviations of the spectra of a family from smooth ones, brightened; spectra of atlas entries are left out."""
+    from scipy.spatial import cKDTree
+
     sensor = problem.sensor
     rgb = sensor.rgb(family.measured)
     rows = np.flatnonzero(sensor.contains(rgb))
     rgb, measured = np.clip(rgb[rows], 0, 1), family.measured[rows]
     locations = rgb_to_lab(sensor, rgb)
-    if entries is not None:
-        new = ~_duplicates(locations, measured, rgb_to_lab(sensor, entries.rgb), entries.measured)
+    if entries is not None and len(entries.rgb) and len(rgb):
+        close = cKDTree(rgb_to_lab(sensor, entries.rgb)).query_ball_point(locations, SAME_COLOUR)
+        differences = [
+            ((entries.measured[near] - own) ** 2).mean(axis=1) for near, own in zip(close, measured, strict=True)
+        ]
+        new = np.array([not (difference <= SAME_SPECTRUM**2).any() for difference in differences])
         rgb, measured, locations = rgb[new], measured[new], locations[new]
-    expected = evaluate(plain.model, plain(rgb), sensor.wavelengths)
+    expected = reflectance(plain.model, plain.coefficients(rgb), sensor.wavelengths)
     deviations = (measured - expected) / plain.brightness(rgb)
     return FamilySamples(*average_close(locations, deviations), family.spread, family.related)
 
 
-def _duplicates(locations: Array, measured: Array, of_locations: Array, of_measured: Array) -> Mask:
-    """Whether each spectrum (n,) is that of an entry."""
-    from scipy.spatial import cKDTree
+def match_spectra(model: Moments, wavelengths: Array, reflectances: Array, lights: Sequence[Light]) -> Array:
+    """Multipliers (n, C) of spectra near reflectances (n, N) in (0, 1), with nearly their colours under several lights.
 
-    duplicate = np.zeros(len(locations), dtype=bool)
-    if not len(of_locations) or not len(locations):
-        return duplicate
-    for row, near in enumerate(cKDTree(of_locations).query_ball_point(locations, SAME_COLOUR)):
-        squared = ((of_measured[near] - measured[row]) ** 2).mean(axis=1)
-        duplicate[row] = bool((squared <= SAME_SPECTRUM**2).any())
-    return duplicate
-
-
-def _match_nodes(problem: Problem, model: Moments, goal: Array, factor: Array) -> Array:
-    """Coefficients (n, C) of brightened spectra, close to ``goal`` (n, N).
-
-    They are matched at the actual brightness, ``factor`` (n, 1) of the brightened one. Where the result cannot be
-    brightened, as no reflectance has such moments, the brightened spectrum is matched instead.
+    The wavelengths (N,) are evenly spaced over the range of the model.
     """
-    wavelengths, lights = problem.sensor.wavelengths, problem.lights
-    nodes = to_storage(model, match_spectra(model, wavelengths, goal * factor, lights)) / factor
-    _, valid = model.try_from_storage(nodes)
-    nodes[~valid] = to_storage(model, match_spectra(model, wavelengths, goal[~valid], lights))
-    return nodes
+    multipliers = model.from_storage(blocked_matmul(reflectances, moment_matrix(model, wavelengths)))
+    basis = model.basis(wavelengths)
+    for block in blocks(len(multipliers), MATCH_ROWS):
+        multipliers[block] = _step(model, basis, lights, multipliers[block], reflectances[block])
+    return multipliers
+
+
+def moment_matrix(model: Moments, wavelengths: Array) -> Array:
+    """Weights (N, C) that turn reflectances (n, N), linear between the wavelengths, into moments."""
+    phase = -np.pi * (np.arange(MATCH_NODES) + 0.5) / MATCH_NODES
+    at = np.interp(phase, model.phase(wavelengths), np.arange(len(wavelengths)))
+    samples = np.stack([np.interp(at, np.arange(len(wavelengths)), row) for row in np.eye(len(wavelengths))])
+    # c_j = (1/π) ∫ g(φ) cos jφ dφ by midpoints
+    weights = cosine_basis(phase, model.count) / MATCH_NODES
+    weights[:, 1:] /= 2
+    return np.asarray(samples @ weights)
+
+
+def _step(model: Moments, basis: Array, lights: Sequence[Light], multipliers: Array, goal: Array) -> Array:
+    """Take a Gauss–Newton step of the objective (6); spectra that it would not bring nearer stay.
+
+    The moments of a detailed reflectance lose its colour under other lights if they are few. One step restores it, and
+    costs microseconds per spectrum.
+    """
+    matrices, whites = np.concatenate([light.xyz for light in lights]), np.stack([light.white for light in lights])
+    colours = (matrices.T[:, :, None] * basis[:, None, :]).reshape(len(basis), -1)
+    squares = (basis[:, :, None] * basis[:, None, :]).reshape(len(basis), -1) / len(basis)
+
+    def differences(x: Array) -> tuple[Array, Array, Array]:
+        """Differences of the spectra (n, N), weighted ones of their colours (n, 3 L), and their XYZ (n, L, 3)."""
+        spectra = model.to_reflectance(x)
+        xyz, goal_xyz = ((each @ matrices.T).reshape(len(x), -1, 3) for each in (spectra, goal))
+        difference = lab(xyz, whites) - lab(goal_xyz, whites)
+        return spectra - goal, COLOUR_WEIGHT * difference.reshape(len(x), -1), xyz
+
+    # With g = S(B p), minimise mean (g − goal)² + Σ |w ΔL*a*b*|²: p − (JᵀJ + μ I)⁻¹ Jᵀ r.
+    count = multipliers.shape[1]
+    x = multipliers @ basis.T
+    difference, colour_difference, xyz = differences(x)
+    derivative = model.derivative(x)
+    to_lab = COLOUR_WEIGHT * lab_jacobian(xyz, whites)
+    change = (derivative @ colours).reshape(len(x), -1, 3, count)
+    change = (to_lab @ change).reshape(len(x), -1, count)
+    # JᵀJ of the spectra is Σ_λ S′(x)² b bᵀ / N; that of the colours is the product of their changes.
+    matrix = ((derivative * derivative) @ squares).reshape(-1, count, count) + change.mT @ change
+    damping = DAMPING * np.trace(matrix, axis1=1, axis2=2) / count
+    matrix[:, np.arange(count), np.arange(count)] += damping[:, None]
+    gradient = (difference * derivative) @ basis / len(basis)
+    gradient += (colour_difference[:, None, :] @ change)[:, 0]
+    trial = multipliers - np.linalg.solve(matrix, gradient[..., None])[..., 0]
+    before, after = (
+        (spectra**2).mean(axis=1) + (lit**2).sum(axis=1)
+        for spectra, lit, _ in ((difference, colour_difference, xyz), differences(trial @ basis.T))
+    )
+    return np.where((after < before)[:, None], trial, multipliers)

@@ -6,8 +6,8 @@ a batch on JAX at every number of entries: a batch runs until its last entry con
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,13 @@ from uplift.fit.problem import Problem
 from uplift.fit.solver import solve_singly
 from uplift.models.model import Model
 
+LIGHTS_WEIGHT, SMOOTHNESS = 0.03, 1e-3
+"""Weights of a unit of CIE L*a*b* under a light, and of the multipliers but the constant one, in the metric M of
+docs/mathematics.md, 5, relative to the root-mean-square difference of the spectra (docs/fidelity.md).
+
+Without smoothness the minimum of a dark entry jumps: of two spectra that meet its colours nearly equally well one has
+multipliers ten times as large, and noise decides between them.
+"""
 ENDS = 8
 """Each end of the spectrum is this part of it: 50 nm of 380–780."""
 FLATNESS = 1e-5
@@ -24,24 +31,6 @@ FLATNESS = 1e-5
 MAX_STEPS = 256
 PRECISION = 1e-8
 """Relative reduction of the objective, change of the multipliers and steepness at which MINPACK stops."""
-
-
-@dataclass(frozen=True)
-class Weights:
-    """Weights of the objective, relative to the root-mean-square difference of the spectra (docs/fidelity.md).
-
-    ``lights`` is that of a unit of CIE L*a*b* under a light, ``ends`` that of the two ends of the spectrum relative to
-    its middle. ``smoothness`` weighs the multipliers but the constant one, in the metric M of docs/mathematics.md, 5:
-    without it the minimum of a dark entry jumps, as of two spectra that meet its colours nearly equally well one has
-    multipliers ten times as large, and noise decides between them.
-    """
-
-    lights: float = 0.03
-    ends: float = 1.0
-    smoothness: float = 1e-3
-
-
-BALANCED = Weights()
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,26 +86,30 @@ class Objective:
         return float(np.abs(slopes.T @ residuals / norms).max())
 
 
-def objective(problem: Problem, weights: Weights = BALANCED) -> Objective:
-    """Make the objective of entries; the squared weights of values sum to a weighted mean square."""
+def objective(
+    problem: Problem, lights: float = LIGHTS_WEIGHT, ends: float = 1.0, smoothness: float = SMOOTHNESS
+) -> Objective:
+    """Make the objective of entries; the squared weights of values sum to a weighted mean square.
+
+    ``ends`` is the weight of the two ends of the spectrum relative to its middle.
+    """
     model, count = problem.model, len(problem.forward.basis)
     importance = np.ones(count)
-    importance[: count // ENDS] = importance[-(count // ENDS) :] = weights.ends
+    importance[: count // ENDS] = importance[-(count // ENDS) :] = ends
     # M = diag(1 + j²), but the constant multiplier is left to the measurement.
-    smooth = np.maximum(weights.smoothness * np.sqrt(model.metric_diagonal()), FLATNESS)
+    smooth = np.maximum(smoothness * np.sqrt(model.metric_diagonal()), FLATNESS)
     return Objective(
         model,
         problem.forward.basis,
         np.sqrt(importance / importance.sum()),
         np.stack([light.xyz for light in problem.lights]),
         np.stack([light.white for light in problem.lights]),
-        weights.lights,
+        lights,
         np.where(model.constant() > 0, FLATNESS, smooth),
     )
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class FittedEntries:
+class FittedEntries(NamedTuple):
     """E atlas entries as spectra of the model.
 
     Linear ``rgb`` (E, 3), ``measured`` reflectances (E, N) at the wavelengths of the sensor, ``multipliers`` (E, C) of
@@ -128,19 +121,34 @@ class FittedEntries:
     multipliers: Array
     error: Array
 
-    def __len__(self) -> int:
-        return len(self.rgb)
-
     def rows(self, rows: Any) -> FittedEntries:
         """Return some of the entries."""
-        return FittedEntries(*(getattr(self, key.name)[rows] for key in fields(self)))
+        return FittedEntries(*(column[rows] for column in self))
 
 
-def fit_entries(problem: Problem, measured: Array, rgb: Array, weights: Weights = BALANCED) -> FittedEntries:
-    """Fit measured reflectances (E, N) by the spectrum model, and meet their linear RGB (E, 3) to the tolerance."""
-    goal = objective(problem, weights)
+def fit_entries(problem: Problem, measured: Array, rgb: Array, **weights: float) -> FittedEntries:
+    """Fit measured reflectances (E, N) by the spectrum model, and meet their linear RGB (E, 3) to the tolerance.
+
+    ``weights`` are those of `objective`, min ‖g − m‖² + Σ |w ΔL*a*b*|².
+    """
+    goal = objective(problem, **weights)
     if problem.solver is None:
-        near = _minimise(goal, measured)
+        from scipy.optimize import leastsq
+
+        # From grey, by Levenberg and Marquardt's method
+        near, scale = np.zeros((len(measured), goal.model.count)), np.ones(goal.model.count)
+        for row, spectrum in enumerate(measured):
+            near[row], *_ = leastsq(
+                goal.residuals,
+                near[row],
+                args=(spectrum, goal.colours(spectrum)),
+                Dfun=lambda p, *_: goal.jacobian(p),
+                full_output=True,  # otherwise it warns where rounding ends the fit
+                ftol=PRECISION,
+                xtol=PRECISION,
+                gtol=PRECISION,
+                diag=scale,
+            )
     else:
         from uplift.fit.optimistix_solvers import minimise  # the default needs no optimistix
 
@@ -153,28 +161,6 @@ def fit_entries(problem: Problem, measured: Array, rgb: Array, weights: Weights 
     )
 
 
-def _minimise(goal: Objective, measured: Array) -> Array:
-    """Multipliers (E, C) that minimise the objective of measured reflectances (E, N), starting from grey."""
-    from scipy.optimize import leastsq
-
-    multipliers, scale = np.zeros((len(measured), goal.model.count)), np.ones(goal.model.count)
-    for row, spectrum in enumerate(measured):
-        multipliers[row], *_ = leastsq(
-            goal.residuals,
-            multipliers[row],
-            args=(spectrum, goal.colours(spectrum)),
-            Dfun=lambda p, *_: goal.jacobian(p),
-            full_output=True,  # otherwise it warns where rounding ends the fit
-            ftol=PRECISION,
-            xtol=PRECISION,
-            gtol=PRECISION,
-            diag=scale,
-        )
-    return multipliers
-
-
 def join_entries(*parts: FittedEntries) -> FittedEntries:
     """Put entries after one another."""
-    return FittedEntries(
-        *(np.concatenate([getattr(part, key.name) for part in parts]) for key in fields(FittedEntries))
-    )
+    return FittedEntries(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))

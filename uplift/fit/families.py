@@ -13,18 +13,18 @@ Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25 a
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
+from typing import NamedTuple
 
 import numpy as np
 
 from uplift.colorimetry.delta_e import lab_jacobian
 from uplift.colorimetry.sensor import Light
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.errors import unknown_name
-from uplift.fit.entries import BALANCED
+from uplift.fit.entries import LIGHTS_WEIGHT
 from uplift.fit.kriging import JITTER, Kernel
 
 FILE = "library.npz"
@@ -65,26 +65,20 @@ class Family:
     related: float = 0.0
 
 
-@functools.cache
-def _shipped() -> tuple[Family, ...]:
-    with (files(__package__) / FILE).open("rb") as file, np.load(file, allow_pickle=False) as table:
-        measured = np.cumsum(table["steps"], axis=1, dtype=np.int64) / STEPS
-        rows = np.split(measured, np.cumsum(table["counts"])[:-1])
-        named = zip(table["names"].tolist(), rows, table["spreads"].tolist(), strict=True)
-        return tuple(Family(*row) for row in named)
-
-
 def shipped_library(leave_out: Collection[str] = ()) -> tuple[Family, ...]:
     """Return the families that come with the package, at the wavelengths of the default sensor.
 
     Some may be left out by name, for tests on them. Raises `UnknownNameError` for an unknown name.
     """
-    families = _shipped()
-    names = [family.name for family in families]
+    with (files(__package__) / FILE).open("rb") as file, np.load(file, allow_pickle=False) as table:
+        measured = np.cumsum(table["steps"], axis=1, dtype=np.int64) / STEPS
+        rows = np.split(measured, np.cumsum(table["counts"])[:-1])
+        named = zip(table["names"].tolist(), rows, table["spreads"].tolist(), strict=True)
+        families = {name: Family(name, *rest) for name, *rest in named}
     for name in leave_out:
-        if name not in names:
-            raise unknown_name(name, names, "library family")
-    return tuple(family for family in families if family.name not in leave_out)
+        if name not in families:
+            raise unknown_name(name, list(families), "library family")
+    return tuple(family for family in families.values() if family.name not in leave_out)
 
 
 def families_with(measured: Array) -> tuple[str, ...]:
@@ -98,8 +92,7 @@ def families_with(measured: Array) -> tuple[str, ...]:
     return tuple(name for name, distance in nearest.items() if distance <= limit)
 
 
-@dataclass(frozen=True, eq=False)
-class FamilySamples:
+class FamilySamples(NamedTuple):
     """Deviations (E, N) of a family at L*a*b* (E, 3), each the mean of ``counts`` (E,) spectra; see `Family`."""
 
     locations: Array
@@ -173,10 +166,8 @@ def average_close(locations: Array, deviations: Array) -> tuple[Array, Array, Ar
 def _kernel_sum(lab: Array, locations: Array, weights: Array) -> Array:
     """Sums (n, N) of weights (E, N) at L*a*b* (n, 3)."""
     sums = np.zeros((len(lab), weights.shape[1]))
-    rows = max(BLOCK_NUMBERS // max(len(locations), 1), 1)
-    for first in range(0, len(lab) if len(locations) else 0, rows):
-        part = slice(first, first + rows)
-        sums[part] = _matern(lab[part], locations) @ weights
+    for block in blocks(len(lab) if len(locations) else 0, max(BLOCK_NUMBERS // max(len(locations), 1), 1)):
+        sums[block] = _matern(lab[block], locations) @ weights
     return sums
 
 
@@ -207,7 +198,7 @@ def learn_relevance(lights: Sequence[Light], locations: Array, plain: Array, par
         return assumed
     matrices, whites = (np.stack([getattr(light, name) for light in lights]) for name in ("xyz", "white"))
     expected = np.clip(plain + parts.sum(axis=0), 0, 1)
-    to_lab = BALANCED.lights * lab_jacobian((expected @ matrices.mT).swapaxes(0, 1), whites)
+    to_lab = LIGHTS_WEIGHT * lab_jacobian((expected @ matrices.mT).swapaxes(0, 1), whites)
     covariance = CORRELATED(cdist(locations, locations)) / CORRELATED(np.zeros(()))
     root = np.linalg.cholesky(covariance + JITTER * np.eye(len(covariance)))
 
@@ -220,21 +211,15 @@ def learn_relevance(lights: Sequence[Light], locations: Array, plain: Array, par
 
     columns = np.stack([independent(part).ravel() for part in parts], axis=1)
     unexplained = independent(measured - plain)
-    noise = noise_variance(unexplained - (columns @ assumed).reshape(unexplained.shape))
-    if not columns.any() or not noise:
+    # Differences at neighbouring wavelengths, and of colours, are a few independent ones many times over: as many as
+    # their covariance has large eigenvalues, (Σ λ)² / Σ λ². So the variance of one is Σ λ² / Σ λ / n.
+    residuals = unexplained - (columns @ assumed).reshape(unexplained.shape)
+    products = residuals.T @ residuals
+    total = np.trace(products)
+    if not columns.any() or not total:
         return assumed
+    noise = float((products**2).sum() / total / len(residuals))
     ridge = np.sqrt(noise / VARIANCE)  # noise over assumed variance
     rows = np.concatenate([columns, ridge * np.eye(len(parts))])
     goal = np.concatenate([unexplained.ravel(), ridge * assumed])
     return np.asarray(lsq_linear(rows, goal, bounds=(0, MAX_RELEVANCE), method="bvls").x)
-
-
-def noise_variance(residuals: Array) -> float:
-    """Estimate the variance of the independent parts of residuals (n, K); 0 without residuals.
-
-    Differences of spectra at neighbouring wavelengths, and of colours, are a few differences many times over. They are
-    as many as their covariance has large eigenvalues: (Σ λ)² / Σ λ².
-    """
-    products = residuals.T @ residuals
-    total, squares = np.trace(products), (products**2).sum()
-    return float(squares / total / len(residuals)) if total else 0.0

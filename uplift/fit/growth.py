@@ -3,27 +3,26 @@
 Rounds go from a coarse lattice to finer ones. The answer at a node is the spectrum of its colour that is nearest to its
 prior. The correction between prior and answer is smooth over the lattice: a node starts from its prior plus the
 correction interpolated from earlier rounds, and one step then does what two did. The answer does not depend on the
-start. Nodes that fail are tried again from the mean of their fitted neighbours.
+start. Nodes that fail are tried again from the mean of their fitted neighbours. The improvement pass (Tódová 2020,
+"Constrained spectral uplifting", section 3.1.4) moves what is left over the threshold out of local minima.
 
 `uplift.fit.growth_thesis` grows outward from seeds instead, as Tódová 2020 does.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.fit.problem import Nodes, Problem
 from uplift.fit.solver import Solution
 from uplift.lattice import NOT_FITTED, Lattice, weighted_sum
 from uplift.models.arithmetic import blocked_matmul
 
-MAX_PASSES = 24
+MAX_PASSES, IMPROVEMENT_PASSES = 24, 192
 BLOCK_POINTS = 1 << 15
 """Nodes processed at a time."""
 MIN_CELLS = 4
@@ -33,38 +32,50 @@ MAX_CORRECTION = 0.1
 are not smooth."""
 ALL = 1 - 1e-9
 """Sum of the weights of known corners above which all corners are known."""
+NUDGE = 0.5
+EXTREME = 100.0
+"""Linear part of a nearly white (+) or nearly black (−) spectrum."""
+STEPS = (
+    "more iterations",
+    "from grey",
+    "constant multiplier nudged",
+    "all multipliers nudged",
+    "from white or black",
+)
+"""More iterations fix nearly every realisable node, grey those whose neighbours were black or white, where the gradient
+vanishes. The steps of the thesis, which moves Ceres out of minima in moment space, remain for the rest."""
+THESIS_STEPS = (
+    "constant multiplier nudged",
+    "all multipliers nudged",
+    "more iterations",
+    "from white or black",
+    "from white or black, constant multiplier nudged",
+    "from white or black, all multipliers nudged",
+)
+"""The order of Tódová 2020, section 3.1.4."""
 Expected = Callable[[Indices], Array]
 """From nodes (k,) to the multipliers (k, C) expected there."""
 
 
-@dataclass(eq=False)
 class Growth:
-    """State of growth over all n nodes of a lattice, changed in place round by round."""
+    """State of growth over all n nodes of a lattice, changed in place round by round.
 
-    problem: Problem
-    nodes: Nodes
-    progress: ProgressCallback
-    multipliers: Array = field(init=False)
-    """(n, C) best multipliers so far, 0 at nodes that are not to be fitted."""
-    distance: Array = field(init=False)
-    """(n,) their distance from the goal, infinite at nodes that are not to be fitted."""
-    rgb: NDArray[np.float32] = field(init=False)
-    """(n, 3) their linear RGB."""
-    round: NDArray[np.int16] = field(init=False)
-    """(n,) round in which the node was fitted, −1 if it was not."""
+    ``multipliers`` (n, C) are the best so far, ``distance`` (n,) their distance from the goal and ``rgb`` (n, 3) their
+    linear RGB; 0, infinite and 0 at nodes that are not to be fitted. ``round`` (n,) is that in which the node was
+    fitted, −1 if it was not.
+    """
 
-    def __post_init__(self) -> None:
-        size = self.nodes.lattice.size
-        self.multipliers = np.zeros((size, self.problem.model.count))
-        self.distance = np.full(size, np.inf)
-        self.rgb = np.zeros((size, 3), dtype=np.float32)
-        self.round = np.full(size, NOT_FITTED, dtype=np.int16)
+    def __init__(self, problem: Problem, nodes: Nodes, progress: ProgressCallback) -> None:
+        self.problem, self.nodes, self.progress = problem, nodes, progress
+        size = nodes.lattice.size
+        self.multipliers, self.distance = np.zeros((size, problem.model.count)), np.full(size, np.inf)
+        self.rgb, self.round = np.zeros((size, 3), dtype=np.float32), np.full(size, NOT_FITTED, dtype=np.int16)
 
-    @property
-    def waiting(self) -> Indices:
-        """Nodes that are not fitted, ascending."""
+    def waiting_blocks(self) -> list[Indices]:
+        """Nodes that are not fitted, ascending, in blocks."""
         points = self.nodes.points
-        return points[self.round[points] == NOT_FITTED]
+        points = points[self.round[points] == NOT_FITTED]
+        return [points[block] for block in blocks(len(points), BLOCK_POINTS)]
 
     def attempt(
         self, points: Indices, start: Array, number: int, prior: Array | None = None, max_passes: int = MAX_PASSES
@@ -72,26 +83,17 @@ class Growth:
         """Solve nodes (k,) from multipliers (k, C) in round ``number``, and keep what is better than before."""
         goal = self.nodes.goal(points)
         solution = self.problem.solve(goal, start, max_passes, prior)
-        distance = solution.distance
-        better = distance < self.distance[points]
+        better = solution.distance < self.distance[points]
         kept = points[better]
-        self.multipliers[kept], self.distance[kept] = solution.multipliers[better], distance[better]
+        self.multipliers[kept], self.distance[kept] = solution.multipliers[better], solution.distance[better]
         self.rgb[kept] = (goal - solution.residual)[better]
-        fitted = (self.round[points] == NOT_FITTED) & (distance <= self.problem.threshold)
+        fitted = (self.round[points] == NOT_FITTED) & (solution.distance <= self.problem.threshold)
         self.round[points[fitted]] = number
+        if points.size and number != NOT_FITTED:
+            done = int((self.round != NOT_FITTED).sum())
+            detail = f"round {number}: {len(points)} tried"
+            self.progress(Progress("fit", done, len(self.nodes.points), step=number, detail=detail))
         return solution
-
-    def report(self, number: int, tried: int) -> None:
-        """Report a round, or a block of it, with the number of nodes tried."""
-        fitted = int((self.round != NOT_FITTED).sum())
-        detail = f"round {number}: {tried} tried"
-        self.progress(Progress("fit", fitted, len(self.nodes.points), step=number, detail=detail))
-
-
-def blocks(points: Indices) -> Iterator[Indices]:
-    """Split nodes into blocks of at most `BLOCK_POINTS`."""
-    for first in range(0, len(points), BLOCK_POINTS):
-        yield points[first : first + BLOCK_POINTS]
 
 
 def strides(dim: int) -> list[int]:
@@ -103,17 +105,46 @@ def grow_from_prior(
     problem: Problem, nodes: Nodes, expected: Expected, seeds: Indices, progress: ProgressCallback
 ) -> Growth:
     """Fit nodes from the prior. Seeds (S,) are fitted in the first round, and give and take no correction."""
-    growth, corrections = Growth(problem, nodes, progress), _Corrections(problem, nodes.lattice, seeds)
-    waiting = mask_of(nodes.lattice, nodes.points)
-    rounds = strides(nodes.lattice.dim)
+    growth, lattice = Growth(problem, nodes, progress), nodes.lattice
+    waiting, seeded = lattice.mask(nodes.points), lattice.mask(seeds)
+    # Corrections p − p₀ at every second node, whose last column is the weight of a known one, and the rows of nodes.
+    half, numbers = lattice.thinned(2)
+    corrections, row = np.zeros((half.size, problem.model.count + 1)), np.full(lattice.size, -1, dtype=np.int32)
+    row[numbers] = np.arange(half.size)
+    row[seeds] = -1
+
+    def fit(points: Indices, start: Array, prior: Array, number: int, max_passes: int) -> tuple[Indices, Array, Array]:
+        """Fit nodes, store their corrections, and return those that are not solved."""
+        solution = growth.attempt(points, start, number, prior, max_passes)
+        correction = solution.multipliers - prior
+        # |R⁻¹ (p − p₀)|∞
+        size = np.abs(blocked_matmul(correction, problem.forward.inverse_root.T)).max(axis=1)
+        stored = row[points] >= 0
+        rows = row[points[stored]]
+        corrections[rows, :-1], corrections[rows, -1] = correction[stored], size[stored] <= MAX_CORRECTION
+        unsolved = solution.distance > problem.tolerance
+        return points[unsolved], solution.multipliers[unsolved], prior[unsolved]
+
+    rounds = strides(lattice.dim)
     for number, stride in enumerate(rounds):
         # Of every stride-th node, those that no coarser round has had; the seeds come first.
-        _, points = nodes.lattice.thinned(stride)
+        _, points = lattice.thinned(stride)
         points = np.union1d(points, seeds) if number == 0 else points
         points = points[waiting[points]]
         waiting[points] = False
-        correction = corrections.interpolator(rounds[number - 1]) if number else None
-        _fit_round(growth, points, number, expected, correction, corrections)
+        level, numbers = lattice.thinned(rounds[max(number - 1, 0)])
+        known = np.where((row[numbers] >= 0)[:, None], corrections[row[numbers]], 0)
+        rest = [(points[:0], growth.multipliers[:0], growth.multipliers[:0])]
+        for block in blocks(len(points), BLOCK_POINTS):
+            # From p₀ + R δ, with the correction δ of the nodes around, to the spectrum of the colour nearest to p₀.
+            some = points[block]
+            prior = expected(some)
+            sums = weighted_sum(known, *level.corners(lattice.target(some)))
+            smooth = (sums[:, -1:] > ALL) & ~seeded[some, None]
+            rest.append(fit(some, prior + np.where(smooth, sums[:, :-1], 0), prior, number, max_passes=1))
+        # What the first pass leaves is fitted at the end of the round, all at once.
+        points, start, prior = (np.concatenate(parts) for parts in zip(*rest, strict=True))
+        fit(points, start, prior, number, MAX_PASSES)
     _retry(growth, len(rounds))
     return growth
 
@@ -123,111 +154,68 @@ def supporting_points(lattice: Lattice, points: Indices) -> Indices:
 
     Fitted alone, they have the answers of the lattice with all nodes.
     """
-    wanted, finer = mask_of(lattice, points), np.ones(lattice.size, dtype=bool)
+    wanted, finer = lattice.mask(points), np.ones(lattice.size, dtype=bool)
     for stride in reversed(strides(lattice.dim)[:-1]):
         level, numbers = lattice.thinned(stride)
-        coarser = mask_of(lattice, numbers)
-        for block in blocks(np.flatnonzero(wanted & finer & ~coarser)):
-            corners, weights = level.corners(lattice.target(block))
+        coarser = lattice.mask(numbers)
+        supported = np.flatnonzero(wanted & finer & ~coarser)
+        for block in blocks(len(supported), BLOCK_POINTS):
+            corners, weights = level.corners(lattice.target(supported[block]))
             wanted[numbers[corners[weights > 0]]] = True
         finer = coarser
     return np.flatnonzero(wanted)
 
 
-class _Corrections:
-    """Corrections, multipliers found minus those expected, at every second node of a lattice, where known."""
-
-    def __init__(self, problem: Problem, lattice: Lattice, seeds: Indices) -> None:
-        self._lattice, self._seeded = lattice, mask_of(lattice, seeds)
-        self._to_metric = problem.forward.inverse_root.T
-        half, halves = lattice.thinned(2)
-        self._row = np.full(lattice.size, -1, dtype=np.int32)
-        self._row[halves] = np.arange(len(halves))
-        self._row[seeds] = -1
-        self._table = np.zeros((half.size, problem.model.count + 1))
-
-    def record(self, points: Indices, correction: Array) -> None:
-        """Store the corrections (k, C) of nodes, unless they are too large."""
-        rows = self._row[points]
-        rows, correction = rows[rows >= 0], correction[rows >= 0]
-        # |R⁻¹ (p − p₀)|∞; the last column is the weight of a known correction.
-        size = np.abs(blocked_matmul(correction, self._to_metric)).max(axis=1)
-        self._table[rows, :-1], self._table[rows, -1] = correction, size <= MAX_CORRECTION
-
-    def interpolator(self, stride: int) -> Callable[[Indices], Array]:
-        """Return the trilinear interpolation between every ``stride``-th node, 0 where a corner is not known."""
-        level, points = self._lattice.thinned(stride)
-        rows = self._row[points]
-        table = np.where((rows >= 0)[:, None], self._table[rows], 0)
-
-        def interpolate(points: Indices) -> Array:
-            sums = weighted_sum(table, *level.corners(self._lattice.target(points)))
-            known = (sums[:, -1:] > ALL) & ~self._seeded[points, None]
-            return np.where(known, sums[:, :-1], 0)
-
-        return interpolate
-
-
-def _fit_round(
-    growth: Growth,
-    points: Indices,
-    number: int,
-    expected: Expected,
-    correction: Callable[[Indices], Array] | None,
-    corrections: _Corrections,
-) -> None:
-    """Fit nodes from their prior and correction. What the first pass leaves is fitted at the end, all at once."""
-    rest = [(points[:0], growth.multipliers[:0], growth.multipliers[:0])]
-    for block in blocks(points):
-        # From p₀ + R δ, with the correction δ of the nodes around, to the spectrum of the colour nearest to p₀.
-        prior = expected(block)
-        start = prior + (0.0 if correction is None else correction(block))
-        solution = growth.attempt(block, start, number, prior, max_passes=1)
-        corrections.record(block, solution.multipliers - prior)
-        unsolved = solution.distance > growth.problem.tolerance
-        rest.append((block[unsolved], solution.multipliers[unsolved], prior[unsolved]))
-        growth.report(number, len(block))
-    points, start, prior = (np.concatenate(parts) for parts in zip(*rest, strict=True))
-    if points.size:
-        solution = growth.attempt(points, start, number, prior)
-        corrections.record(points, solution.multipliers - prior)
-        growth.report(number, len(points))
-
-
 def _retry(growth: Growth, number: int) -> None:
-    """Try failed nodes again, as long as another of their neighbours has been fitted."""
+    """Try failed nodes again from the mean of their fitted neighbours, while one more of these has been fitted."""
+    lattice, multipliers = growth.nodes.lattice, growth.multipliers
     fresh = np.flatnonzero(growth.round != NOT_FITTED)
     while fresh.size:
-        points, means = _frontier(growth, fresh)
-        if not points.size:
+        fitted, is_fresh = growth.round != NOT_FITTED, lattice.mask(fresh)
+        points, means = [fresh[:0]], [multipliers[:0]]
+        for block in growth.waiting_blocks():
+            neighbours, inside = lattice.neighbours(block)
+            adjacent = (inside & is_fresh[neighbours]).any(axis=1)
+            neighbours, known = neighbours[adjacent], inside[adjacent] & fitted[neighbours[adjacent]]
+            # Column by column: all 26 neighbours at once would take 26 times the memory.
+            total = np.zeros((len(neighbours), multipliers.shape[1]))
+            for column in range(neighbours.shape[1]):
+                total += np.where(known[:, column, None], multipliers[neighbours[:, column]], 0)
+            points.append(block[adjacent])
+            means.append(total / np.maximum(known.sum(axis=1), 1)[:, None])
+        tried = np.concatenate(points)
+        if not tried.size:
             break
-        solution = growth.attempt(points, means, number)
-        fresh = points[solution.distance <= growth.problem.threshold]
-        growth.report(number, len(points))
+        solution = growth.attempt(tried, np.concatenate(means), number)
+        fresh = tried[solution.distance <= growth.problem.threshold]
         number += 1
 
 
-def _frontier(growth: Growth, fresh: Indices) -> tuple[Indices, Array]:
-    """The waiting neighbours of freshly fitted nodes, and the mean multipliers of their own fitted neighbours."""
-    lattice, multipliers = growth.nodes.lattice, growth.multipliers
-    fitted, is_fresh = growth.round != NOT_FITTED, mask_of(lattice, fresh)
-    points, means = [fresh[:0]], [multipliers[:0]]
-    for block in blocks(growth.waiting):
-        neighbours, inside = lattice.neighbours(block)
-        adjacent = (inside & is_fresh[neighbours]).any(axis=1)
-        neighbours, inside = neighbours[adjacent], inside[adjacent]
-        known = inside & fitted[neighbours]
-        # Mean over the fitted neighbours, column by column: all 26 at once would take 26 times the memory.
-        total = np.zeros((len(neighbours), multipliers.shape[1]))
-        for column in range(neighbours.shape[1]):
-            total += np.where(known[:, column, None], multipliers[neighbours[:, column]], 0)
-        points.append(block[adjacent])
-        means.append(total / np.maximum(known.sum(axis=1), 1)[:, None])
-    return np.concatenate(points), np.concatenate(means)
+def improve(growth: Growth, steps: Sequence[str] = STEPS) -> list[tuple[str, int, int]]:
+    """Improve nodes in place. Each step tries those that are still over the threshold; no distance increases.
 
-
-def mask_of(lattice: Lattice, points: Indices) -> Mask:
-    """Mark nodes among all (dim³,)."""
-    mask = np.zeros(lattice.size, dtype=bool)
-    mask[points] = True
-    return mask
+    Returns each step with the numbers of nodes that it tried, and of those that are within the threshold afterwards.
+    """
+    problem, points, done = growth.problem, growth.nodes.points, []
+    # Alternating nudges, the same for every node and every run: no direction is better justified than another.
+    alternating = NUDGE * (-1.0) ** np.arange(problem.model.count)
+    for step in steps:
+        points = points[growth.distance[points] > problem.threshold]
+        if not points.size:
+            break
+        # A linear part of +1 for goals nearer to white, −1 for those nearer to black, at all wavelengths.
+        sign = np.where(growth.nodes.goal(points).mean(axis=1) >= 0.5, 1.0, -1.0)
+        best, extreme = growth.multipliers[points], sign[:, None] * problem.model.constant()
+        start = {
+            "more iterations": best,
+            "from grey": np.zeros_like(best),
+            "constant multiplier nudged": best + NUDGE * extreme,
+            "all multipliers nudged": best + alternating,
+            "from white or black": EXTREME * extreme,
+            "from white or black, constant multiplier nudged": (EXTREME - NUDGE) * extreme,
+            "from white or black, all multipliers nudged": EXTREME * extreme + alternating,
+        }[step]
+        growth.attempt(points, start, NOT_FITTED, max_passes=IMPROVEMENT_PASSES)
+        fixed = int((growth.distance[points] <= problem.threshold).sum())
+        done.append((step, len(points), fixed))
+    return done

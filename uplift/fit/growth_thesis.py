@@ -9,7 +9,7 @@ import numpy as np
 
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.progress import ProgressCallback
-from uplift.fit.growth import Expected, Growth, blocks, mask_of
+from uplift.fit.growth import Expected, Growth
 from uplift.fit.problem import Nodes, Problem
 from uplift.lattice import NOT_FITTED
 
@@ -21,20 +21,20 @@ def grow_from_neighbours(
     problem: Problem, nodes: Nodes, expected: Expected, seeds: Indices, progress: ProgressCallback
 ) -> Growth:
     """Fit nodes that can be reached from seeds (S,); without any, growth starts in the middle, from grey."""
-    growth = Growth(problem, nodes, progress)
+    growth, lattice = Growth(problem, nodes, progress), nodes.lattice
     seeds = np.intersect1d(seeds, nodes.points)
     if seeds.size:
         start = expected(seeds)
     else:
-        away = np.abs(2 * nodes.lattice.position(nodes.points) - (nodes.lattice.dim - 1)).sum(axis=1)
+        away = np.abs(2 * lattice.position(nodes.points) - (lattice.dim - 1)).sum(axis=1)
         seeds = nodes.points[[int(away.argmin())]]
         start = growth.multipliers[seeds]
     # Shell by shell: waiting neighbours of the nodes that the last round fitted.
     fresh = _try(growth, seeds, start, 0)
     number = 1
     while fresh.size:
-        is_fresh = mask_of(nodes.lattice, fresh)
-        tried = [_try_neighbours(growth, block, is_fresh, number) for block in blocks(growth.waiting)]
+        is_fresh = lattice.mask(fresh)
+        tried = [_try_neighbours(growth, block, is_fresh, number) for block in growth.waiting_blocks()]
         fresh = np.concatenate([fresh[:0], *tried])
         number += 1
     return growth
@@ -55,7 +55,6 @@ def _try_neighbours(growth: Growth, points: Indices, is_fresh: Mask, number: int
         source = neighbours[waiting, order[waiting, turn]]
         _try(growth, points[waiting], growth.multipliers[source], number)
         waiting = waiting[growth.round[points[waiting]] == NOT_FITTED]
-    growth.report(number, len(points))
     return points[growth.round[points] != NOT_FITTED]
 
 

@@ -14,7 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, blocks
 from uplift.fit.problem import Problem
 
 REACH = 12.0
@@ -74,22 +74,16 @@ class Kriging:
 
 def krige(locations: Array, deviations: Array, kernel: Kernel) -> tuple[Kriging, Array]:
     """Fit the kriging of deviations (E, C) at L*a*b* (E, 3); with it, return its leave-one-out errors (E, C)."""
-    from scipy.spatial.distance import cdist
-
-    weights, errors = leave_one_out(kernel(cdist(locations, locations)), deviations)
-    return Kriging(locations, weights, kernel), errors
-
-
-def leave_one_out(covariance: Array, deviations: Array) -> tuple[Array, Array]:
-    """Solve for the kriging weights (E, C) of deviations (E, C), and for the errors (E, C) of each when left out."""
     from scipy.linalg import cho_factor, cho_solve
     from scipy.linalg.lapack import dpotri
+    from scipy.spatial.distance import cdist
 
     # w = (K + 10⁻³ I)⁻¹ D, and the error of entry i without itself is w_i / [(K + 10⁻³ I)⁻¹]_ii.
+    covariance = kernel(cdist(locations, locations))
     factor = cho_factor(covariance + JITTER * np.eye(len(covariance)))
     weights = cho_solve(factor, deviations)
     inverse, _ = dpotri(factor[0], overwrite_c=True)
-    return weights, weights / np.diag(inverse)[:, None]
+    return Kriging(locations, weights, kernel), weights / np.diag(inverse)[:, None]
 
 
 def kernel_sums(lab: Array, locations: Array, columns: Array, kernel: Kernel) -> tuple[Array, Array]:
@@ -97,12 +91,11 @@ def kernel_sums(lab: Array, locations: Array, columns: Array, kernel: Kernel) ->
     rows = max(min(BLOCK_NUMBERS // max(len(locations), 1), BLOCK_ROWS), 1)
     sums, nearest = np.empty((len(lab), columns.shape[1])), np.empty(len(lab))
     with jax.enable_x64(True):
-        for first in range(0, len(lab), rows):
-            part = slice(first, first + rows)
-            count = len(lab[part])
-            block = lab[part] if count == rows else np.resize(lab[part], (rows, 3))  # one shape is compiled
-            arrays = _kernel_block(kernel.length, kernel.nugget, block, locations, columns)
-            sums[part], nearest[part] = (np.asarray(array)[:count] for array in arrays)
+        for block in blocks(len(lab), rows):
+            count = block.stop - block.start
+            some = lab[block] if count == rows else np.resize(lab[block], (rows, 3))  # one shape is compiled
+            arrays = _kernel_block(kernel.length, kernel.nugget, some, locations, columns)
+            sums[block], nearest[block] = (np.asarray(array)[:count] for array in arrays)
     return sums, nearest
 
 
@@ -120,22 +113,20 @@ def learn_kernel(locations: Array, deviations: Array, visible: Array) -> Kernel:
 
     The entries have L*a*b* (E, 3) and deviations (E, C), whose `visible_change` is (E, L, 3, C).
     """
-    from scipy.spatial.distance import cdist
-
     if len(locations) < MIN_ENTRIES:
         return DEFAULT
     rows = np.linspace(0, len(locations) - 1, min(len(locations), MAX_ENTRIES)).astype(np.int64)
-    distance, deviations, visible = cdist(locations[rows], locations[rows]), deviations[rows], visible[rows]
 
     def loss(kernel: Kernel) -> float:
-        _, errors = leave_one_out(kernel(distance), deviations)
-        changes = np.linalg.norm(np.einsum("elkc,ec->elk", visible, errors), axis=-1)
+        # Visible leave-one-out error, and the surprise at a kernel that is not the default
+        _, errors = krige(locations[rows], deviations[rows], kernel)
+        changes = np.linalg.norm(np.einsum("elkc,ec->elk", visible[rows], errors), axis=-1)
         doublings = np.log2(kernel.length / DEFAULT.length)
         quadruplings = np.log2(kernel.nugget / DEFAULT.nugget) / 2
         surprise = float(doublings**2 + quadruplings**2)
         return float(np.log(changes.mean() + INVISIBLE)) + DOUBT / len(rows) * surprise
 
-    return min((Kernel(*each) for each in product(LENGTHS, NUGGETS)), key=loss)
+    return min((Kernel(*pair) for pair in product(LENGTHS, NUGGETS)), key=loss)
 
 
 def visible_change(problem: Problem, measured: Array) -> Array:
@@ -145,7 +136,8 @@ def visible_change(problem: Problem, measured: Array) -> Array:
     spectrum, which they determine up to its roughest parts: their basis approximates the change of the spectrum.
     """
     basis, sensor = problem.forward.basis, problem.forward.sensor @ problem.forward.basis
-    # Of changes of the coefficients, only the part remains that a smooth change of the same colour does not undo.
+    # Of changes of the coefficients, only the part remains that a smooth change of the same colour does not undo:
+    # I − M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ J with J = W B.
     smooth = sensor.T / problem.model.metric_diagonal()[:, None]
     metameric = np.eye(problem.model.count) - smooth @ np.linalg.solve(sensor @ smooth, sensor)
     changes = []

@@ -17,13 +17,13 @@ from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab, 
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.fit.bounded_least_squares import BoundedProblem, solve_bounded
-from uplift.fit.entries import FittedEntries, Weights, fit_entries, join_entries
+from uplift.fit.entries import FittedEntries, fit_entries, join_entries
 from uplift.fit.problem import Problem
 
 MET = 0.1
 """ΔE00 within which a wish is met."""
-COLOURS = Weights(lights=1.0)
-"""Weights of the entry fit: the wished colours count as much as the spectrum allows."""
+LIGHTS_WEIGHT = 1.0
+"""Weight of the entry fit: the requested colours count as much as the spectrum allows."""
 SHAPES = (0.3, 0.03)
 """ΔE00 that a root-mean-square change of the reflectance by 1 weighs. The second is used where the first misses."""
 ENOUGH = 0.02
@@ -110,4 +110,6 @@ def fit_designs(problem: Problem, goals: Sequence[LookGoal], designs: Array) -> 
     """Fit designed reflectances (k, N) by the spectrum model, each with the lights of its goal."""
     lit = (replace(problem, lights=(problem.sensor.light, *goal.lights), solver=None) for goal in goals)
     parts = zip(lit, goals, designs, strict=True)
-    return join_entries(*(fit_entries(own, design[None], goal.rgb[None], COLOURS) for own, goal, design in parts))
+    return join_entries(
+        *(fit_entries(own, design[None], goal.rgb[None], lights=LIGHTS_WEIGHT) for own, goal, design in parts)
+    )

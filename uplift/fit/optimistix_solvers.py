@@ -133,14 +133,14 @@ def _solve(
     def residuals(y: jax.Array, args: Any) -> tuple[jax.Array, jax.Array]:
         # t − r(R y), and ε (y − y₀), with y = R⁻¹ p
         expected, rgb = args
-        return rgb - forward.rgb((forward.root @ y)[None])[0], closeness * (y - expected)
+        return forward.residual((forward.root @ y)[None], rgb)[0], closeness * (y - expected)
 
     def solve_one(y: jax.Array, *args: jax.Array) -> Any:
         return optimistix.least_squares(residuals, solver, y, args=args, max_steps=MAX_STEPS, throw=False).value
 
     y, expected = (array @ forward.inverse_root.T for array in (start, prior))
     multipliers = jax.vmap(solve_one)(y, expected, target) @ forward.root.T
-    residual = target - forward.rgb(multipliers)
+    residual = forward.residual(multipliers, target)
     return multipliers, jnp.where(jnp.isfinite(residual), residual, jnp.inf)
 
 

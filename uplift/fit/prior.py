@@ -9,22 +9,19 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.expected_error import LENGTH, ExpectedError, expected_error
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array
 from uplift.fit.base import NO_FREEDOM, Base, learn_base
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import DEFAULT, MIN_ENTRIES, Kernel, Kriging, kernel_sums, krige, learn_kernel, visible_change
-from uplift.fit.problem import Nodes, Problem
+from uplift.fit.problem import Problem
 from uplift.models import evaluate
 from uplift.models.model import Model
 
 MAX_PASSES = 32
-BLOCK_POINTS = 1 << 15
-"""Nodes processed at a time."""
 DETERMINED = Kernel(length=6.0, nugget=0.0)
 """Kernel where the colour alone determines the spectrum: it only chooses among solutions."""
 NEIGHBOURHOOD = Kernel(length=LENGTH, nugget=0.0)
@@ -78,23 +75,12 @@ class Prior:
         squares = self.errors.combine(*sums)[:, 0] + self.errors.floor
         return np.asarray(self.errors.radii.standard * np.sqrt(squares))
 
-    def standard_errors(self, nodes: Nodes) -> NDArray[np.float32] | None:
-        """`standard_error` of the targets of all nodes of a lattice (dim³,), 0 at those that are not fitted."""
-        if self.errors is None:
-            return None
-        errors = np.zeros(nodes.lattice.size, dtype=np.float32)
-        for first in range(0, len(nodes.points), BLOCK_POINTS):
-            points = nodes.points[first : first + BLOCK_POINTS]
-            errors[points] = self.standard_error(nodes.lattice.target(points))
-        return errors
-
     def with_entries(self, entries: FittedEntries) -> Prior:
         """Krige the deviations of other entries with the same kernel; the standard errors stay."""
-        order = np.lexsort(entries.rgb.T)  # of the same entries in any order, sums round alike
-        rgb, multipliers = entries.rgb[order], entries.multipliers[order]
-        deviations = self.model.to_storage(multipliers) - self.base.coefficients(rgb)
+        entries = entries.rows(np.lexsort(entries.rgb.T))  # of the same entries in any order, sums round alike
+        deviations = self.model.to_storage(entries.multipliers) - self.base.coefficients(entries.rgb)
         kernel = DEFAULT if self.kriging is None else self.kriging.kernel
-        kriging, _ = krige(rgb_to_lab(self.sensor, rgb), deviations, kernel)
+        kriging, _ = krige(rgb_to_lab(self.sensor, entries.rgb), deviations, kernel)
         return replace(self, kriging=kriging)
 
 
@@ -105,7 +91,7 @@ def fit_prior(problem: Problem, entries: FittedEntries, base: Base | None = None
     """
     model, sensor = problem.model, problem.sensor
     base = base or learn_base(problem)[0]
-    if not len(entries):
+    if not len(entries.rgb):
         return Prior(model, sensor, base)
     order = np.lexsort(entries.rgb.T)
     entries = entries.rows(order)
@@ -116,7 +102,7 @@ def fit_prior(problem: Problem, entries: FittedEntries, base: Base | None = None
     if model.count != NO_FREEDOM:
         kernel = learn_kernel(locations, deviations, visible_change(problem, entries.measured))
     kriging, errors = krige(locations, deviations, kernel)
-    if len(entries) < MIN_ENTRIES:
+    if len(entries.rgb) < MIN_ENTRIES:
         return Prior(model, sensor, base, kriging)
     # Each entry as the others predict it: its deviation less its leave-one-out error, moved to its exact colour.
     start = _bounded(model, expected, deviations - errors)
@@ -129,19 +115,10 @@ def fit_prior(problem: Problem, entries: FittedEntries, base: Base | None = None
 
 def _bounded(model: Model, expected: Array, deviation: Array) -> Array:
     """Multipliers (n, C) of expected coefficients plus their deviation (n, C), shrunk as little as is necessary."""
-    multipliers, usable = _try(model, expected + deviation)
-    fraction = 1.0
-    for _ in range(MAX_SHRINKS):
-        outside = np.flatnonzero(~usable)
-        if not outside.size:
-            return multipliers
+    multipliers, rows, fraction = np.empty_like(expected), np.arange(len(expected)), 1.0
+    for _ in range(MAX_SHRINKS + 1):
+        multipliers[rows], valid = model.try_from_storage(expected[rows] + fraction * deviation[rows])
+        rows = rows[~valid | ~(np.abs(multipliers[rows]).max(axis=1, initial=0) <= STEEP)]
         fraction *= SHRINK
-        multipliers[outside], usable[outside] = _try(model, expected[outside] + fraction * deviation[outside])
-    multipliers[~usable] = model.from_storage(expected[~usable])
+    multipliers[rows] = model.from_storage(expected[rows])
     return multipliers
-
-
-def _try(model: Model, coefficients: Array) -> tuple[Array, Mask]:
-    """Multipliers (n, C), and which rows are valid and not `STEEP`."""
-    multipliers, valid = model.try_from_storage(coefficients)
-    return multipliers, valid & (np.abs(multipliers).max(axis=1, initial=0) <= STEEP)

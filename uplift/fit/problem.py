@@ -10,7 +10,7 @@ import numpy as np
 
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.colorimetry.solid import solid, toward_grey
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array, Indices, blocks
 from uplift.fit.solver import Solution, solve
 from uplift.lattice import CORNERS, Lattice
 from uplift.models.minimum_norm import ForwardMap, forward_map
@@ -93,10 +93,10 @@ def nodes_of(lattice: Lattice, sensor: Sensor, margin: float, points: Indices | 
     outside, nearest = [points[:0]], [np.zeros((0, 3))]
     # The solid is convex: with the corners of RGB it contains everything between them.
     if not limits.contains(CORNERS.astype(float)).all():
-        for first in range(0, len(points), BLOCK_NODES):
-            block = points[first : first + BLOCK_NODES]
-            block = block[~limits.contains(lattice.target(block))]
-            target = lattice.target(block)
-            outside.append(block)
+        for block in blocks(len(points), BLOCK_NODES):
+            some = points[block]
+            some = some[~limits.contains(lattice.target(some))]
+            target = lattice.target(some)
+            outside.append(some)
             nearest.append(toward_grey(limits, sensor.grey(target), target, margin))
     return Nodes(lattice, points, np.concatenate(outside), np.concatenate(nearest))

@@ -1,4 +1,5 @@
-"""Atlas entries in a lattice: the widths of their boxes, seeds, and the multipliers that nodes start from.
+"""Atlas entries in a lattice: the widths of their boxes, seeds, the multipliers that nodes start from, and the lattice
+that keeps all entries.
 
 Tódová 2020, "Constrained spectral uplifting", section 3.1.2; docs/mathematics.md, 6.
 """
@@ -9,11 +10,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_1976, rgb_to_lab
+from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
+from uplift.colorimetry.observer import AXES, axis_nodes
 from uplift.common.arrays import Array, Indices, Mask
+from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import DEFAULT
 from uplift.fit.prior import Prior
-from uplift.lattice import CORNERS, Lattice
+from uplift.fit.problem import Problem
+from uplift.lattice import CORNERS, Lattice, weighted_sum
+from uplift.models import evaluate
 
 NEAR, FAR = 8.0, 16.0
 """ΔE*ab up to which a corner is near its entry, and from which it is far (docs/fidelity.md)."""
@@ -21,6 +26,9 @@ MAX_HALF_WIDTH = 1.0
 """Lattice steps: the half width of an entry box without other entries nearby."""
 SAME_COLOUR = 1e-6
 """Lattice steps. Entries that are closer have the same colour, and only the first of them is used."""
+DIMS = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128)
+"""Lattices that `choose_lattice` tries."""
+MAX_PASSES = 32
 
 
 def half_widths(lattice: Lattice, rgb: Array) -> Array:
@@ -81,64 +89,82 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
     return Seeds(rgb, points, entries, np.arange(len(owner)) < primaries, tuple(crowded))
 
 
-@dataclass(frozen=True)
-class EntryBlend:
-    """Weight of an entry in the start of the corners of its cell; the rest is the prior.
+Blend = tuple[float, float]
+"""Weights of an entry in the start of the corners of its cell, up to `NEAR` ΔE*ab from the entry and from `FAR`.
 
-    ``near`` is the weight at corners up to `NEAR` ΔE*ab from the entry, ``far`` that from `FAR`; it changes linearly
-    between them.
-    """
-
-    near: float
-    far: float = 0.0
-
-    def __call__(self, distance: Array) -> Array:
-        """Weight (n,) at ΔE*ab (n,) from the entry."""
-        return np.interp(distance, (NEAR, FAR), (self.near, self.far))
-
-
-FULL_ENTRY = EntryBlend(near=1.0, far=1.0)
+The weight changes linearly between them; the rest is the prior.
+"""
+FULL_ENTRY: Blend = (1.0, 1.0)
 """Tódová 2020, section 3.1.2."""
 
 
-def learnt_blend(prior: Prior) -> EntryBlend:
-    """Return the blend ½ + ½ min(ν / 0.3, 1) near an entry, with the learnt nugget ν.
+def learnt_blend(prior: Prior) -> Blend:
+    """Return the blend of ½ + ½ min(ν / 0.3, 1) near an entry, with the learnt nugget ν, and 0 far from it.
 
     Entries of an atlas with a small nugget are predicted by others. Materials of such an atlas between its entries are
     nearer to the prior, and only half of an entry's own deviation is expected at the corners. Corners of coarse
     lattices whose colour is another one start from the prior alone.
     """
-    if prior.kriging is None:
-        return EntryBlend(near=1.0)
-    return EntryBlend(near=(1 + min(prior.kriging.kernel.nugget / DEFAULT.nugget, 1)) / 2)
+    nugget = DEFAULT.nugget if prior.kriging is None else prior.kriging.kernel.nugget
+    return (1 + min(nugget / DEFAULT.nugget, 1)) / 2, 0.0
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class InitialGuess:
-    """What nodes start from: entries (E, C) around their colours, elsewhere the prior.
+def initial_guess(points: Indices, rgb: Array, prior: Prior, seeds: Seeds, entries: Array, blend: Blend) -> Array:
+    """Multipliers (k, C) that nodes (k,), which are fitted to linear RGB (k, 3), start from.
 
-    The primary node of an entry starts from the entry alone, the other corners of its cell from a blend.
+    The primary node of an entry starts from its multipliers in ``entries`` (E, C), the other corners of its cell from a
+    blend of these with the prior, and all other nodes from the prior.
     """
+    model, multipliers = prior.model, prior(rgb)
+    _, seeded, row = np.intersect1d(points, seeds.points, assume_unique=True, return_indices=True)
+    entry = seeds.entry[row]
+    own, expected = entries[entry], multipliers[seeded]
 
-    prior: Prior
-    seeds: Seeds
-    entries: Array
-    blend: EntryBlend = FULL_ENTRY
+    node_lab, entry_lab = (rgb_to_lab(prior.sensor, colours) for colours in (rgb[seeded], seeds.rgb))
+    near = np.interp(delta_e_1976(node_lab, entry_lab[entry]), (NEAR, FAR), blend)
+    weight = np.where(seeds.primary[row], 1.0, near)
+    full, mixed = weight == 1, (weight > 0) & (weight < 1)
+    multipliers[seeded[full]] = own[full]
+    # c = w c_entry + (1 − w) c_prior: coefficients mix as spectra do.
+    part = weight[mixed, None]
+    coefficients = part * model.to_storage(own[mixed]) + (1 - part) * model.to_storage(expected[mixed])
+    multipliers[seeded[mixed]] = model.from_storage(coefficients)
+    return multipliers
 
-    def __call__(self, points: Indices, rgb: Array) -> Array:
-        """Multipliers (k, C) of nodes (k,), which are fitted to linear RGB (k, 3)."""
-        model, seeds = self.prior.model, self.seeds
-        multipliers = self.prior(rgb)
-        _, seeded, row = np.intersect1d(points, seeds.points, assume_unique=True, return_indices=True)
-        entry = seeds.entry[row]
-        own, expected = self.entries[entry], multipliers[seeded]
 
-        node_lab, entry_lab = (rgb_to_lab(self.prior.sensor, each) for each in (rgb[seeded], seeds.rgb))
-        weight = np.where(seeds.primary[row], 1.0, self.blend(delta_e_1976(node_lab, entry_lab[entry])))
-        full, mixed = weight == 1, (weight > 0) & (weight < 1)
-        multipliers[seeded[full]] = own[full]
-        # c = w c_entry + (1 − w) c_prior: coefficients mix as spectra do.
-        part = weight[mixed, None]
-        blend = part * model.to_storage(own[mixed]) + (1 - part) * model.to_storage(expected[mixed])
-        multipliers[seeded[mixed]] = model.from_storage(blend)
-        return multipliers
+def lattice_error(problem: Problem, lattice: Lattice, prior: Prior, blend: Blend, entries: FittedEntries) -> Array:
+    """Largest ΔE00 (E,) under the lights between each entry's spectrum and the lattice at its colour.
+
+    Only the corners of the entries' cells are fitted. Entry boxes are not used.
+    """
+    seeds = seed(lattice, entries.rgb)
+    points = np.sort(seeds.points)
+    target = lattice.points[points]
+    start = initial_guess(points, target, prior, seeds, entries.multipliers, blend)
+    fitted = problem.solve(target, start, MAX_PASSES, prior=start).multipliers
+    spectra, own = (
+        evaluate(problem.model, multipliers, problem.sensor.wavelengths)
+        for multipliers in (fitted, entries.multipliers)
+    )
+    # What the interpolation of the lattice answers at the colours of the entries
+    corners, weights = lattice.corners(entries.rgb)
+    answers = weighted_sum(spectra, np.searchsorted(points, corners), weights)
+    return np.max([delta_e_spectra(light, answers, own) for light in problem.lights], axis=0)
+
+
+def choose_lattice(
+    problem: Problem, prior: Prior, blend: Blend, entries: FittedEntries, max_error: float
+) -> tuple[str, int, int]:
+    """Choose the smallest lattice that keeps every entry within ``max_error`` or, if none does, keeps the most.
+
+    Returns the spacing of its axis nodes, its dim, and the number of entries that it does not keep.
+    """
+    trials = []
+    for dim in DIMS:
+        for axis in AXES:
+            errors = lattice_error(problem, Lattice(axis_nodes(axis, dim)), prior, blend, entries)
+            trials.append((int((errors > max_error).sum()), dim, axis))
+        lost, dim, axis = min(trials, key=lambda trial: trial[:2])
+        if not lost:
+            break
+    return axis, dim, lost

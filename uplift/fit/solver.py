@@ -88,7 +88,7 @@ def solve_singly(forward: ForwardMap, start: Array, target: Array, tolerance: fl
     multipliers = start.copy()
     for row, goal in enumerate(target):
         y = start[row : row + 1]
-        residual = lambda p, goal=goal: goal - forward.rgb(p)  # noqa: E731
+        residual = partial(forward.residual, target=goal)
         state = init_state(forward, residual, y, y, np.full(1, FIRST_DAMPING), np.zeros(1))
         for _ in range(max_steps):
             if state.distance[0] <= tolerance:
@@ -160,17 +160,16 @@ def _advance(
 ) -> tuple[jax.Array, SolverState]:
     """Take up to ``max_steps`` steps in a batch."""
 
-    def residual(p: jax.Array) -> Any:
-        return target - forward.rgb(p)
+    residual = partial(forward.residual, target=target)
 
     def advance(carry: Any) -> Any:
         count, y, state = carry
         return count + 1, *take_step(forward, residual, y, state, tolerance)
 
-    def unfinished(carry: Any) -> jax.Array:
-        count, _, state = carry
-        return (count < max_steps) & (state.distance > tolerance).any()
-
     state = init_state(forward, residual, y, prior, damping, anchor_weight)
-    _, y, state = jax.lax.while_loop(unfinished, advance, (jnp.asarray(0), y, state))
+    _, y, state = jax.lax.while_loop(
+        lambda carry: (carry[0] < max_steps) & (carry[2].distance > tolerance).any(),
+        advance,
+        (jnp.asarray(0), y, state),
+    )
     return y, state

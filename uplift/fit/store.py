@@ -8,10 +8,11 @@ import jax
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Indices
+from uplift.common.arrays import Indices, blocks
 from uplift.common.progress import Progress
 from uplift.fit.batch import map_batches, to_storage
-from uplift.fit.growth import Growth, blocks
+from uplift.fit.growth import BLOCK_POINTS, Growth
+from uplift.fit.prior import Prior
 from uplift.fit.seeds import Seeds
 from uplift.lattice import NO_ENTRY, NOT_FITTED, PointTable, Status
 from uplift.models.minimum_norm import ForwardMap
@@ -23,58 +24,63 @@ MAX_LOSS = 0.1
 _rgb = jax.jit(ForwardMap.rgb)
 
 
-def store(growth: Growth, seeds: Seeds, standard_error: NDArray[np.float32] | None) -> PointTable:
+def store(growth: Growth, seeds: Seeds, prior: Prior) -> PointTable:
     """Return the table of all nodes. RGB, distance and status are those of the stored coefficients.
 
     Unrealisable nodes are fitted to the nearest realisable colour; their distance is measured from their own.
     """
-    nodes, threshold = growth.nodes, growth.problem.threshold
-    coefficients, rgb, distance = _store_coefficients(growth)
+    nodes, lattice, threshold = growth.nodes, growth.nodes.lattice, growth.problem.threshold
+    coefficients, distance, standard_error = _store_coefficients(growth, prior)
     # The entry that a node started from, and its status: later lines overrule earlier ones.
-    entry = np.full(nodes.lattice.size, NO_ENTRY, dtype=np.int32)
+    entry = np.full(lattice.size, NO_ENTRY, dtype=np.int32)
     entry[seeds.points] = seeds.entry
-    status = np.full(nodes.lattice.size, Status.REGULAR, dtype=np.uint8)
+    status = np.full(lattice.size, Status.REGULAR, dtype=np.uint8)
     status[seeds.points] = np.where(seeds.primary, Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)
     status[growth.round == NOT_FITTED] = Status.IMPROVED
     outside = nodes.unrealisable
     status[outside] = Status.UNREALISABLE
     status[distance > threshold] = Status.UNFITTED
-    distance[outside] = np.abs(nodes.lattice.target(outside) - rgb[outside]).max(axis=1)
+    distance[outside] = np.abs(lattice.target(outside) - growth.rgb[outside]).max(axis=1)
     status[outside[distance[outside] <= threshold]] = Status.REGULAR
-    absent = np.ones(nodes.lattice.size, dtype=bool)
-    absent[nodes.points] = False
+    absent = ~lattice.mask(nodes.points)
     status[absent], entry[absent] = Status.ABSENT, NO_ENTRY
-    return PointTable(coefficients, rgb, distance, status, entry, growth.round, standard_error)
+    return PointTable(coefficients, growth.rgb, distance, status, entry, growth.round, standard_error)
 
 
-def _store_coefficients(growth: Growth) -> tuple[NDArray[Any], NDArray[np.float32], NDArray[np.float32]]:
-    """Coefficients (n, C), their linear RGB (n, 3) and distances (n,), all 0 at nodes that are not fitted.
+def _store_coefficients(
+    growth: Growth, prior: Prior
+) -> tuple[NDArray[Any], NDArray[np.float32], NDArray[np.float32] | None]:
+    """Coefficients (n, C), their distances (n,) and standard errors (n,), all 0 at nodes that are not fitted.
 
     The coefficients are float32 if that is accurate enough for every node, else float64 for all. Where rounding them
     cannot change the colour (`Model.is_float32_safe`), the colour is that of the solver; elsewhere it is evaluated from
     the rounded coefficients. They overwrite the multipliers, as memory for both may not suffice.
     """
-    problem, points, kind = growth.problem, growth.nodes.points, SINGLE
-    coefficients, rgb, distance = growth.multipliers, growth.rgb, np.zeros(len(growth.rgb), dtype=np.float32)
+    problem, nodes, kind = growth.problem, growth.nodes, SINGLE
+    coefficients, distance = growth.multipliers, np.zeros(len(growth.rgb), dtype=np.float32)
+    standard_error = None if prior.errors is None else np.zeros_like(distance)
 
-    def evaluate(block: Indices) -> None:
-        if block.size:
-            values = map_batches(_rgb, problem.forward, problem.model.from_storage(coefficients[block].astype(kind)))
-            rgb[block], distance[block] = values, np.abs(growth.nodes.goal(block) - values).max(axis=1)
+    def evaluate(points: Indices) -> None:
+        if points.size:
+            multipliers = problem.model.from_storage(coefficients[points].astype(kind))
+            rgb = map_batches(_rgb, problem.forward, multipliers)
+            growth.rgb[points], distance[points] = rgb, np.abs(nodes.goal(points) - rgb).max(axis=1)
 
     # Block by block; once a block loses too much in single precision, all sensitive nodes so far are evaluated again.
-    sensitive = [points[:0]]
-    for block in blocks(points):
-        multipliers = growth.multipliers[block]
-        safe = problem.model.is_float32_safe(multipliers)
-        coefficients[block] = to_storage(problem.model, multipliers)
-        distance[block] = growth.distance[block]
-        sensitive.append(block[~safe])
+    sensitive = []
+    for block in blocks(len(nodes.points), BLOCK_POINTS):
+        points = nodes.points[block]
+        safe = problem.model.is_float32_safe(coefficients[points])
+        coefficients[points] = to_storage(problem.model, coefficients[points])
+        distance[points] = growth.distance[points]
+        sensitive.append(points[~safe])
         evaluate(sensitive[-1])
         limit = growth.distance[sensitive[-1]] + MAX_LOSS * problem.threshold
         if kind == SINGLE and (distance[sensitive[-1]] > limit).any():
             kind = DOUBLE
             for earlier in sensitive:
                 evaluate(earlier)
-        growth.progress(Progress("store", int(np.searchsorted(points, block[-1])) + 1, len(points)))
-    return coefficients.astype(kind, copy=False), rgb, distance
+        if standard_error is not None:
+            standard_error[points] = prior.standard_error(nodes.lattice.target(points))
+        growth.progress(Progress("store", block.stop, len(nodes.points)))
+    return coefficients.astype(kind, copy=False), distance, standard_error

@@ -101,6 +101,12 @@ class Lattice:
         weights = (r[:, None, None] * g[None, :, None] * b[None, None, :]).reshape(8, -1)
         return self.index(low)[:, None] + self.index(CORNERS), np.ascontiguousarray(weights.T)
 
+    def mask(self, points: Indices) -> Mask:
+        """Set (dim³,) of nodes (k,)."""
+        mask = np.zeros(self.size, dtype=bool)
+        mask[points] = True
+        return mask
+
     def corner_points(self, cells: Mask) -> Mask:
         """Nodes that are corners of cells."""
         points = np.zeros(self.shape, dtype=bool)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.common.arrays import Array, Complex, Mask
+from uplift.common.arrays import Array, Complex, Mask, blocks
 from uplift.common.errors import UpliftError
 from uplift.models.arithmetic import arctan
 
@@ -43,9 +43,7 @@ def cosine_basis(phase: Array, count: int) -> Array:
 def integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     """Integrate spectra to moments (n, C): samples by ``synthesis`` (C, K), weighted by ``analysis`` (K, C)."""
     moments = np.empty((len(multipliers), analysis.shape[1]))
-    rows = max(_SAMPLES // len(analysis), 1)
-    for first in range(0, len(multipliers), rows):
-        block = slice(first, first + rows)
+    for block in blocks(len(multipliers), max(_SAMPLES // len(analysis), 1)):
         moments[block] = (0.5 + arctan(multipliers[block] @ synthesis) / np.pi) @ analysis
     return moments
 
@@ -152,8 +150,7 @@ def try_multipliers(moments: Array) -> tuple[Array, Mask]:
     recursion. Internally the order is the first axis, so that all arithmetic runs along contiguous spectra.
     """
     multipliers, valid = np.empty_like(moments), np.empty(len(moments), dtype=bool)
-    for first in range(0, len(moments), _ROWS):
-        block = slice(first, first + _ROWS)
+    for block in blocks(len(moments), _ROWS):
         orders = np.ascontiguousarray(moments[block].T)
         zeroth = orders[0]
         with np.errstate(all="ignore"):

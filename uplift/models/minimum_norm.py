@@ -42,6 +42,10 @@ class ForwardMap:
         spectra = self.model.to_reflectance(blocked_matmul(multipliers, self.basis.T))
         return blocked_matmul(spectra, self.sensor.T)
 
+    def residual(self, multipliers: Any, target: Any) -> Any:
+        """Target minus RGB, t − r, (n, 3), of multipliers (n, C)."""
+        return target - self.rgb(multipliers)
+
 
 def forward_map(model: Model, wavelengths: ArrayLike, sensor: Array) -> ForwardMap:
     """Create the forward map at wavelengths (N,) with the metric M of the model."""

@@ -14,18 +14,17 @@ from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Mask, StrPath
+from uplift.common.arrays import Array, Indices, Mask, StrPath
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.threads import single_threaded_blas
 from uplift.common.version import VERSION
 from uplift.cube import CubeData
 from uplift.fit.base import learn_base
-from uplift.fit.growth import grow_from_prior, supporting_points
+from uplift.fit.growth import STEPS, THESIS_STEPS, grow_from_prior, improve, supporting_points
 from uplift.fit.growth_thesis import grow_from_neighbours
-from uplift.fit.improve import STEPS, THESIS_STEPS, improve
 from uplift.fit.prior import fit_prior
 from uplift.fit.problem import Problem, nodes_of
-from uplift.fit.seeds import FULL_ENTRY, InitialGuess, half_widths, learnt_blend, seed
+from uplift.fit.seeds import FULL_ENTRY, half_widths, initial_guess, learnt_blend, seed
 from uplift.fit.store import store
 from uplift.lattice import EntryBoxes, Lattice
 from uplift.lookup import Cube
@@ -255,7 +254,6 @@ def _build(
     boxes, seeds = EntryBoxes(lattice, rgb, half_widths(lattice, rgb)), seed(lattice, rgb)
     spectra.warn_of_crowding(constraints.names, boxes, seeds)
     own = constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
-    guess = InitialGuess(prior, seeds, own, blend)
 
     # The nodes that a scene needs, or all, grow from coarse to fine: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7),
     # where t is the nearest colour that some reflectance has (9). They are improved and stored as coefficients.
@@ -263,9 +261,13 @@ def _build(
     fitted = None if kept is None or neighbours else supporting_points(lattice, kept)
     nodes = nodes_of(lattice, sensor, options.threshold / 2, fitted)
     grow, steps = (grow_from_neighbours, THESIS_STEPS) if neighbours else (grow_from_prior, STEPS)
-    growth = grow(problem, nodes, lambda points: guess(points, nodes.goal(points)), seeds.points, progress)
+
+    def expected(points: Indices) -> Array:
+        return initial_guess(points, nodes.goal(points), prior, seeds, own, blend)
+
+    growth = grow(problem, nodes, expected, seeds.points, progress)
     improvements = improve(growth, steps)
-    points = store(growth, seeds, prior.standard_errors(nodes))
+    points = store(growth, seeds, prior)
     points = points if kept is None else points.restricted_to(kept)
 
     table = constraints.table(model, boxes, prior)
@@ -273,7 +275,7 @@ def _build(
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
         **spectra.describe_atlas(atlas, measured.names),
-        "prior": prior.describe() and {**prior.describe(), "corner_share": blend.near},
+        "prior": prior.describe() and {**prior.describe(), "corner_share": blend[0]},
         "improvements": [{"step": step, "tried": tried, "mended": fixed} for step, tried, fixed in improvements],
         **({} if scene is None else {"scene": scene.describe()}),
         "libraries": [{"name": library.name, "digest": library.digest} for library in libraries],

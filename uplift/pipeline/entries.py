@@ -16,7 +16,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.cube import AtlasTable, EntrySpectra, LeftOut
-from uplift.fit.base import has_freedom
+from uplift.fit.base import NO_FREEDOM
 from uplift.fit.entries import FittedEntries, fit_entries
 from uplift.fit.families import Family, shipped_library
 from uplift.fit.prior import Prior
@@ -59,7 +59,7 @@ class Constraints:
 
         Fewer moments of the same spectrum are the first of them (Tódová 2020, section 3.1.3).
         """
-        if self.at_entries is self.at_nodes or not len(self.at_nodes):
+        if self.at_entries is self.at_nodes or not len(self.names):
             return self.at_nodes.multipliers
         stored = self.entry_model.to_storage(self.at_entries.multipliers)  # c_j = (1/π) ∫ g cos jφ dφ for any count
         return model.from_storage(stored[:, : model.count])
@@ -67,7 +67,7 @@ class Constraints:
     def table(self, model: Model, boxes: EntryBoxes, prior: Prior) -> AtlasTable:
         """Return the part of a cube that records the constraints; entries with more coefficients have them there."""
         spectra, left_out = None, None
-        if self.at_entries is not self.at_nodes and len(self.at_nodes):
+        if self.at_entries is not self.at_nodes and len(self.names):
             spectra = EntrySpectra(self.entry_model, self.entry_model.to_storage(self.at_entries.multipliers))
         if prior.left_out is not None:
             measured = self.at_nodes.measured[: len(self.names) - self.looks]
@@ -188,7 +188,7 @@ def families_of(options: Options, libraries: Sequence[Library], sensor: Sensor) 
 
     Shipped families are constant outside 380–780 nm. Warns of each library that is not used as measured.
     """
-    learnt = options.prior == "learnt" and has_freedom(options.spectrum_model())
+    learnt = options.prior == "learnt" and options.spectrum_model().count > NO_FREEDOM
     if libraries and not learnt:
         raise OptionError(
             "a library shapes only the learnt prior of models with more than three coefficients",

@@ -16,7 +16,7 @@ from uplift.colorimetry.srgb import hex_codes, parse_colour
 from uplift.common.arrays import Array
 from uplift.common.errors import LookError, UpliftError, UpliftWarning
 from uplift.cube import AtlasTable, EntrySpectra
-from uplift.fit.base import has_freedom
+from uplift.fit.base import NO_FREEDOM
 from uplift.fit.entries import MAX_STEPS, join_entries
 from uplift.fit.looks import MET, LookGoal, design_reflectance, fit_designs
 from uplift.fit.prior import Prior
@@ -68,12 +68,12 @@ class LookTargets:
         at_nodes = at_entries = fit_designs(problem, goals, designs)
         if entries.entry_model != problem.model:
             at_entries = fit_designs(replace(problem, model=entries.entry_model), goals, designs)
-        both = join_entries(entries.at_nodes, replace(at_nodes, error=errors))
+        both = join_entries(entries.at_nodes, at_nodes._replace(error=errors))
         same = entries.entry_model == problem.model
         constraints = Constraints(
             (*entries.names, *(look.name for look in self.looks)),
             both,
-            both if same else join_entries(entries.at_entries, replace(at_entries, error=errors)),
+            both if same else join_entries(entries.at_entries, at_entries._replace(error=errors)),
             entries.entry_model,
             len(self.looks),
         )
@@ -108,7 +108,7 @@ def targets_of(
     has, for a light that is that of the build, unknown, or occurs twice, and for a model without freedom.
     """
     looks = as_looks(looks)
-    if looks and not has_freedom(model):
+    if looks and model.count <= NO_FREEDOM:
         raise LookError(
             f"looks need spectra of more than three coefficients, got {model.name} with {model.count}",
             code="looks-without-freedom",

@@ -11,7 +11,7 @@ import numpy as np
 
 from uplift.colorimetry.camera import CAMERA
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
-from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP
+from uplift.colorimetry.observer import AXES, DEFAULT_OBSERVER, END, START, STEP
 from uplift.common.errors import OptionError, unknown_name
 from uplift.common.text import format_value
 from uplift.cube.file import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
@@ -20,7 +20,6 @@ from uplift.models.model import Model
 from uplift.models.moments import MAX_COUNT
 
 AUTO: Literal["auto"] = "auto"
-AXES = ("srgb", "linear")
 ModelName = Literal["moments", "sigmoid"]
 MODELS: tuple[ModelName, ...] = ("moments", "sigmoid")
 PriorName = Literal["learnt", "smooth"]

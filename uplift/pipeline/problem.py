@@ -12,9 +12,9 @@ from uplift.common.errors import OptionError, unknown_name
 from uplift.common.text import format_value
 from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
-from uplift.fit.seeds import EntryBlend
+from uplift.fit.seeds import DIMS, Blend, choose_lattice
 from uplift.pipeline.entries import Constraints, warn
-from uplift.pipeline.options import AXES, CUSTOM, SOLVERS, Options, check_memory
+from uplift.pipeline.options import CUSTOM, SOLVERS, Options, check_memory
 
 if TYPE_CHECKING:
     from uplift.fit.optimistix_solvers import Solver
@@ -53,15 +53,9 @@ def _other_solver(solver: str | Solver, tolerance: float) -> Solver:
     return optimistix_solvers.stock_solver(solver, tolerance)
 
 
-def choose_dim(
-    options: Options, problem: Problem, constraints: Constraints, prior: Prior, blend: EntryBlend
-) -> Options:
+def choose_dim(options: Options, problem: Problem, constraints: Constraints, prior: Prior, blend: Blend) -> Options:
     """Replace ``dim="auto"`` by the smallest lattice that keeps every entry, if it fits into memory."""
-    from uplift.fit.dim import DIMS, choose_lattice
-
-    axis, dim, lost = choose_lattice(
-        problem, prior, blend, constraints.at_nodes, observers.axis_nodes, AXES, options.auto_tolerance
-    )
+    axis, dim, lost = choose_lattice(problem, prior, blend, constraints.at_nodes, options.auto_tolerance)
     if lost:
         warn(
             f"no dim up to {DIMS[-1]} keeps every entry within ΔE00 {options.auto_tolerance:g}: "

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry import observer
+from uplift.colorimetry.observer import AXES
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
@@ -22,7 +23,6 @@ from uplift.io import texture
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
-from uplift.pipeline.options import AXES
 from uplift.scene.plan.context import PlanContext, occupied_cells
 from uplift.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet, Trial
 from uplift.scene.representations import Representation, all_representations
