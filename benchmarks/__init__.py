@@ -6,7 +6,7 @@ import csv
 from pathlib import Path
 from typing import Any
 
-from uplift.lab.records import write_record
+from uplift.lab.timing import write_record
 
 ROOT = Path(__file__).parents[1]
 DOCS, DATA = ROOT / "docs", ROOT / "docs" / "data"

@@ -13,10 +13,10 @@ import uplift
 from benchmarks import MACBETH, record
 from benchmarks.materials import errors, materials
 from uplift.atlas import on_grid
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.lab.chart.method import at_1_nm
-from uplift.lab.chart.method import round_trip as judge_round_trip
 from uplift.lab.timing import time_calls
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube
@@ -96,7 +96,7 @@ def fit_quality(cube: Cube) -> Row:
 
 def round_trip(cube: Cube, sensor: Sensor, mode: str = "spectra") -> list[float]:
     """Return the mean and the largest ΔE00 between the requested colours and those of the spectra, for a judge."""
-    found = judge_round_trip(sensor, QUERIES, cube.reflectance(QUERIES, sensor.wavelengths, mode))
+    found = delta_e_rgb(sensor, QUERIES, sensor.rgb(cube.reflectance(QUERIES, sensor.wavelengths, mode)))
     return [float(found.mean()), float(found.max())]
 
 

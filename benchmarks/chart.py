@@ -11,11 +11,10 @@ from uplift.atlas import read_atlas
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.files import write_text
 from uplift.common.progress import Progress
-from uplift.lab.chart.measure import measure_methods
+from uplift.lab.chart.measure import measure_methods, select_methods
 from uplift.lab.chart.method import Effort, make_task
-from uplift.lab.chart.methods import select_methods
-from uplift.lab.chart.picture import render_chart, write_panel, write_pictures
-from uplift.lab.chart.table import MEASURED, Chart, MethodResult, State, all_panels, chart_csv, panels_of, read_chart
+from uplift.lab.chart.picture import render_chart, write_panel, write_picture
+from uplift.lab.chart.table import MEASURED, Chart, MethodResult, State, chart_csv, criteria, read_chart
 
 ERRORS = (*CHART_LIGHTS, "rms", "own_lights")
 UNSEEN = ("lights", "rms")
@@ -41,11 +40,11 @@ def publish(chart: Chart) -> None:
     """Write the table that the package carries, the pictures and the data of the page."""
     folder = DOCS / "chart"
     write_text(chart_csv(chart), ROOT / "uplift" / "lab" / "chart" / MEASURED, force=True)
-    write_pictures(chart, folder / "chart.png", folder / "chart.svg", force=True)
+    write_picture(chart, folder / "chart.png", force=True)
     write_text(render_chart(chart), folder / "chart.html", force=True)
     for name, number in PICTURES.items():
         for batch in chart.batches:
-            write_panel(chart, panels_of(batch)[number], folder / f"{name}-{batch}.png", force=True)
+            write_panel(chart, criteria(batch)[number], folder / f"{name}-{batch}.png", force=True)
     record(
         "chart",
         environment=dict(chart.facts),
@@ -63,16 +62,16 @@ def publish(chart: Chart) -> None:
 def fronts(chart: Chart) -> list[dict[str, Any]]:
     """Return the Pareto front of every panel, fastest first; the panel is named in its first row. Times in ns."""
     rows = []
-    for panel in all_panels(chart):
-        front = panel.front(chart)
+    for criterion in (criterion for batch in chart.batches for criterion in criteria(batch)):
+        front = criterion.front(chart)
         rows += [
             {
-                "panel": panel.title if row is front[0] else "",
-                "colours": panel.batch,
+                "panel": criterion.title if row is front[0] else "",
+                "colours": criterion.batch,
                 "method": row.title,
-                "time": panel.time(row),
-                "error": row.numbers[f"{panel.error}_mean"],
-                "mark": optimistic_mark(row) if panel.error in UNSEEN else "",
+                "time": criterion.time(row),
+                "error": row.numbers[f"{criterion.error}_mean"],
+                "mark": optimistic_mark(row) if criterion.error in UNSEEN else "",
             }
             for row in front
         ]

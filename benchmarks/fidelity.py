@@ -37,8 +37,8 @@ from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Mask
 from uplift.cube import contents
 from uplift.fit.families import LENGTH, NUGGET, shipped_library
+from uplift.lab.chart.measure import select_methods
 from uplift.lab.chart.method import make_task
-from uplift.lab.chart.methods import mallett2019, otsu2018, smits1999
 from uplift.lab.study.held_out import (
     CENTROID,
     HALF,
@@ -64,7 +64,7 @@ KNOWN = ("macbeth", "cie2017")
 MIN_COLOURS = 10
 """Fewer colours are not listed."""
 LIBRARY_SETS = tuple(name for names in FAMILIES.values() for name in names)
-PUBLISHED = {"Otsu 2018": otsu2018, "Mallett 2019": mallett2019, "Smits 1999": smits1999}
+PUBLISHED = ("otsu2018", "mallett2019", "smits1999")
 RUNS = 2
 Row = dict[str, Any]
 
@@ -291,7 +291,7 @@ def compare_methods(name: str) -> Row:
 def published() -> dict[str, Any]:
     """Return the methods of other authors, which use no atlas."""
     task = make_task({"macbeth": spectra("macbeth")})
-    return {name: module.prepare(task).uplift for name, module in PUBLISHED.items()}
+    return {method.title: method.prepare(task).uplift for method in select_methods(PUBLISHED)}
 
 
 def family(name: str) -> list[str]:

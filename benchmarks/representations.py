@@ -14,16 +14,18 @@ from benchmarks import ATLASES, DOCS, read_reference, record
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.lab.comparison.compare import (
+    NONE,
     Comparison,
     RepresentationResult,
     Scene,
+    TunedFilter,
     cheapest,
     compare,
     error_statistics,
     make_scene,
+    tune_filters,
 )
-from uplift.lab.comparison.filters import NONE, TunedFilter, tune_filters
-from uplift.lab.comparison.pictures import KINDS, write_picture
+from uplift.lab.comparison.pictures import write_boxes, write_costs
 from uplift.scene.representations import all_representations
 from uplift.scene.representations.composite import ENHANCED_THRESHOLD, Composite, enhanced_riemann
 from uplift.scene.representations.samples import (
@@ -58,11 +60,11 @@ def main() -> None:
     atlases = {path.stem: uplift.read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))}
     default = make_scene(atlases)
     ours, others = (_compare(scene) for scene in (default, make_scene(atlases, OTHER_LIGHTS)))
-    for kind in KINDS:
-        write_picture(ours, kind, DOCS / "representations" / f"{kind}.png", force=True)
+    write_boxes(ours, DOCS / "representations" / "boxes.png", force=True)
+    write_costs(ours, DOCS / "representations" / "cost.png", force=True)
     record(
         "representations",
-        surfaces=len(default.names),
+        surfaces=len(default.surfaces),
         titles={name: capitalise(title) for one in (ours, others) for name, title in one.sets.items()},
         advice=[row for one in (ours, others) for row in advice(one)],
         ranking=[*ranking(ours, printed_tables()), *ranking(others, {})],
@@ -116,7 +118,7 @@ def ranking(comparison: Comparison, thesis: Mapping[tuple[str, str], Printed]) -
         yield {
             "lights": row.lights,
             "name": row.name,
-            **dict(zip(names, row.statistics, strict=True)),
+            **dict(zip(names, row.statistics.values, strict=True)),
             "thesis_mean": printed.mean if printed else None,
             "thesis_p97_5": printed.q97_5 if printed else None,
             "floats": row.floats,

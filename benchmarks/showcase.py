@@ -24,7 +24,7 @@ from uplift.colorimetry.observer import light, sensor
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.files import atomic_write
-from uplift.lab.chart.methods import mitsuba3
+from uplift.lab.chart import mitsuba3
 from uplift.report.relight import relight, write_relit_sheet
 from uplift.samples import sample_path
 

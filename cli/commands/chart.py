@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -14,11 +13,11 @@ from ..output.progress import progress_bar
 from ..startup import enable_jit_cache, use_one_blas_thread
 
 if TYPE_CHECKING:
-    from uplift.lab.chart.table import Chart, Requirement
+    from uplift.lab.chart.table import Chart
 
-PRINTED = ("round_trip", "lights")
-"""Errors whose Pareto fronts are printed; the page has all."""
-FILES = ("chart.csv", "chart.png", "chart.svg", "chart.html")
+PRINTED = 3
+"""Pareto fronts of each number of colours that are printed; the page has all."""
+FILES = ("chart.csv", "chart.png", "chart.html")
 
 
 @click.command("chart")
@@ -74,7 +73,7 @@ def command(
     Odd entries of every atlas build the cubes, even entries test them. Methods with wrong results are listed but not
     timed, as are those that are not installed.
 
-    Writes chart.csv, chart.png, chart.svg and chart.html, and prints the Pareto fronts.
+    Writes chart.csv, chart.png and chart.html, and prints the Pareto fronts.
 
     \b
     Examples:
@@ -88,26 +87,31 @@ def command(
     enable_jit_cache()
     use_one_blas_thread()
     if recommend:
-        from uplift.lab.chart.table import Requirement
-
-        _recommend(source, Requirement(time_ns, delta_e, light, atlas_materials))
+        _recommend(source, time_ns, delta_e, light, own=atlas_materials)
         return
     if atlas_materials or any(value is not None for value in (time_ns, delta_e, light)):
         raise click.UsageError("--time-ns, --tolerance, --light and --atlas-materials require --recommend.")
-    from uplift.common.files import check_folder
-    from uplift.lab.chart.table import read_chart
+    from uplift.common.files import check_folder, write_text
+    from uplift.lab.chart.picture import render_chart, write_picture
+    from uplift.lab.chart.table import chart_csv, read_chart
 
     folder = check_folder(output, FILES, inputs=files, force=force)
     chart = read_chart(source) if source is not None else _measure(files, patterns, colours, quick=quick)
-    _write(chart, folder, force=force)
+    table, png, html = (folder / name for name in FILES)
+    write_text(chart_csv(chart), table, force=force)
+    write_picture(chart, png, force=force)
+    write_text(render_chart(chart), html, force=force)
     _print_fronts(chart)
     say(f"{folder}: {', '.join(FILES)}", err=True)
 
 
-def _recommend(source: str | None, requirement: Requirement) -> None:
-    from uplift.lab.chart.table import read_chart, recommend_cube, shipped_chart
+def _recommend(
+    source: str | None, time_ns: float | None, delta_e: float | None, light: str | None, *, own: bool
+) -> None:
+    from uplift.lab.chart.table import Requirement, read_chart, recommend_cube, shipped_chart
     from uplift.viz.format import format_error, format_size, format_time
 
+    requirement = Requirement(time_ns, delta_e, light, own)
     row = recommend_cube(read_chart(source) if source is not None else shipped_chart(), requirement)
     numbers = row.numbers
     say(
@@ -119,39 +123,26 @@ def _recommend(source: str | None, requirement: Requirement) -> None:
 
 
 def _measure(files: tuple[str, ...], patterns: tuple[str, ...], colours: int, *, quick: bool) -> Chart:
-    from uplift.lab.chart.measure import measure_methods
+    from uplift.lab.chart.measure import QUICK_METHODS, measure_methods, select_methods
     from uplift.lab.chart.method import QUICK, Effort, make_task
-    from uplift.lab.chart.methods import select_methods
 
-    methods = select_methods(patterns, quick=quick)
-    colours_and_spectra = make_task(read_atlases(files), colours, QUICK if quick else Effort())
+    methods = select_methods(patterns or (QUICK_METHODS if quick else ()))
+    task = make_task(read_atlases(files), colours, QUICK if quick else Effort())
     with progress_bar("methods") as progress:
-        return measure_methods(methods, colours_and_spectra, progress)
-
-
-def _write(chart: Chart, folder: Path, *, force: bool) -> None:
-    from uplift.common.files import write_text
-    from uplift.lab.chart.picture import render_chart, write_pictures
-    from uplift.lab.chart.table import chart_csv
-
-    table, png, svg, html = (folder / name for name in FILES)
-    write_text(chart_csv(chart), table, force=force)
-    write_pictures(chart, png, svg, force=force)
-    write_text(render_chart(chart), html, force=force)
+        return measure_methods(methods, task, progress)
 
 
 def _print_fronts(chart: Chart) -> None:
-    from uplift.lab.chart.table import State, all_panels
+    from uplift.lab.chart.table import State, criteria
     from uplift.viz.format import format_size
 
     say("Pareto fronts, from the fastest to the most accurate")
     tables = []
-    for panel in all_panels(chart):
-        if panel.error not in PRINTED:
-            continue
-        table = make_table(("method",), ("time", panel.unit, "bytes"), title=f"{panel.title}: {panel.colours}")
-        for row in panel.front(chart):
-            table.add_row(row.method, *panel.labels(row), format_size(row.numbers["bytes"]))
+    for criterion in (criterion for batch in chart.batches for criterion in criteria(batch)[:PRINTED]):
+        title = f"{criterion.title}: {criterion.colours}"
+        table = make_table(("method",), ("time", criterion.unit, "bytes"), title=title)
+        for row in criterion.front(chart):
+            table.add_row(row.method, *criterion.labels(row), format_size(row.numbers["bytes"]))
         tables.append(table)
     show(*tables)
     for row in chart.results:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -15,8 +14,7 @@ from ..output.progress import progress_bar
 from ..startup import use_one_blas_thread
 
 if TYPE_CHECKING:
-    from uplift.lab.comparison.compare import Comparison, Scene, Statistics
-    from uplift.lab.comparison.filters import TunedFilter
+    from uplift.lab.comparison.compare import Comparison, TunedFilter
 
 FILES = ("compare.csv", "compare-boxes.png", "compare-cost.png", "compare.html")
 FILTERS = "compare-filters.csv"
@@ -70,10 +68,9 @@ def command(
     """
     use_one_blas_thread()
     from uplift.common.files import check_folder
+    from uplift.lab.comparison.compare import check_target
 
     if tolerance is not None:
-        from uplift.lab.comparison.compare import check_target
-
         check_target(tolerance)
     names = (*FILES, FILTERS) if filters else FILES
     folder = None if output is None else check_folder(output, names, inputs=files, force=force)
@@ -82,58 +79,55 @@ def command(
         _write(comparison, tuned, folder, force=force)
     if tolerance is not None:
         _print_advice(comparison, tolerance)
+    elif style == "table":
+        _print_table(comparison, tuned)
     else:
-        PRINTERS[style](comparison, tuned)
+        _print_records(comparison, tuned, style)
 
 
 def _measure(
     files: tuple[str, ...], lights: tuple[str, ...], *, filters: bool, quick: bool
 ) -> tuple[Comparison, tuple[TunedFilter, ...]]:
-    from uplift.lab.comparison.compare import QUICK, TimingOptions, compare, make_scene
+    from uplift.lab.comparison.compare import QUICK, TimingOptions, compare, make_scene, tune_filters
     from uplift.scene.representations import all_representations
-
-    tested = make_scene(read_atlases(files), lights)
-    tested = tested.thinned() if quick else tested
-    with progress_bar("representations") as progress:
-        effort = QUICK if quick else TimingOptions()
-        comparison = compare(tested, all_representations(tested.powers, tested.surfaces), effort, progress)
-    return comparison, _tune(tested, quick=quick) if filters else ()
-
-
-def _tune(tested: Scene, *, quick: bool) -> tuple[TunedFilter, ...]:
-    from uplift.lab.comparison.filters import tune_filters
     from uplift.scene.representations.filters import COARSE_STRIDE, FINE_STRIDE
 
+    scene = make_scene(read_atlases(files), lights)
+    scene = scene.thinned() if quick else scene
+    with progress_bar("representations") as progress:
+        representations = all_representations(scene.powers, scene.surfaces)
+        comparison = compare(scene, representations, QUICK if quick else TimingOptions(), progress)
+    if not filters:
+        return comparison, ()
     with progress_bar("filters") as progress:
-        return tune_filters(tested, COARSE_STRIDE if quick else FINE_STRIDE, progress=progress)
+        return comparison, tune_filters(scene, COARSE_STRIDE if quick else FINE_STRIDE, progress=progress)
 
 
 def _write(comparison: Comparison, tuned: tuple[TunedFilter, ...], folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
-    from uplift.lab.comparison.compare import records
-    from uplift.lab.comparison.filters import filter_records
-    from uplift.lab.comparison.pictures import render_comparison, write_picture
-    from uplift.lab.records import write_csv
+    from uplift.lab.comparison.compare import filter_records, records
+    from uplift.lab.comparison.pictures import render_comparison, write_boxes, write_costs
+    from uplift.lab.timing import write_csv
 
-    table, boxes, cost, html = (folder / name for name in FILES)
+    table, boxes, costs, html = (folder / name for name in FILES)
     write_csv(records(comparison), table, force=force)
+    write_boxes(comparison, boxes, force=force)
+    write_costs(comparison, costs, force=force)
+    write_text(render_comparison(comparison, tuned), html, force=force)
     if tuned:
         write_csv(filter_records(tuned), folder / FILTERS, force=force)
-    for kind, path in (("boxes", boxes), ("cost", cost)):
-        write_picture(comparison, kind, path, force=force)
-    write_text(render_comparison(comparison, tuned), html, force=force)
     say(f"{folder}: {', '.join((*FILES, FILTERS) if tuned else FILES)}", err=True)
 
 
 def _print_advice(comparison: Comparison, tolerance: float) -> None:
     """Print the cheapest sufficient representation for each set of lights."""
-    from uplift.lab.comparison.compare import cheapest, most_accurate
+    from uplift.lab.comparison.compare import cheapest
     from uplift.viz.format import format_error, format_time
 
     for name, title in comparison.sets.items():
         row = cheapest(comparison, name, tolerance)
         if row is None:
-            best = most_accurate(comparison, name)
+            best = min(comparison.of(name), key=lambda result: result.statistics.q97_5)
             text = f"none; the most accurate, {best.name}, has {format_error(best.statistics.q97_5)}"
         else:
             text = (
@@ -162,37 +156,19 @@ def _print_table(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None
         title = "point sampling after the best low-pass filter of each kind"
         table = make_table(("lights", "samples", "filter", "parameters"), HEADINGS, title=title)
         for one in sorted(tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)):
-            table.add_row(one.lights, str(one.count), one.kind, one.parameters, *_cells(one.statistics))
+            values = (f"{value:.3f}" for value in one.statistics.values)
+            table.add_row(one.lights, str(one.count), one.kind, one.parameters, *values)
         tables.append(table)
     show(*tables)
 
 
-def _cells(statistics: Statistics) -> list[str]:
-    return [f"{value:.3f}" for value in statistics]
+def _print_records(comparison: Comparison, tuned: tuple[TunedFilter, ...], style: str) -> None:
+    from uplift.lab.comparison.compare import filter_records, records
+    from uplift.lab.timing import records_csv
 
-
-def _records(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> dict[str, Any]:
-    from uplift.lab.comparison.compare import records
-    from uplift.lab.comparison.filters import filter_records
-
-    return {"facts": dict(comparison.facts), "representations": records(comparison), "filters": filter_records(tuned)}
-
-
-def _print_json(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
-    print_json(_records(comparison, tuned))
-
-
-def _print_csv(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
-    from uplift.lab.records import records_csv
-
-    tables = _records(comparison, tuned)
-    for name in ("representations", "filters"):
-        if tables[name]:
-            print_csv_text(records_csv(tables[name]))
-
-
-PRINTERS: dict[str, Callable[[Comparison, tuple[TunedFilter, ...]], None]] = {
-    "table": _print_table,
-    "json": _print_json,
-    "csv": _print_csv,
-}
+    tables = {"representations": records(comparison), "filters": filter_records(tuned)}
+    if style == "json":
+        print_json({"facts": dict(comparison.facts), **tables})
+        return
+    for table in filter(None, tables.values()):
+        print_csv_text(records_csv(table))

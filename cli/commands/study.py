@@ -56,7 +56,7 @@ def _write_plots(output: str, writers: Mapping[str, Callable[..., None]], *, for
 
 def _print(style: str, records: Any, rows: Sequence[Row], table: Sequence[Row]) -> None:
     """Print JSON of the records, CSV of rows, or a table, in which floats have three digits."""
-    from uplift.lab.records import records_csv
+    from uplift.lab.timing import records_csv
 
     if style == "json":
         print_json(records)

@@ -23,7 +23,6 @@ MAX_DETAIL = 200
 HINTS = {
     "atlas-changed": "name the folder of the recorded file with --atlas-dir, or build the cube again",
     "atlas-not-found": "name its folder with --atlas-dir, or build the cube again",
-    "chart-without-cubes": "measure one with 'uplift chart'",
     "colour-not-a-light": "use --out-of-gamut clip for the nearest colour towards white",
     "colour-not-in-scene": "use --fill-missing, or build the cube with the image in --scene",
     "cube-not-found": "build a cube with 'uplift build'",

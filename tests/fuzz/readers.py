@@ -33,7 +33,7 @@ from uplift.design.palette import design, matrix, read_palette, standard_model
 from uplift.io.scene_colours import file_digest
 from uplift.io.texture import Counts, convert
 from uplift.io.texture.uplifter import Converter
-from uplift.lab.chart.table import Requirement, all_panels, read_chart, recommend_cube
+from uplift.lab.chart.table import Requirement, criteria, read_chart, recommend_cube
 from uplift.lattice import Lattice, PointTable
 from uplift.lookup import MODES, Cube, load, query
 from uplift.pipeline.options import Options
@@ -160,9 +160,9 @@ def _chart() -> Seeds:
 def use_chart(path: Path) -> None:
     """Compute what pictures of the chart show, and recommend a cube."""
     chart = read_chart(path)
-    for panel in all_panels(chart):
-        for result in panel.front(chart):
-            panel.labels(result)
+    for criterion in (criterion for batch in chart.batches for criterion in criteria(batch)):
+        for result in criterion.front(chart):
+            criterion.labels(result)
     recommend_cube(chart, Requirement(time_ns=1e5))
 
 

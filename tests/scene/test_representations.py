@@ -10,9 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from tests.lab.comparison_scenes import colorchecker
+from tests.conftest import MACBETH
+from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.observer import grid
+from uplift.lab.comparison.compare import make_scene
 from uplift.lab.study.moments import Technique
 from uplift.models import Sigmoid
 from uplift.models.model import evaluate
@@ -33,7 +35,7 @@ from uplift.scene.representations.samples import (
 
 @pytest.fixture(scope="session")
 def checker():
-    return colorchecker()
+    return make_scene({"macbeth": read_atlas(MACBETH)})
 
 
 @pytest.fixture(scope="session")

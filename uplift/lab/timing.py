@@ -1,18 +1,22 @@
-"""Timings with median and range, and the environment in which they are taken."""
+"""Timings with median and range, the environment in which they are taken, and records of both."""
 
 from __future__ import annotations
 
+import contextlib
+import dataclasses
+import json
 import os
 import platform
 import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
+from uplift.common.csv import csv_text
 from uplift.common.version import VERSION
 
 PACKAGES = ("numpy", "scipy", "jax", "colour-science", "safetensors")
@@ -22,15 +26,13 @@ twice as long."""
 CODE = (":/uplift", ":/cli", ":/benchmarks", ":(top,exclude)uplift/lab/chart/measured.csv")
 """Files that measurements depend on: the code, without the measurements that are part of the package."""
 SOURCES = Path(__file__).parents[1]
+MIN_RUNS, MAX_LAPS = 3, 15
+"""Fewest runs, and duration of all runs together in units of the shortest, unless `MIN_RUNS` take longer."""
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class Spread:
-    """Median and range of several runs.
-
-    ``median``, ``min``, ``max``: median, smallest and largest value.
-    ``runs``: number of runs.
-    """
+    """Median, smallest and largest value of several runs."""
 
     median: float
     min: float
@@ -51,9 +53,9 @@ def spread(values: list[float]) -> Spread:
 
 
 def time_calls(function: Callable[[], object], runs: int) -> tuple[Spread, Spread]:
-    """Measure repeated calls of a function.
+    """Measure wall and CPU seconds of repeated calls.
 
-    The caller has called it once to warm up. Asynchronous results must be complete when the function returns.
+    The caller has called the function once to warm up. Asynchronous results must be complete when it returns.
     """
     wall, cpu = [], []
     for _ in range(runs):
@@ -62,6 +64,20 @@ def time_calls(function: Callable[[], object], runs: int) -> tuple[Spread, Sprea
         wall.append(time.perf_counter() - begin)
         cpu.append(time.process_time() - begin_cpu)
     return spread(wall), spread(cpu)
+
+
+def time_laps(function: Callable[[], object], lap: float, runs: int) -> Spread:
+    """Measure the CPU seconds of a call after one that warms up, by up to ``runs`` runs of at least ``lap`` seconds."""
+    function()
+    once = max(time_calls(function, 1)[1].median, 1e-7)
+    calls = max(1, round(lap / once))
+
+    def run() -> None:
+        for _ in range(calls):
+            function()
+
+    affordable = max(MIN_RUNS, int(MAX_LAPS * lap / (calls * once)))
+    return time_calls(run, min(affordable, runs))[1].scaled(1 / calls)
 
 
 def time_process(command: list[str], runs: int, variables: dict[str, str] | None = None) -> tuple[Spread, float]:
@@ -81,10 +97,10 @@ def time_process(command: list[str], runs: int, variables: dict[str, str] | None
 
 def environment() -> dict[str, str]:
     """Describe where measurements are taken."""
-    cpu = next(
-        (line.split(":")[1].strip() for line in _lines("/proc/cpuinfo") if line.startswith("model name")),
-        platform.processor() or platform.machine(),
-    )
+    cpu = platform.processor() or platform.machine()
+    with contextlib.suppress(OSError):
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        cpu = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), cpu)
     packages = ", ".join([*(f"{name} {version(name)}" for name in PACKAGES), f"uplift {VERSION}"])
     return {
         "machine": f"{cpu}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}",
@@ -110,8 +126,27 @@ def _git(*arguments: str) -> str:
     return done.stdout.strip()
 
 
-def _lines(path: str) -> list[str]:
-    try:
-        return Path(path).read_text().splitlines()
-    except OSError:
-        return []
+def records_csv(records: Sequence[Mapping[str, Any]]) -> str:
+    """Format dictionaries with equal keys as CSV with a header line."""
+    return csv_text(list(records[0]), [list(record.values()) for record in records])
+
+
+def write_csv(records: Sequence[Mapping[str, Any]], path: str | os.PathLike[str], *, force: bool = False) -> None:
+    """Write records to a CSV file. Raises `OutputError`."""
+    from uplift.common.files import write_text  # imports numpy, before which `ONE_THREAD` is to be set
+
+    write_text(records_csv(records), path, force=force)
+
+
+def write_record(path: Path, command: str, **figures: Any) -> None:
+    """Write figures with the command that measures them; ``environment`` is that of this process by default."""
+    content = {"command": command, "environment": environment(), **figures}
+    text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False, default=_to_json)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def _to_json(value: Any) -> Any:
+    """Convert a dataclass, or a number or array of numpy."""
+    if dataclasses.is_dataclass(value):
+        return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+    return value.tolist()

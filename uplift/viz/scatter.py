@@ -1,8 +1,8 @@
-"""Scatter plots of error over cost: axes, Pareto fronts, and labels next to markers where they cover nothing."""
+"""Labels next to markers where they cover nothing, and the panels that they are placed in."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -10,16 +10,8 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import Array, Mask
-from uplift.viz.figure import GREY, INK, figure_text, new_figure, style_axes
+from uplift.viz.figure import GREY, INK, figure_text, new_figure
 
-MARKER: dict[str, Any] = {
-    "linestyle": "none",
-    "marker": "o",
-    "markersize": 8,
-    "color": GREY,
-    "markeredgecolor": "white",
-}
-FRONT_LINE: dict[str, Any] = {"linestyle": "-", "marker": "none", "color": INK, "linewidth": 1.1}
 # Arguments of a legend.
 LEGEND: dict[str, Any] = {
     "frameon": False,
@@ -28,17 +20,6 @@ LEGEND: dict[str, Any] = {
     "title_fontsize": 9,
     "labelspacing": 0.7,
 }
-# Inches of a panel of a page, where it is about as wide on a desk as on a phone.
-PAGE_PANEL_SIZE = (4.1, 3.0)
-
-# Number of decades below which an axis has ticks at these multiples of powers of ten.
-TICKS = (
-    (0.4, (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9)),
-    (1.2, (1, 1.5, 2, 3, 5, 7)),
-    (3, (1, 2, 5)),
-    (np.inf, (1,)),
-)
-MAX_TICKS = 40
 FONT_MARGIN = 1.06  # share by which the font of a reader may be wider
 _POINTS_PER_INCH = 72
 _MAX_DISTANCE = 14  # points between a marker and its label without a line that joins them
@@ -55,66 +36,22 @@ class Label:
     gid: str
 
 
-def new_panels(
-    rows: int, columns: int, panel: tuple[float, float], margins: Mapping[str, float], extra: float = 0.0
-) -> tuple[Any, Any]:
+def new_panels(rows: int, columns: int, panel: tuple[float, float], margins: Mapping[str, float]) -> tuple[Any, Any]:
     """Create a figure with a renderer, so that positions are known at once, and its axes (rows, columns).
 
-    ``panel`` is the size of a panel in inches, ``extra`` the height for a legend, ``margins`` are those of
-    ``subplots_adjust``.
+    ``panel`` is the size of a panel in inches, ``margins`` are those of ``subplots_adjust``.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    figure = new_figure(columns * panel[0], rows * panel[1] + extra, layout=None)
+    figure = new_figure(columns * panel[0], rows * panel[1], layout=None)
     figure.subplots_adjust(**margins)
     FigureCanvasAgg(figure)
     return figure, figure.subplots(rows, columns, squeeze=False)
 
 
-def style_log_axes(axes: Any, label: str) -> None:
-    """Set logarithmic scales and the label of the x axis."""
-    axes.set(xscale="log", yscale="log", xlabel=label)
-    axes.minorticks_off()
-    style_axes(axes)
-
-
-def set_log_ticks(axis: Any) -> None:
-    """Place ticks at round numbers, the more of them the fewer decades a logarithmic axis has."""
-    from matplotlib.ticker import LogLocator
-
-    low, high = sorted(axis.get_view_interval())
-    decades = np.log10(high / low)
-    subs = next(subs for limit, subs in TICKS if decades < limit)
-    axis.set_major_locator(LogLocator(subs=subs, numticks=MAX_TICKS))
-
-
-def legend_handles(styles: Iterable[dict[str, Any]]) -> list[Any]:
-    """Make the artists of a legend from the styles of their lines."""
-    from matplotlib.lines import Line2D
-
-    return [Line2D([], [], **(MARKER | style)) for style in styles]
-
-
 def style_title(axes: Any, title: str) -> None:
     """Set a bold title on the left."""
     axes.set_title(title, loc="left", fontsize=11, fontweight="bold", color=INK)
-
-
-def pareto_front(points: Array, ratio: float = 1.0) -> list[int]:
-    """Find the points of (k, 2), cost and error, whose error is below ``ratio`` times that of every cheaper one."""
-    front: list[int] = []
-    for row in np.lexsort((points[:, 1], points[:, 0])).tolist():
-        if not front or points[row, 1] < ratio * points[front[-1], 1]:
-            front.append(row)
-    return front
-
-
-def pareto_steps(front: Array, right: float) -> Array:
-    """Convert a Pareto front (k, 2), cheapest first, to a staircase (2 k, 2) up to ``right``."""
-    if not len(front):
-        return np.empty((0, 2))
-    x = np.append(front[:, 0].repeat(2)[1:], right)
-    return np.stack([x, front[:, 1].repeat(2)], axis=1)
 
 
 def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array) -> None:

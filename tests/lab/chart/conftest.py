@@ -2,81 +2,44 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
+from tests.conftest import MACBETH
 from uplift.atlas import read_atlas
 from uplift.colorimetry.lights import CHART_LIGHTS
-from uplift.lab.chart.method import Effort, Family, Method, PreparedMethod, make_task
-from uplift.lab.chart.table import TEXTS, Chart, MethodResult, State
+from uplift.lab.chart.method import Effort, Method, PreparedMethod, make_task
+from uplift.lab.chart.table import FACTS, TEXTS, Chart, MethodResult, State
 
-FACTS = dict.fromkeys(("machine", "versions", "commit", "colours", "spectra", "effort"), "stated")
 BATCHES = (1, 64)
 HASTE = Effort(seconds_per_error=0.05, runs=3, lap=0.001, batches=BATCHES, longest=0.05, builds=1)
-ERRORS = (
-    "round_trip",
-    "coarse_round_trip",
-    *CHART_LIGHTS,
-    "lights",
-    "rms",
-    *(f"own_{light}" for light in CHART_LIGHTS),
-    "own_lights",
-    "own_rms",
-)
+LIGHTS = (*CHART_LIGHTS, "lights", "rms")
+ERRORS = ("round_trip", "coarse_round_trip", *LIGHTS, *(f"own_{name}" for name in LIGHTS))
 
 
 @pytest.fixture(scope="session")
-def small_task(repository):
+def small_task():
     """Sixteen colours, the edges, and the ColorChecker, with short timings."""
-    return make_task({"macbeth": read_atlas(repository / "atlases" / "macbeth.txt")}, 16, HASTE)
+    return make_task({"macbeth": read_atlas(MACBETH)}, 16, HASTE)
 
 
-@pytest.fixture(scope="session")
-def greys():
-    """Family of the test methods."""
-    return Family("Greys", "a test", "#123456", ())
-
-
-@pytest.fixture
-def method_of():
+def method_of(uplift, prepare=None, **fields):
     """Make a method from a function of RGB and wavelengths."""
-
-    def method_of(uplift, **fields):
-        return Method("test", "Test", lambda task: PreparedMethod(uplift, 8), **fields)
-
-    return method_of
+    texts = {"method": "test", "title": "Test", "family": "Tests", "source": "a test"}
+    return Method(**texts, prepare=prepare or (lambda task: PreparedMethod(uplift, 8)), **fields)
 
 
-@pytest.fixture
-def row_of():
+def row_of(name, time, error, **fields):
     """Make a result in which all errors are equal."""
-
-    def row_of(name, time, error, **fields):
-        numbers = {f"{key}_{kind}": error for key in ERRORS for kind in ("mean", "p99", "max")}
-        numbers |= {"time_ns": time, "bytes": 1e4, "build_s": 1.0, "load_s": 0.5, "setup_s": 1.5}
-        numbers |= {"round_trip_colours": 16, "unseen_spectra": 12, "own_spectra": 12}
-        for batch, each in zip(BATCHES, (10 * time, time), strict=True):
-            key = f"ns_{batch}"
-            numbers |= {key: each, f"{key}_least": each, f"{key}_most": 2 * each, f"{key}_colours": batch}
-        texts = dict.fromkeys(TEXTS, "") | dict.fromkeys(("label", "title"), name)
-        plain = {
-            "dtype": "float64",
-            "family": "Mallett 2019",
-            "source": "a test",
-            "state": State.MEASURED,
-            "numbers": numbers,
-        }
-        return MethodResult(**(texts | {"method": name} | plain | fields))
-
-    return row_of
+    numbers = {f"{key}_{kind}": error for key in ERRORS for kind in ("mean", "p99", "max")}
+    numbers |= {"time_ns": time, "bytes": 1e4, "build_s": 1.0, "load_s": 0.5, "setup_s": 1.5}
+    numbers |= {"round_trip_colours": 16, "unseen_spectra": 12, "own_spectra": 12}
+    for batch, each in zip(BATCHES, (10 * time, time), strict=True):
+        key = f"ns_{batch}"
+        numbers |= {key: each, f"{key}_least": each, f"{key}_most": 2 * each, f"{key}_colours": batch}
+    texts = dict.fromkeys(TEXTS, "") | dict.fromkeys(("method", "label", "title"), name)
+    plain = {"family": "Mallett 2019", "source": "a test", "state": State.MEASURED, "numbers": numbers}
+    return MethodResult(**(texts | plain | fields))
 
 
-@pytest.fixture
-def chart_of():
-    """Make a chart from results."""
-    return lambda *rows: Chart(FACTS, rows)
-
-
-@pytest.fixture(scope="session")
-def rng():
-    return np.random.default_rng(0)
+def chart_of(*rows):
+    return Chart(dict.fromkeys(FACTS, "stated"), rows)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 
-from uplift.lab.chart.method import Family, Method, NotInstalledError, PreparedMethod
+from uplift.lab.chart.method import Method, NotInstalledError, PreparedMethod
 
 NEEDS = "a library that works: install it"
 
@@ -27,12 +27,10 @@ def leave(task):
     os._exit(3)
 
 
-FAMILY = Family(
-    "Faulty",
-    "a test",
-    "#000000",
-    tuple(
-        Method(f"faulty-{prepare.__name__}", f"Faulty, {prepare.__name__}", prepare, needs=NEEDS)
-        for prepare in (abort, hang, lack, leave)
-    ),
-)
+METHODS = tuple(
+    Method(
+        method=f"faulty-{prepare.__name__}", title="Faulty", family="Faulty", source="a test",
+        prepare=prepare, needs=NEEDS,
+    )
+    for prepare in (abort, hang, lack, leave)
+)  # fmt: skip

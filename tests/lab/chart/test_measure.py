@@ -7,15 +7,12 @@ import time
 import numpy as np
 import pytest
 
-from tests.lab.chart.conftest import BATCHES
-from tests.pages import Page
+from tests.lab.chart.conftest import BATCHES, method_of
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.progress import Progress
 from uplift.lab.chart.measure import MAX_CLAIM_RATIO, SLOW_STEP, measure_method, measure_methods
-from uplift.lab.chart.method import Claims, Method, PreparedMethod, ours
-from uplift.lab.chart.methods.mallett2019 import FAMILIES
-from uplift.lab.chart.picture import render_chart
-from uplift.lab.chart.table import State, all_panels
+from uplift.lab.chart.method import PreparedMethod, ours
+from uplift.lab.chart.table import State
 from uplift.lab.study.held_out import spectrum_errors
 
 
@@ -36,58 +33,48 @@ def lazy(rgb, wavelengths):
     return grey(rgb if len(rgb) < 60 else rgb[:1].repeat(len(rgb), axis=0), wavelengths)
 
 
-BROKEN = {
-    "wrong in large batches": (lazy, Claims(), "64 colours per call give other reflectances than 50, by 0."),
-    "not finite": (nan, Claims(), "spectra are not finite"),
-    "too bright": (lambda rgb, at: 1.1 + grey(rgb, at), Claims(), "0 to 1 are claimed"),
-    "negative": (lambda rgb, at: grey(rgb, at) - 0.2, Claims(), "0 to 1 are claimed"),
-    "wrong colour": (grey, Claims(round_trip=0.01), "0.01 is claimed"),
-    "wrong shape": (
-        lambda rgb, at: grey(rgb, at)[:, :-1],
-        Claims(),
-        "spectra have shape (1, 80) instead of (1, 81)",
-    ),
-    "no axis of colours": (
-        lambda rgb, at: grey(rgb, at).squeeze(),
-        Claims(),
-        "shape (81,) instead of (1, 81)",
-    ),
-    "an exception": (fail, Claims(), "raises ZeroDivisionError: by the last of these"),
-}
+def burn(seconds):
+    """Use CPU time."""
+    begin = time.process_time()
+    while time.process_time() < begin + seconds:
+        pass
 
 
-@pytest.mark.parametrize("name", BROKEN)
-def test_broken_answer_is_reported_and_not_timed(small_task, greys, method_of, name):
-    uplift, claims, why = BROKEN[name]
-    row = measure_method(greys, method_of(uplift, claims=claims), small_task)
+def unprepared(task):
+    raise OSError("libLLVM.so: cannot open")
+
+
+@pytest.mark.parametrize(
+    ("uplift", "fields", "why"),
+    [
+        (lazy, {}, "64 colours per call give other reflectances than 50, by 0."),
+        (nan, {}, "spectra are not finite"),
+        (lambda rgb, at: 1.1 + grey(rgb, at), {}, "0 to 1 are claimed"),
+        (lambda rgb, at: grey(rgb, at) - 0.2, {}, "0 to 1 are claimed"),
+        (grey, {"claimed_error": 0.01}, "0.01 is claimed"),
+        (lambda rgb, at: grey(rgb, at)[:, :-1], {}, "spectra have shape (1, 80) instead of (1, 81)"),
+        (lambda rgb, at: grey(rgb, at).squeeze(), {}, "shape (81,) instead of (1, 81)"),
+        (fail, {}, "raises ZeroDivisionError: by the last of these"),
+        (lambda rgb, at: grey(rgb.astype(float), at), {"dtype": "float32"}, "spectra are float64 instead of float32"),
+        (None, {"prepare": unprepared}, "cannot be prepared: OSError: libLLVM.so: cannot open"),
+    ],
+)
+def test_broken_answer_is_reported_and_not_timed(small_task, uplift, fields, why):
+    row = measure_method(method_of(uplift, **fields), small_task)
     assert row.state == State.BROKEN
     assert why in row.why
     assert row.numbers == {}
 
 
-def test_broken_method_is_listed_and_not_drawn(small_task, greys, method_of):
-    (mallett,) = FAMILIES
-    broken = method_of(nan)
-    chart = measure_methods([(mallett, mallett.methods[0]), (greys, broken)], small_task)
-    good, bad = chart.results
-    assert (good.state, bad.state) == (State.MEASURED, State.BROKEN)
-    assert chart.measured == (good,)
-    assert all(bad not in panel.front(chart) and panel.point(bad) is None for panel in all_panels(chart))
-    (row,) = Page(render_chart(chart)).table("method", "state", "reason")
-    assert [cell.text for cell in row] == [bad.title, "broken", bad.why]
+def test_answer_is_broken_only_if_far_off_its_claim(small_task):
+    miss = measure_method(method_of(grey), small_task).numbers["round_trip_mean"]
+    for ratio, state in ((1.01, State.MEASURED), (0.99, State.BROKEN)):
+        claimed = method_of(grey, claimed_error=ratio * miss / MAX_CLAIM_RATIO)
+        assert measure_method(claimed, small_task).state == state
 
 
-def test_answer_is_broken_only_if_far_off_its_claim(small_task, greys, method_of):
-    miss = measure_method(greys, method_of(grey), small_task).numbers["round_trip_mean"]
-    for claimed, state in (
-        (1.01 * miss / MAX_CLAIM_RATIO, State.MEASURED),
-        (0.99 * miss / MAX_CLAIM_RATIO, State.BROKEN),
-    ):
-        assert measure_method(greys, method_of(grey, claims=Claims(claimed)), small_task).state == state
-
-
-def test_errors_are_those_of_the_holdout_study(small_task, greys, method_of):
-    numbers = measure_method(greys, method_of(grey), small_task).numbers
+def test_errors_are_those_of_the_holdout_study(small_task):
+    numbers = measure_method(method_of(grey), small_task).numbers
     for prefix, measured in (("", small_task.unseen), ("own_", small_task.own)):
         errors = spectrum_errors(
             grey(small_task.sensor.rgb(measured), small_task.sensor.wavelengths), measured, CHART_LIGHTS
@@ -99,14 +86,14 @@ def test_errors_are_those_of_the_holdout_study(small_task, greys, method_of):
         assert numbers[f"{prefix}lights_mean"] == pytest.approx(errors.delta_e.mean())
 
 
-def test_each_number_of_colours_is_timed_in_the_type_of_the_method(small_task, greys, method_of):
+def test_each_number_of_colours_is_timed_in_the_type_of_the_method(small_task):
     calls = set()
 
     def uplift(rgb, wavelengths):
         calls.add((len(rgb), rgb.dtype))
         return grey(rgb, wavelengths)
 
-    numbers = measure_method(greys, method_of(uplift, dtype="float32"), small_task).numbers
+    numbers = measure_method(method_of(uplift, dtype="float32"), small_task).numbers
     for batch in BATCHES:
         assert (batch, np.dtype("float32")) in calls
         assert numbers[f"ns_{batch}_least"] <= numbers[f"ns_{batch}"] <= numbers[f"ns_{batch}_most"]
@@ -115,41 +102,24 @@ def test_each_number_of_colours_is_timed_in_the_type_of_the_method(small_task, g
     assert {dtype for _, dtype in calls} == {np.dtype("float32")}
 
 
-def test_answers_in_another_type_are_broken(small_task, greys, method_of):
-    double = method_of(lambda rgb, at: grey(rgb.astype(float), at), dtype="float32")
-    row = measure_method(greys, double, small_task)
-    assert (row.state, row.why) == (State.BROKEN, "spectra are float64 instead of float32")
-
-
-def test_method_without_batches_processes_fewer_colours(small_task, greys, method_of):
-    def slow(rgb, wavelengths):
-        for _ in range(len(rgb) * 100_000):
-            pass
-        return grey(rgb, wavelengths)
-
-    numbers = measure_method(greys, method_of(slow, batch=False), small_task).numbers
-    assert numbers["ns_1_colours"] == 1
-    assert 1 <= numbers["ns_64_colours"] < 64
-    assert 3 <= numbers["round_trip_colours"] < len(small_task.rgb)
-
-
-def test_colours_that_are_slower_than_the_first_end_with_the_time(small_task, greys, method_of):
+def test_slow_methods_process_as_many_colours_as_time_allows(small_task):
     """The share of the time is not predicted from the first colours."""
     count = 0
 
     def slow(rgb, wavelengths):
         nonlocal count
         count += len(rgb)
-        end = time.process_time() + (0.02 * len(rgb) if count > 2 * SLOW_STEP else 0)
-        while time.process_time() < end:
-            pass
+        burn(0.02 * len(rgb) if count > 2 * SLOW_STEP else 0)
         return grey(rgb, wavelengths)
 
-    numbers = measure_method(greys, method_of(slow, batch=False), small_task).numbers
+    numbers = measure_method(method_of(slow, batch=False), small_task).numbers
     assert SLOW_STEP < numbers["round_trip_colours"] <= 3 * SLOW_STEP
+    assert numbers["ns_1_colours"] == 1
+    assert 1 <= numbers["ns_64_colours"] < 64
 
 
-def test_set_up_is_charged(small_task, greys):
+@pytest.mark.parametrize("build", [3.0, None])
+def test_set_up_is_charged(small_task, build):
     """Building and loading as stated, and what the first call takes longer."""
     calls = []
 
@@ -159,54 +129,33 @@ def test_set_up_is_charged(small_task, greys):
         calls.append(1)
         return grey(rgb, wavelengths)
 
-    method = Method("test", "Test", lambda task: PreparedMethod(uplift, 8, build_s=3.0, load_s=2.0))
-    numbers = measure_method(greys, method, small_task).numbers
-    assert numbers["build_s"] == 3
+    method = method_of(None, lambda task: PreparedMethod(uplift, 8, build_s=build, load_s=2.0))
+    numbers = measure_method(method, small_task).numbers
+    assert numbers.get("build_s") == build
     assert 2.03 < numbers["load_s"] < 2.5
-    assert numbers["setup_s"] == numbers["build_s"] + numbers["load_s"]
-    elsewhere = Method("test", "Test", lambda task: PreparedMethod(grey, 8, build_s=None, load_s=2.0))
-    numbers = measure_method(greys, elsewhere, small_task).numbers
-    assert "build_s" not in numbers
-    assert numbers["setup_s"] == numbers["load_s"]
+    assert numbers["setup_s"] == (build or 0) + numbers["load_s"]
 
 
-def burn(seconds):
-    """Use CPU time."""
-    begin = time.process_time()
-    while time.process_time() < begin + seconds:
-        pass
-
-
-def test_judge_is_the_stated_sensor_at_1_nm(small_task, greys, method_of):
+def test_judge_is_the_stated_sensor_at_1_nm(small_task):
     """Spectra that are exact for one judge are not for another, and the tables of cubes come second."""
     weights = np.linalg.pinv(ours().matrix)
 
     def exact(rgb, wavelengths):
-        if len(wavelengths) == len(ours().wavelengths):
-            return rgb @ weights.T
-        return grey(rgb, wavelengths)
+        return rgb @ weights.T if len(wavelengths) == len(ours().wavelengths) else grey(rgb, wavelengths)
 
-    free = Claims(min=-10, max=10)
-    numbers = measure_method(greys, method_of(exact, judge=ours, claims=free), small_task).numbers
+    free = {"claimed_range": (-10, 10)}
+    numbers = measure_method(method_of(exact, judge=ours, **free), small_task).numbers
     assert numbers["round_trip_max"] < 1e-6
     assert numbers["coarse_round_trip_mean"] > 1
-    other = measure_method(greys, method_of(exact, claims=free), small_task).numbers
-    assert 1e-3 < other["round_trip_mean"] < 0.1
+    assert 1e-3 < measure_method(method_of(exact, **free), small_task).numbers["round_trip_mean"] < 0.1
 
 
-def test_chart_describes_test_set_and_environment(small_task, greys, method_of):
+def test_chart_describes_test_set_and_environment(small_task):
     events = []
-    chart = measure_methods([(greys, method_of(grey))] * 2, small_task, events.append)
+    chart = measure_methods([method_of(grey), method_of(nan)], small_task, events.append)
     assert events == [Progress("methods", 1, 2), Progress("methods", 2, 2)]
+    assert [row.state for row in chart.results] == [State.MEASURED, State.BROKEN]
+    assert chart.measured == chart.results[:1]
     assert "16 random" in chart.facts["colours"]
     assert "12 of 24 entries of macbeth" in chart.facts["spectra"]
     assert "numpy" in chart.facts["versions"]
-    assert "1, 64 colours per call" in chart.facts["effort"]
-
-
-def test_a_method_that_cannot_be_prepared_is_broken(small_task, greys):
-    def prepare(task):
-        raise OSError("libLLVM.so: cannot open")
-
-    row = measure_method(greys, Method("absent", "Absent", prepare), small_task)
-    assert (row.state, row.why) == (State.BROKEN, "cannot be prepared: OSError: libLLVM.so: cannot open")

@@ -1,33 +1,42 @@
-"""CSV files of charts, Pareto fronts against their definition, and the recommendation of a cube."""
+"""CSV files of charts, Pareto fronts against their definition, the recommendation of a cube, pictures and pages."""
 
 from __future__ import annotations
 
+import json
+import re
 import shlex
 from itertools import pairwise
 
 import click
+import matplotlib.image
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from uplift_cli.main import main
 
+from benchmarks.browser import browser
+from tests.browsing import check_page, open_page
 from tests.helpers import raises
+from tests.lab.chart.conftest import chart_of, row_of
+from tests.pages import Page, external_links
+from tests.parts import CHROMIUM, need
 from uplift.common.errors import ChartFileError, OptionError, UnknownNameError
+from uplift.lab.chart.picture import drawn_results, render_chart, write_picture
 from uplift.lab.chart.table import (
-    CLEAR_RATIO,
     MIN_ERROR,
     Requirement,
     State,
     chart_csv,
-    panels_of,
+    criteria,
     parse_chart,
     read_chart,
     recommend_cube,
     shipped_chart,
 )
+from uplift.lab.panels import CLEAR_RATIO
 
 
-def test_csv_round_trip(row_of, chart_of, tmp_path):
+def test_csv_round_trip(tmp_path):
     chart = chart_of(
         row_of("quick, or 'not'", 12.3456, 1e-7, note="a note\nof two lines"),
         row_of("broken", 1, 1, state=State.BROKEN, why="NaN", numbers={}),
@@ -43,46 +52,36 @@ def test_csv_round_trip(row_of, chart_of, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("spoil", "code"),
+    "spoil",
     [
-        (lambda text: "", "not-a-chart"),
-        (lambda text: "name,r,g,b\nred,1,0,0\n", "not-a-chart"),
-        (lambda text: text.splitlines()[0] + "\n", "chart-without-methods"),
-        (lambda text: text.replace("measured", "excellent"), "invalid-chart"),
-        (lambda text: text.replace("12.5", "fast"), "invalid-chart"),
-        (lambda text: text.replace("12.5", "nan"), "invalid-chart"),
-        (lambda text: text.replace("unseen_spectra", "seen_spectra"), "invalid-chart"),
-        (lambda text: text.rstrip()[:-30], "invalid-chart"),
-        (lambda text: text.rstrip() + ",one,more\n", "invalid-chart"),
+        lambda text: "",
+        lambda text: "name,r,g,b\nred,1,0,0\n",
+        lambda text: text.splitlines()[0] + "\n",
+        lambda text: text.replace("measured", "excellent"),
+        lambda text: text.replace("12.5", "fast"),
+        lambda text: text.replace("12.5", "nan"),
+        lambda text: text.replace("12.5", "-1"),
+        lambda text: text.replace("unseen_spectra", "seen_spectra"),
+        lambda text: text.replace("rms_p99", "rms_p98"),
+        lambda text: text.rstrip()[:-30],
+        lambda text: text.rstrip() + ",one,more\n",
+        lambda text: text + "\udcff",
     ],
 )
-def test_invalid_table_is_an_error(row_of, chart_of, spoil, code):
+def test_invalid_table_is_an_error(spoil):
     text = chart_csv(chart_of(row_of("one", 12.5, 1)))
-    assert parse_chart(text, "chart.csv").results
-    with raises(ChartFileError, code) as caught:
-        parse_chart(spoil(text), "chart.csv")
+    assert parse_chart(text.encode(), "chart.csv").results
+    with raises(ChartFileError, "chart-file") as caught:
+        parse_chart(spoil(text).encode(errors="surrogateescape"), "chart.csv")
     assert caught.value.path == "chart.csv"
 
 
-def test_unreadable_file_is_an_error(tmp_path):
-    (tmp_path / "bytes.csv").write_bytes(b"\xff\xfe\x00")
-    for name, code in (
-        ("none.csv", "file-not-found"),
-        ("", "not-a-regular-file"),
-        ("bytes.csv", "file-unreadable"),
-    ):
-        with raises(ChartFileError, code):
-            read_chart(tmp_path / name)
-
-
-PANELS = panels_of(64)
-ROUND_TRIP = PANELS[0]
+ROUND_TRIP, LIGHTS, WITH_SET_UP, *_ = criteria(64)
 times, errors = st.sampled_from([1.0, 10.0, 11.0, 100.0, 1e5]), st.floats(1e-6, 10)
 
 
 @given(st.lists(st.tuples(times, errors), min_size=1, max_size=12))
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_front_is_clearly_more_accurate_than_all_faster_methods(row_of, chart_of, points):
+def test_front_is_clearly_more_accurate_than_all_faster_methods(points):
     rows = [row_of(str(number), time, error) for number, (time, error) in enumerate(points)]
     front = ROUND_TRIP.front(chart_of(*rows))
     points_of = {row: (row.numbers["ns_64"], max(row.numbers["round_trip_mean"], MIN_ERROR)) for row in rows}
@@ -94,17 +93,20 @@ def test_front_is_clearly_more_accurate_than_all_faster_methods(row_of, chart_of
         assert any(points_of[other][0] <= time and CLEAR_RATIO * points_of[other][1] <= error for other in front)
 
 
-def test_ties_go_to_the_more_accurate_and_1_percent_is_noise(row_of, chart_of):
-    slow, near, same = row_of("slow", 20, 0.5), row_of("near", 10, 0.501), row_of("same", 10, 0.9)
-    assert ROUND_TRIP.front(chart_of(slow, same, near)) == (near,)
+@pytest.mark.parametrize(
+    ("points", "front"),
+    [
+        ([(20, 0.5), (10, 0.501), (10, 0.9)], [1]),  # 1 % is noise, ties go to the more accurate
+        ([(20, 1e-9), (10, 5e-5)], [1]),  # invisible errors are equal
+        ([], []),
+    ],
+)
+def test_fronts_leave_out_small_gains(points, front):
+    rows = [row_of(str(number), *point) for number, point in enumerate(points)]
+    assert [row.method for row in ROUND_TRIP.front(chart_of(*rows))] == [str(number) for number in front]
 
 
-def test_invisible_errors_are_equal(row_of, chart_of):
-    exact, enough = row_of("exact", 20, 1e-9), row_of("enough", 10, 5e-5)
-    assert ROUND_TRIP.front(chart_of(exact, enough)) == (enough,)
-
-
-def test_method_without_a_number_is_not_drawn(row_of, chart_of):
+def test_method_without_a_number_is_not_drawn():
     timed, other = row_of("timed", 1, 1.0), row_of("other", 1, 0.5)
     numbers = {key: value for key, value in other.numbers.items() if not key.startswith("ns_64")}
     other = row_of("other", 1, 0.5, numbers=numbers)
@@ -112,28 +114,20 @@ def test_method_without_a_number_is_not_drawn(row_of, chart_of):
     assert ROUND_TRIP.front(chart_of(timed, other)) == (timed,)
 
 
-def test_set_up_is_part_of_the_time_of_a_call(row_of, chart_of):
+def test_set_up_is_part_of_the_time_of_a_call():
     row = row_of("one", 1000, 1.0)
-    each, whole = (panel for panel in PANELS if panel.error == "lights")
-    assert each.point(row) == (1000, 1)
-    assert whole.point(row) == (1.5e9 + 64 * 1000, 1)
-    assert whole.labels(row) == ("1.5 s", "1")
+    assert LIGHTS.point(row) == (1000, 1)
+    assert WITH_SET_UP.point(row) == (1.5e9 + 64 * 1000, 1)
+    assert WITH_SET_UP.labels(row) == ("1.5 s", "1")
 
 
-@pytest.mark.parametrize("panel", PANELS, ids=lambda panel: panel.title)
-def test_empty_chart_has_an_empty_front(chart_of, panel):
-    assert panel.front(chart_of()) == ()
-
-
-@pytest.fixture
-def chart(row_of, chart_of):
-    return chart_of(
-        row_of("peer", 1, 1e-3),
-        row_of("rough", 50, 2.0, build="uplift build --dim 8"),
-        row_of("good", 90, 0.5, build="uplift build --dim 32"),
-        row_of("better", 900, 0.2, build="uplift build --dim 64"),
-        row_of("no better", 9000, 0.199, build="uplift build --dim 128"),
-    )
+CUBES = chart_of(
+    row_of("peer", 1, 1e-3),
+    row_of("rough", 50, 2.0, build="uplift build --dim 8"),
+    row_of("good", 90, 0.5, build="uplift build --dim 32"),
+    row_of("better", 900, 0.2, build="uplift build --dim 64"),
+    row_of("no better", 9000, 0.199, build="uplift build --dim 128"),
+)
 
 
 @pytest.mark.parametrize(
@@ -148,45 +142,35 @@ def chart(row_of, chart_of):
         (Requirement(time_ns=100, delta_e=1), "good"),
     ],
 )
-def test_fastest_accurate_enough_or_most_accurate_in_time(chart, requirement, name):
-    assert recommend_cube(chart, requirement).method == name
+def test_fastest_accurate_enough_or_most_accurate_in_time(requirement, name):
+    assert recommend_cube(CUBES, requirement).method == name
 
 
 @pytest.mark.parametrize(
     ("requirement", "closest"),
     [
         (Requirement(time_ns=10), "the fastest, rough, takes 50 ns"),
-        (
-            Requirement(delta_e=0.1, light="A"),
-            "the most accurate, no better, has 0.199",
-        ),
-        (
-            Requirement(delta_e=0.3, time_ns=100),
-            "the most accurate, good, has 0.5",
-        ),
+        (Requirement(delta_e=0.1, light="A"), "the most accurate, no better, has 0.199"),
+        (Requirement(delta_e=0.3, time_ns=100), "the most accurate, good, has 0.5"),
     ],
 )
-def test_unmet_requirement_names_the_closest_cube(chart, requirement, closest):
+def test_unmet_requirement_names_the_closest_cube(requirement, closest):
     with raises(OptionError, "requirements-not-met") as caught:
-        recommend_cube(chart, requirement)
+        recommend_cube(CUBES, requirement)
     assert caught.value.hint == closest
+    with raises(OptionError, "requirements-not-met"):
+        recommend_cube(chart_of(row_of("peer", 1, 1)), requirement)
 
 
-def test_chart_without_cubes_is_an_error(row_of, chart_of):
-    with raises(OptionError, "chart-without-cubes"):
-        recommend_cube(chart_of(row_of("peer", 1, 1)), Requirement(time_ns=100))
+@pytest.mark.parametrize(
+    "limits", [{}, {"time_ns": 0}, {"delta_e": -1}, {"time_ns": float("nan")}, {"time_ns": 1, "delta_e": float("inf")}]
+)
+def test_limits_are_required_and_positive(limits):
+    with raises(OptionError, "option"):
+        Requirement(**limits)
 
 
-@pytest.mark.parametrize("limit", [0, -1, float("nan"), float("inf")])
-def test_limits_must_be_positive(limit):
-    for field in ("time_ns", "delta_e"):
-        with raises(OptionError, "limit-not-positive"):
-            Requirement(**{field: limit})
-
-
-def test_limit_is_required_and_light_must_be_in_the_chart():
-    with raises(OptionError, "no-requirements"):
-        Requirement()
+def test_light_must_be_in_the_chart():
     with raises(UnknownNameError, "unknown-light") as caught:
         Requirement(delta_e=1, light="FL111")
     assert "'FL11'" in caught.value.hint
@@ -198,3 +182,57 @@ def test_recommendation_of_the_shipped_chart_is_a_valid_command():
     name, *arguments = shlex.split(found.build)[1:]
     with click.Context(main, **main.context_settings) as context:
         main.get_command(context, name).make_context(name, arguments, parent=context)
+
+
+def test_cubes_that_others_of_their_kind_beat_are_not_drawn(tmp_path):
+    cubes = [
+        row_of(f"cube {row}", time, error, build="uplift build", mode="moments")
+        for row, (time, error) in enumerate([(10, 1.0), (20, 2.0), (30, 0.5)])
+    ]
+    others = [row_of(name, time, 3.0) for name, time in (("fast", 10), ("slow", 40))]
+    chart = chart_of(*cubes, *others)
+    drawn = [result.method for result in drawn_results(ROUND_TRIP, chart)]
+    assert drawn == ["cube 0", "cube 2", "fast", "slow"]
+    write_picture(chart, tmp_path / "chart.png")
+    assert matplotlib.image.imread(tmp_path / "chart.png").std() > 0.05
+
+
+HOSTILE = "</script><b>$x</b>"
+
+
+def test_page_has_markers_of_measured_methods_fits_and_is_accessible(tmp_path):
+    rows = [
+        row_of(HOSTILE, 80, 0.4),
+        row_of("9 · 32³", 900, 0.02, build="uplift build", mode="refined", family="of another version"),
+        row_of("alone", 1e6, 0.1, numbers=row_of("one", 1e6, 0.1).numbers | {"ns_64_colours": 3}),
+        row_of("wrong", 1, 1e-9, state=State.BROKEN, why=HOSTILE, numbers={}),
+    ]
+    chart = chart_of(*rows)
+    text = render_chart(chart)
+    panels = range(len(chart.batches) * len(criteria(64)))
+    markers = re.findall(r'id="marker-(\d+)-(\d+)"', text)
+    assert sorted(markers) == sorted((str(panel), row) for panel in panels for row in "012")
+    assert HOSTILE not in text
+    assert external_links(text) == []
+    page = Page(text)
+    assert HOSTILE in page.text
+    assert [[cell.text for cell in row] for row in page.table("method", "state", "reason")] == [
+        ["wrong", "broken", HOSTILE]
+    ]
+    (data,) = re.findall(r'<script type="application/json" id="rows">(.*?)</script>', text, re.DOTALL)
+    first, *_, last = json.loads(data)
+    assert (first["title"], last["lines"]) == (HOSTILE, [])
+    assert ["memory", "10 kB"] in first["lines"]
+    check_page(text, tmp_path)
+
+
+def test_the_reader_chooses_the_number_of_colours(tmp_path):
+    need(CHROMIUM)
+    visible = """[...document.querySelectorAll(".picture svg")].filter(each => each.checkVisibility()).length"""
+    with browser() as tab:
+        open_page(tab, render_chart(chart_of(row_of("one", 80, 0.4))), tmp_path)
+        assert tab.evaluate(visible) == len(criteria(64))
+        assert tab.evaluate("document.querySelector('[data-choice=\"64\"]').hidden") is False
+        tab.evaluate("document.querySelector('.choice input[value=\"1\"]').click()")
+        assert tab.evaluate(visible) == len(criteria(64))
+        assert tab.evaluate("document.querySelector('[data-choice=\"64\"]').hidden") is True

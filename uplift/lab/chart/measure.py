@@ -1,112 +1,119 @@
-"""Measurement of methods: their answers are checked first, and only correct ones are timed."""
+"""Selection and measurement of methods: their answers are checked first, and only correct ones are timed."""
 
 from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable, Iterable
-from itertools import cycle, islice
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import fields
+from fnmatch import fnmatchcase
+from functools import partial
+from itertools import cycle
 
 import numpy as np
-from numpy.typing import NDArray
 
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.lights import CHART_LIGHTS
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Values
+from uplift.common.errors import OptionError
 from uplift.common.processes import ChildError, call_in_child
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.lab.chart import cubes, mitsuba3, published
 from uplift.lab.chart.method import (
-    Claims,
+    Description,
     Effort,
-    Family,
     Method,
     NotInstalledError,
     PreparedMethod,
     Task,
-    Uplift,
-    round_trip,
     stopwatch,
 )
-from uplift.lab.chart.table import Chart, MethodResult, State
+from uplift.lab.chart.table import REFERENCE, Chart, MethodResult, State
 from uplift.lab.study.held_out import spectrum_errors
-from uplift.lab.timing import Spread, environment, time_calls
+from uplift.lab.timing import Spread, environment, time_laps
 
-MIN_RUNS = 3
-MAX_LAPS = 15
-"""Duration of all runs together, in units of `Effort.lap`, unless `MIN_RUNS` take longer."""
-TRIAL = 512
-"""Colours from which the duration of the first batch of more than one is estimated."""
+METHODS = (*published.METHODS, *mitsuba3.METHODS, *cubes.METHODS)
+QUICK_METHODS = (
+    "jakob2019-*",
+    "macadam1935",
+    "mallett2019",
+    "mitsuba3-llvm",
+    "otsu2018",
+    "smits1999",
+    "moments9-16-atlas-spectra",
+    "moments9-16-atlas-moments",
+    "moments9-16-spectra",
+    "moments9-16-moments",
+    "moments9-64-spectra",
+    "moments9-64-moments",
+    "c-sigmoid-32-moments",
+)
+"""Patterns of the methods of a quick run."""
+
+
+def select_methods(patterns: Sequence[str] = ()) -> list[Method]:
+    """Select methods by name, by default all. Raises `OptionError`."""
+    for pattern in patterns:
+        if not any(fnmatchcase(method.method, pattern) for method in METHODS):
+            raise OptionError(
+                f"no method matches '{pattern}'",
+                code="unknown-method",
+                hint="names are 'mallett2019', 'moments9-32-spectra' and others; '*' matches any characters",
+            )
+    return [method for method in METHODS if any(fnmatchcase(method.method, pattern) for pattern in patterns or "*")]
+
+
+GROWTH = 10
+"""Factor between the numbers of colours from which the duration of a call is estimated."""
 INPUTS, INPUT_COLOURS = 64, 1 << 16
 """Different inputs of repeated calls: at most so many, with so many colours in all."""
-REFERENCE = 65_536
-"""Colours per call of the time by which cubes are recommended."""
-
-Call = Callable[[Any], object]
+UpliftRgb = Callable[[Array], Values]
 
 
-def call_times(uplift: Call, dtype: str, effort: Effort, *, batch: bool) -> dict[str, float]:
-    """Time calls with each number of colours of an effort, after one that warms up."""
+def call_times(uplift: UpliftRgb, dtype: str, effort: Effort) -> dict[str, float]:
+    """Time calls with each number of colours of an effort, in ns per colour.
+
+    A call of more than `Effort.longest` seconds takes fewer colours. All larger batches then have its times.
+    """
     numbers: dict[str, float] = {}
-    found, shortened = None, False
+    count = last = 0
     for size in effort.batches:
-        if shortened and found is not None:  # as many colours per call as before
-            numbers |= _time_numbers(size, *found)
-            continue
-        if found is not None and (found[1] > 1 or not batch):
-            count = _count(size, found[0].median, effort)
-        else:
-            count = affordable(uplift, dtype, size, effort, batch=batch)
-        found, shortened = (_timed(uplift, dtype, count, effort), count), count < size
-        numbers |= _time_numbers(size, *found)
+        if count == last:
+            count = affordable(uplift, dtype, size, effort.longest)
+            ns = _time_batch(uplift, dtype, count, effort)
+        last = size
+        key = f"ns_{size}"
+        numbers |= {
+            key: ns.median,
+            f"{key}_least": ns.min,
+            f"{key}_most": ns.max,
+            f"{key}_runs": ns.runs,
+            f"{key}_colours": count,
+        }
     reference = max((size for size in effort.batches if size <= REFERENCE), default=effort.batches[0])
     return numbers | {"time_ns": numbers[f"ns_{reference}"]}
 
 
-def affordable(uplift: Call, dtype: str, size: int, effort: Effort, *, batch: bool = True) -> int:
-    """Return the number of colours, at most ``size``, that a call of `Effort.longest` has, from a call with few."""
-    count = min(size, TRIAL) if batch else 1
-    rgb = _colours(1, count, dtype)[0]
-    uplift(rgb)
-    _, cpu = time_calls(lambda: uplift(rgb), 1)
-    return _count(size, cpu.median / count, effort)
+def _time_batch(uplift: UpliftRgb, dtype: str, count: int, effort: Effort) -> Spread:
+    inputs = cycle(_colours(max(1, min(INPUTS, INPUT_COLOURS // count)), count, dtype))
+    return time_laps(lambda: uplift(next(inputs)), effort.lap, effort.runs).scaled(1e9 / count)
 
 
-def _count(size: int, seconds: float, effort: Effort) -> int:
-    return max(min(size, int(effort.longest / max(seconds, 1e-12))), 1)
+def affordable(uplift: UpliftRgb, dtype: str, size: int, longest: float) -> int:
+    """Return the number of colours, at most ``size``, of a call of ``longest`` CPU seconds."""
+    count = 1
+    while True:
+        rgb = _colours(1, count, dtype)[0]
+        uplift(rgb)
+        _, seconds = stopwatch(partial(uplift, rgb))
+        if count == size or GROWTH * seconds > longest:
+            return max(1, min(size, int(count * longest / max(seconds, 1e-9))))
+        count = min(size, count * GROWTH)
 
 
-def _timed(uplift: Call, dtype: str, count: int, effort: Effort) -> Spread:
-    """CPU seconds per colour of calls with ``count`` colours."""
-    inputs = _colours(max(1, min(INPUTS, INPUT_COLOURS // count)), count, dtype)
-    _, once = time_calls(lambda: uplift(inputs[0]), 1)
-    if once.min < effort.lap * MAX_LAPS:
-        _, once = time_calls(lambda: uplift(inputs[0]), 1)
-    calls = max(1, min(int(effort.lap / 5 / max(once.min, 1e-9)), 1000))
-
-    def run() -> None:
-        for rgb in islice(cycle(inputs), calls):
-            uplift(rgb)
-
-    runs = int(MAX_LAPS * effort.lap / max(calls * once.min, 1e-9))
-    _, cpu = time_calls(run, min(max(runs, MIN_RUNS), effort.runs))
-    return cpu.scaled(1 / (calls * count))
-
-
-def _colours(inputs: int, count: int, dtype: str) -> NDArray[Any]:
+def _colours(inputs: int, count: int, dtype: str) -> Values:
     """Random RGB (inputs, count, 3)."""
     return np.random.default_rng(2).random((inputs, count, 3)).astype(dtype)
-
-
-def _time_numbers(size: int, seconds: Spread, count: int) -> dict[str, float]:
-    ns = seconds.scaled(1e9)
-    key = f"ns_{size}"
-    return {
-        key: ns.median,
-        f"{key}_least": ns.min,
-        f"{key}_most": ns.max,
-        f"{key}_runs": ns.runs,
-        f"{key}_colours": count,
-    }
 
 
 MAX_CLAIM_RATIO = 10
@@ -116,22 +123,17 @@ SLOW_STEP = 3
 SAMPLE, SAMPLE_TOLERANCE = 50, 2e-5
 """Colours of a large batch that are computed again in a small one, and the reflectance that rounding may change."""
 
-UpliftRgb = Callable[[Array], Array]
-
 
 class BrokenError(Exception):
     """An answer is wrong; the text gives the reason."""
 
 
-def measure_methods(
-    methods: Iterable[tuple[Family, Method]], task: Task, progress: ProgressCallback = ignore_progress
-) -> Chart:
+def measure_methods(methods: Sequence[Method], task: Task, progress: ProgressCallback = ignore_progress) -> Chart:
     """Measure methods at a task."""
-    methods, results, begin, machine = list(methods), [], time.perf_counter(), environment()
-    for family, method in methods:
-        results.append(measure_method(family, method, task))
+    results, begin, machine, effort = [], time.perf_counter(), environment(), task.effort
+    for method in methods:
+        results.append(measure_method(method, task))
         progress(Progress("methods", len(results), len(methods)))
-    effort = task.effort
     summary = (
         f"CPU time of all threads, {', '.join(f'{size:,}' for size in effort.batches)} colours per call, spectra at "
         f"{len(task.sensor.wavelengths)} wavelengths; up to {effort.runs} runs; calls longer than {effort.longest:g} s "
@@ -142,7 +144,7 @@ def measure_methods(
     return Chart({**machine, **task.facts, "effort": summary}, tuple(results))
 
 
-def measure_method(family: Family, method: Method, task: Task) -> MethodResult:
+def measure_method(method: Method, task: Task) -> MethodResult:
     """Measure one method."""
     state, why, numbers = State.MEASURED, "", {}
     try:
@@ -155,73 +157,43 @@ def measure_method(family: Family, method: Method, task: Task) -> MethodResult:
                 numbers = _numbers(method, task)
     except NotInstalledError as error:
         state, why = State.MISSING, str(error)
-    except BrokenError as error:
-        state, why = State.BROKEN, str(error)
-    except ChildError as error:
-        state, why = State.BROKEN, f"{error}{_advice(method)}"
-    return MethodResult(
-        method=method.name,
-        title=method.title,
-        label=method.label or method.title,
-        family=family.name,
-        source=family.source,
-        mode=method.mode,
-        dtype=method.dtype,
-        build=method.build,
-        ask=method.call,
-        note=method.note,
-        state=state,
-        why=why,
-        numbers=numbers,
-    )
+    except (BrokenError, ChildError) as error:
+        state, why = State.BROKEN, f"{error}; it needs {method.needs}" if method.needs else str(error)
+    texts = {field.name: getattr(method, field.name) for field in fields(Description)}
+    return MethodResult(**texts | {"label": method.label or method.title}, state=state, why=why, numbers=numbers)
 
 
 def _numbers(method: Method, task: Task) -> dict[str, float]:
-    prepared = _prepared(method, task)
-    uplift = _guarded(prepared.uplift, task.sensor.wavelengths, method.dtype)
-    numbers: dict[str, float] = {"bytes": prepared.bytes}
-    if prepared.build_s is not None:
-        numbers["build_s"] = prepared.build_s
-    numbers["load_s"] = prepared.load_s + _first_call(uplift, task.rgb[:1])
-    numbers["setup_s"] = numbers.get("build_s", 0.0) + numbers["load_s"]
-    numbers |= _round_trips(method, prepared, uplift, task) | _errors(method, uplift, task)
-    if method.batch:
-        _check_batch(uplift, affordable(uplift, method.dtype, min(task.effort.batches[-1], REFERENCE), task.effort))
-    return numbers | call_times(uplift, method.dtype, task.effort, batch=method.batch)
-
-
-def _prepared(method: Method, task: Task) -> PreparedMethod:
     try:
-        return method.prepare(task)
+        prepared = method.prepare(task)
     except NotInstalledError:
         raise
     except Exception as error:  # code of other packages may raise anything
-        raise BrokenError(f"cannot be prepared: {_text(error)}{_advice(method)}") from error
+        raise BrokenError(f"cannot be prepared: {_text(error)}") from error
+    uplift = _guarded(method, prepared, task.sensor.wavelengths)
+    # The first call may compile, which is charged to the set-up.
+    first, second = (stopwatch(lambda: uplift(task.rgb[:1]))[1] for _ in range(2))
+    load = prepared.load_s + max(first - second, 0.0)
+    build = {} if prepared.build_s is None else {"build_s": prepared.build_s}
+    set_up = {**build, "load_s": load, "setup_s": sum(build.values()) + load}
+    errors = _round_trips(method, prepared, uplift, task) | _errors(method, uplift, task)
+    if method.batch:
+        _check_batch(uplift, method.dtype, task.effort)
+    return {"bytes": prepared.bytes, **set_up, **errors, **call_times(uplift, method.dtype, task.effort)}
 
 
-def _advice(method: Method) -> str:
-    return f"; it needs {method.needs}" if method.needs else ""
-
-
-def _first_call(uplift: UpliftRgb, rgb: Array) -> float:
-    """CPU seconds that the first call takes longer than the second."""
-    first, second = (stopwatch(lambda: uplift(rgb))[1] for _ in range(2))
-    return max(first - second, 0.0)
-
-
-def _guarded(uplift: Uplift, wavelengths: Array, dtype: str) -> UpliftRgb:
+def _guarded(method: Method, prepared: PreparedMethod, wavelengths: Array) -> UpliftRgb:
     """Function of colours (n, 3) alone that raises no error but `BrokenError`."""
-    width = len(wavelengths)
 
-    def uplift_rgb(rgb: Array) -> Array:
+    def uplift_rgb(rgb: Array) -> Values:
         try:
-            spectra = uplift(rgb.astype(dtype, copy=False), wavelengths)
+            spectra = prepared.uplift(rgb.astype(method.dtype, copy=False), wavelengths)
         except Exception as error:  # code of other packages may raise anything
             raise BrokenError(f"raises {_text(error)}") from error
-        if spectra.shape != (len(rgb), width):
-            raise BrokenError(f"spectra have shape {spectra.shape} instead of ({len(rgb)}, {width})")
-        if spectra.dtype != dtype:
-            raise BrokenError(f"spectra are {spectra.dtype} instead of {dtype}")
+        if spectra.shape != (len(rgb), len(wavelengths)):
+            raise BrokenError(f"spectra have shape {spectra.shape} instead of ({len(rgb)}, {len(wavelengths)})")
+        if spectra.dtype != method.dtype:
+            raise BrokenError(f"spectra are {spectra.dtype} instead of {method.dtype}")
         return spectra
 
     return uplift_rgb
@@ -234,10 +206,11 @@ def _text(error: Exception) -> str:
 def _round_trips(method: Method, prepared: PreparedMethod, uplift: UpliftRgb, task: Task) -> dict[str, float]:
     """Judge at 1 nm with the stated white and matrix, and with the tables that cubes are fitted to."""
     sensor = method.judge()
-    rgb, spectra = _spectra(method, _guarded(prepared.uplift, sensor.wavelengths, method.dtype), task, task.rgb)
-    errors = round_trip(sensor, rgb, spectra)
-    _check_round_trip(errors, method.claims)
-    fitted = round_trip(task.sensor, rgb, uplift(rgb))
+    rgb, spectra = _spectra(method, _guarded(method, prepared, sensor.wavelengths), task, task.rgb)
+    errors, claimed = delta_e_rgb(sensor, rgb, sensor.rgb(spectra)), method.claimed_error
+    if claimed is not None and errors.mean() > MAX_CLAIM_RATIO * claimed:
+        raise BrokenError(f"mean round-trip ΔE00 is {errors.mean():.3g}, {claimed:g} is claimed")
+    fitted = delta_e_rgb(task.sensor, rgb, task.sensor.rgb(uplift(rgb).astype(float)))
     return _summary("round_trip", errors) | _summary("coarse_round_trip", fitted) | {"round_trip_colours": len(rgb)}
 
 
@@ -264,33 +237,24 @@ def _spectra(method: Method, uplift: UpliftRgb, task: Task, rgb: Array) -> tuple
         if time.process_time() - begin > task.effort.seconds_per_error:
             break
     spectra = np.concatenate(parts)
-    _check_range(spectra, method.claims)
+    finite, (low, high) = np.isfinite(spectra).all(axis=1), method.claimed_range
+    if not finite.all():
+        raise BrokenError(f"{(~finite).sum()} of {len(spectra)} spectra are not finite")
+    if spectra.min() < low or spectra.max() > high:
+        raise BrokenError(
+            f"reflectances from {spectra.min():.4g} to {spectra.max():.4g}, {low:g} to {high:g} are claimed"
+        )
     return rgb[: len(spectra)], spectra.astype(float)
 
 
-def _check_batch(uplift: UpliftRgb, count: int) -> None:
+def _check_batch(uplift: UpliftRgb, dtype: str, effort: Effort) -> None:
     """Large batches are timed; check that they give the same spectra as small ones, whose errors are measured."""
+    count = affordable(uplift, dtype, min(effort.batches[-1], REFERENCE), effort.longest)
     rgb = np.random.default_rng(4).random((count, 3))
     rows = np.linspace(0, count - 1, SAMPLE, dtype=int)
     difference = np.abs(uplift(rgb)[rows] - uplift(rgb[rows])).max()
     if not difference <= SAMPLE_TOLERANCE:
         raise BrokenError(f"{count:,} colours per call give other reflectances than {SAMPLE}, by {difference:.2g}")
-
-
-def _check_range(spectra: Array, claims: Claims) -> None:
-    finite = np.isfinite(spectra).all(axis=1)
-    if not finite.all():
-        raise BrokenError(f"{(~finite).sum()} of {len(spectra)} spectra are not finite")
-    if spectra.min() < claims.min or spectra.max() > claims.max:
-        raise BrokenError(
-            f"reflectances from {spectra.min():.4g} to {spectra.max():.4g}, "
-            f"{claims.min:g} to {claims.max:g} are claimed"
-        )
-
-
-def _check_round_trip(errors: Array, claims: Claims) -> None:
-    if claims.round_trip is not None and errors.mean() > MAX_CLAIM_RATIO * claims.round_trip:
-        raise BrokenError(f"mean round-trip ΔE00 is {errors.mean():.3g}, {claims.round_trip:g} is claimed")
 
 
 def _summary(name: str, values: Array) -> dict[str, float]:

@@ -8,16 +8,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cache
-from itertools import product
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 from uplift.atlas import Atlas, merge, resample
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.lights import CHART_LIGHTS, DEFAULT_ILLUMINANT
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array, Values
@@ -50,11 +48,6 @@ def published_srgb() -> Sensor:
     return stated_sensor(colour_science().RGB_COLOURSPACES["sRGB"].matrix_XYZ_to_RGB)
 
 
-def round_trip(sensor: Sensor, rgb: Array, spectra: Array) -> Array:
-    """Compare colours with those of their spectra. Shapes: ``rgb`` (n, 3), ``spectra`` (n, N); result (n,)."""
-    return delta_e_rgb(sensor, rgb, sensor.rgb(spectra))
-
-
 COLOURS, MIN_COLOURS, SEED = 2000, 16, 1
 """Default and smallest number of random colours, and the seed of their generator."""
 EDGE_STEPS = 9
@@ -77,14 +70,14 @@ class Effort:
 
     seconds_per_error: float = 6.0
     runs: int = 7
-    lap: float = 0.1
+    lap: float = 0.02
     batches: tuple[int, ...] = (1, 1000, 65_536, 1_000_000)
     longest: float = 1.0
     builds: int = 2
     limit: float = 900.0
 
 
-QUICK = Effort(seconds_per_error=0.3, runs=3, lap=0.01, batches=(1, 1000, 65_536), longest=0.1, builds=1, limit=120.0)
+QUICK = Effort(seconds_per_error=0.3, runs=3, lap=0.002, batches=(1, 1000, 65_536), longest=0.1, builds=1, limit=120.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +88,6 @@ class Task:
     ``rgb`` (n, 3): random colours, and those along the edges and the grey diagonal of the RGB cube.
     ``kept``: entries that cubes with an atlas are built from.
     ``own``, ``unseen`` (k, N) and (m, N): measured spectra of the kept entries and of the others, within sRGB.
-    ``lights``: lights of the errors.
     ``effort``: time spent on a method.
     ``facts``: description for the reader.
     """
@@ -105,9 +97,13 @@ class Task:
     kept: Atlas
     own: Array
     unseen: Array
-    lights: tuple[Light, ...]
     effort: Effort
     facts: Mapping[str, str]
+
+    @property
+    def lights(self) -> tuple[Light, ...]:
+        """Return the lights of the errors."""
+        return tuple(observer.light(name) for name in CHART_LIGHTS)
 
 
 def make_task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | None = None) -> Task:
@@ -116,7 +112,7 @@ def make_task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effo
     Raises `OptionError`, `AtlasError`.
     """
     if colours < MIN_COLOURS:
-        raise OptionError(f"colours must be at least {MIN_COLOURS}, got {colours}", code="too-few-colours")
+        raise OptionError(f"colours must be at least {MIN_COLOURS}, got {colours}")
     sensor = observer.sensor()
     kept, others = (_every_second(atlases.values(), start) for start in (0, 1))
     own, unseen = (_in_gamut(sensor, part) for part in (kept, others))
@@ -134,24 +130,16 @@ def make_task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effo
         "spectra": f"{len(kept)} of {len(kept) + len(others)} entries of {', '.join(atlases)} (every second) build "
         f"the cubes with an atlas; of the others, {len(unseen)} within sRGB test all methods",
     }
-    return Task(
-        sensor,
-        rng.permutation(rgb),
-        kept,
-        rng.permutation(own),
-        rng.permutation(unseen),
-        tuple(observer.light(name) for name in CHART_LIGHTS),
-        effort or Effort(),
-        facts,
-    )
+    rgb, own, unseen = (rng.permutation(each) for each in (rgb, own, unseen))
+    return Task(sensor, rgb, kept, own, unseen, effort or Effort(), facts)
 
 
 def edges() -> Array:
     """Return linear RGB (n, 3) along the edges and the grey diagonal of the RGB cube, each once."""
     along = np.linspace(0, 1, EDGE_STEPS)
-    ends = product((0.0, 1.0), repeat=2)
-    lines = [np.insert(np.tile(end, (EDGE_STEPS, 1)), axis, along, axis=1) for end in ends for axis in range(3)]
-    return np.unique(np.concatenate([*lines, np.repeat(along[:, None], 3, axis=1)]), axis=0)
+    grid = np.stack(np.meshgrid(along, along, along, indexing="ij"), axis=-1).reshape(-1, 3)
+    at_ends = ((grid == 0) | (grid == 1)).sum(axis=1)
+    return grid[(at_ends >= 2) | (np.ptp(grid, axis=1) == 0)]
 
 
 def _every_second(atlases: Iterable[Atlas], start: int) -> Atlas:
@@ -173,24 +161,11 @@ class NotInstalledError(Exception):
     """A package that a method needs is missing; the text names it."""
 
 
-@dataclass(frozen=True)
-class Claims:
-    """Properties that the authors of a method claim. A method far off its claims is broken and is not drawn.
-
-    ``round_trip``: mean ΔE00 of round trips.
-    ``min``, ``max``: range of reflectances.
-    """
-
-    round_trip: float | None = None
-    min: float = 0.0
-    max: float = 1.0
-
-
 @dataclass(frozen=True, eq=False)
 class PreparedMethod:
     """A method ready for use.
 
-    ``uplift``: from linear sRGB (n, 3) in [0, 1] and wavelengths (N,) in nm to reflectances (n, N).
+    ``uplift``: the method.
     ``bytes``: size of its tables.
     ``build_s``: CPU seconds to compute its tables, once; 0 if there are none to compute, None if they come from
         elsewhere.
@@ -204,64 +179,50 @@ class PreparedMethod:
     load_s: float = 0.0
 
 
-@dataclass(frozen=True)
-class Method:
-    """A method of spectral upsampling.
+@dataclass(frozen=True, kw_only=True)
+class Description:
+    """Texts about a method: columns of the table of a chart.
 
-    ``name``, ``title``: name for the command line, and name to display.
-    ``prepare``: from a `Task` to a `PreparedMethod`. Raises `NotInstalledError`.
-    ``claims``: claims that its answers are checked against.
-    ``dtype``: data type of colours and reflectances.
-    ``judge``: returns the sensor of the white and the matrix that the method states; see `uplift.lab.chart.method`.
-    ``batch``: whether it accepts many colours per call; otherwise ``uplift`` loops over them.
-    ``usual``, ``quick``: whether it is measured if no methods are named, and in a quick run.
+    ``method``, ``title``: name for the command line, and name to display.
     ``label``: label of its marker, by default the title.
-    ``mode``: mode of lookup, which determines the shape of the marker.
-    ``build``, ``call``: command and call that give a user of this package the same; empty for other methods.
+    ``family``, ``source``: name in the legend, and publication.
+    ``mode``: mode of lookup of a cube, which determines the shape of the marker.
+    ``dtype``: data type of colours and reflectances.
+    ``build``, ``ask``: command and call that give a user of this package the same; empty for other methods.
     ``note``: remark for the reader.
+    """
+
+    method: str
+    title: str
+    label: str = ""
+    family: str
+    source: str
+    mode: str = ""
+    dtype: str = "float64"
+    build: str = ""
+    ask: str = ""
+    note: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Method(Description):
+    """A method of spectral upsampling. A method far off the claims of its authors is broken and is not drawn.
+
+    ``prepare``: from a `Task` to a `PreparedMethod`. Raises `NotInstalledError`.
+    ``judge``: returns the sensor of the white and the matrix that the method states; see `uplift.lab.chart.method`.
+    ``claimed_error``: mean ΔE00 of round trips that its authors claim.
+    ``claimed_range``: range of reflectances that its authors claim.
+    ``batch``: whether it accepts many colours per call; otherwise it loops over them.
     ``needs``: native code beyond this package and how to install it; empty if there is none. A method that needs some
         is measured in a child process, as it may crash or hang.
     """
 
-    name: str
-    title: str
     prepare: Callable[[Task], PreparedMethod]
-    claims: Claims = field(default_factory=Claims)
-    dtype: str = "float64"
     judge: Callable[[], Sensor] = published_srgb
+    claimed_error: float | None = None
+    claimed_range: tuple[float, float] = (0.0, 1.0)
     batch: bool = True
-    usual: bool = True
-    quick: bool = False
-    label: str = ""
-    mode: str = ""
-    build: str = ""
-    call: str = ""
-    note: str = ""
     needs: str = ""
-
-
-@dataclass(frozen=True)
-class Family:
-    """Methods with a common name, source and colour (``#rrggbb``) in the legend."""
-
-    name: str
-    source: str
-    colour: str
-    methods: tuple[Method, ...]
-
-
-def in_both_types(method: Method, prepare: Callable[[Task, str], PreparedMethod]) -> tuple[Method, Method]:
-    """Return a method in float64, and in float32 with ``-float32`` after its name."""
-    single = replace(
-        method,
-        name=f"{method.name}-float32",
-        title=f"{method.title}, float32",
-        label=f"{method.label or method.title} f32",
-        prepare=lambda task: prepare(task, "float32"),
-        dtype="float32",
-        quick=False,
-    )
-    return replace(method, prepare=lambda task: prepare(task, "float64")), single
 
 
 def stopwatch(function: Callable[[], Result]) -> tuple[Result, float]:
@@ -271,15 +232,6 @@ def stopwatch(function: Callable[[], Result]) -> tuple[Result, float]:
     return result, time.process_time() - begin
 
 
-def one_by_one(spectrum: Callable[[Array], tuple[Array, Array]]) -> Uplift:
-    """Extend a function of one colour to many."""
-
-    def uplift(rgb: Array, wavelengths: Array) -> Array:
-        return np.stack([np.interp(wavelengths, *spectrum(colour)) for colour in rgb])
-
-    return uplift
-
-
-def nbytes(arrays: Mapping[str, Array] | tuple[Array, ...]) -> int:
+def nbytes(*arrays: Values | Any) -> int:
     """Size of arrays."""
-    return sum(array.nbytes for array in (arrays.values() if isinstance(arrays, Mapping) else arrays))
+    return sum(array.nbytes for array in arrays)

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import csv
 import io
-import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from enum import StrEnum
 from importlib.resources import files
 
-import numpy as np
-
 from uplift.colorimetry.lights import CHART_LIGHTS, DEFAULT_ILLUMINANT
+from uplift.common.arrays import StrPath
 from uplift.common.csv import csv_text
 from uplift.common.errors import ChartFileError, OptionError, unknown_name
 from uplift.common.files import read_bytes
 from uplift.common.text import format_value, parse_float, shorten
+from uplift.lab.chart.method import Description
+from uplift.lab.panels import CLEAR_RATIO, pareto_front
 from uplift.viz.format import format_error, format_time
-from uplift.viz.scatter import pareto_front
 
 FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 """Columns with the same text in all rows."""
@@ -38,8 +37,11 @@ REQUIRED = (
 """Numbers of every method that was measured."""
 BATCH = re.compile(r"ns_([1-9]\d{0,8})")
 """Name of a time by the number of colours per call."""
-KINDS = ("mean", "p99", "max")
+TOGETHER = {"mean": ("p99", "max"), "p99": ("mean", "max"), "max": ("mean", "p99")}
 """Suffixes of the numbers of an error, which come together."""
+REFERENCE = 65_536
+"""Colours per call of the time by which cubes are recommended."""
+MEASURED = "measured.csv"
 HINT = "give the CSV file of a chart"
 
 
@@ -51,12 +53,10 @@ class State(StrEnum):
     MISSING = "not installed"
 
 
-@dataclass(frozen=True, eq=False)
-class MethodResult:
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MethodResult(Description):
     """Result of a method. The fields are the columns of the CSV file.
 
-    ``method``, ``title``, ``label``, ``family``, ``source``, ``mode``, ``dtype``, ``build``, ``note``: as in `Method`
-        and `Family`. The field `ask` is ``Method.call``.
     ``state``: whether the method was measured.
     ``why``: the reason if it was not.
     ``numbers``: ``bytes``; CPU seconds ``build_s``, ``load_s`` and ``setup_s``, their sum; ``ns_N`` per RGB with N
@@ -67,19 +67,12 @@ class MethodResult:
         test set.
     """
 
-    method: str
-    title: str
-    label: str
-    family: str
-    source: str
-    mode: str
-    dtype: str
-    build: str
-    ask: str
-    note: str
     state: State
     why: str
     numbers: Mapping[str, float]
+
+
+TEXTS = tuple(field.name for field in fields(MethodResult) if field.name != "numbers")
 
 
 @dataclass(frozen=True)
@@ -105,9 +98,6 @@ class Chart:
         return tuple(sorted(int(match[1]) for name in names if (match := BATCH.fullmatch(name))))
 
 
-TEXTS = tuple(field.name for field in fields(MethodResult) if field.name != "numbers")
-
-
 def chart_csv(chart: Chart) -> str:
     """Convert a chart to CSV."""
     names = list(dict.fromkeys(name for result in chart.results for name in result.numbers))
@@ -119,90 +109,72 @@ def chart_csv(chart: Chart) -> str:
     return csv_text([*TEXTS, *names, *FACTS], rows)
 
 
-def read_chart(path: str | os.PathLike[str]) -> Chart:
+def read_chart(path: StrPath) -> Chart:
     """Read the CSV file of a chart. Raises `ChartFileError`."""
-    data = read_bytes(path, ChartFileError, limit=MAX_BYTES, hint=HINT)
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise _chart_error(path, "not a UTF-8 text file", "file-unreadable") from error
-    return parse_chart(text, path)
+    return parse_chart(read_bytes(path, ChartFileError, limit=MAX_BYTES, hint=HINT), path)
 
 
-def parse_chart(text: str, path: str | os.PathLike[str]) -> Chart:
-    """Parse the text of a chart's CSV file. Raises `ChartFileError`."""
-    reader = csv.DictReader(io.StringIO(text))
+def shipped_chart() -> Chart:
+    """Return the chart of docs/chart.md, which is part of the package."""
+    return parse_chart(files("uplift.lab.chart").joinpath(MEASURED).read_bytes(), MEASURED)
+
+
+def parse_chart(data: bytes, path: StrPath) -> Chart:
+    """Parse the CSV file of a chart. Raises `ChartFileError`."""
     try:
-        if not {*TEXTS, *FACTS} <= set(reader.fieldnames or ()):
-            raise _chart_error(path, "is not the table of a chart", "not-a-chart")
-        lines = list(reader)
-        results = tuple(_result(line) for line in lines)
-    except ChartFileError:
-        raise
-    except (ValueError, TypeError, csv.Error) as error:
-        raise _chart_error(path, f"is not a valid chart: {error}", "invalid-chart") from error
-    if not results:
-        raise _chart_error(path, "contains no methods", "chart-without-methods")
+        lines = list(csv.DictReader(io.StringIO(data.decode("utf-8-sig"))))
+        if not lines:
+            raise ValueError("it contains no methods")
+        results = tuple(map(_result, lines))
+    except (ValueError, csv.Error) as error:
+        raise ChartFileError(f"is not the table of a chart: {error}", path=path, hint=HINT) from error
     return Chart({name: lines[0][name] for name in FACTS}, results)
 
 
 def _result(line: dict[str, str]) -> MethodResult:
-    if None in line or None in line.values():
-        raise ValueError("lines differ in length")
+    if None in line or None in line.values() or not {*TEXTS, *FACTS} <= line.keys():
+        raise ValueError("columns are missing, or lines differ in length")
     texts = {name: line[name] for name in TEXTS if name != "state"}
-    numbers = {name: _number(line, name) for name in line if name not in (*TEXTS, *FACTS) and line[name].strip()}
+    numbers = {name: _number(name, line[name]) for name in line if name not in (*TEXTS, *FACTS) and line[name].strip()}
     state = State(line["state"])
-    if state == State.MEASURED:
-        for name in _required(numbers):
-            if name not in numbers:
-                raise ValueError(f"{format_value(line['method'])} has no {name}")
+    if state == State.MEASURED and (missing := _required(numbers) - numbers.keys()):
+        raise ValueError(f"{format_value(line['method'])} has no {min(missing)}")
     return MethodResult(**texts, state=state, numbers=numbers)
 
 
-def _number(line: dict[str, str], name: str) -> float:
-    text = line[name].strip()
-    try:
-        value = parse_float(text)
-    except ValueError:
-        value = -1
+def _number(name: str, text: str) -> float:
+    value = parse_float(text.strip())
     if not 0 <= value <= MAX_NUMBER:
         raise ValueError(f"{shorten(name)} must be in [0, {MAX_NUMBER:g}], got {format_value(text)}")
     return value
 
 
-def _required(numbers: Mapping[str, float]) -> Iterator[str]:
+def _required(numbers: Mapping[str, float]) -> set[str]:
     """Names of the numbers that a measured method with these has."""
-    yield from REQUIRED
+    required = set(REQUIRED)
     for name in numbers:
         stem, _, kind = name.rpartition("_")
-        if kind in KINDS:
-            yield from (f"{stem}_{each}" for each in KINDS)
+        required |= {f"{stem}_{other}" for other in TOGETHER.get(kind, ())}
         if BATCH.fullmatch(name):
-            yield from (f"{name}_{each}" for each in ("least", "most", "colours"))
-
-
-def _chart_error(path: str | os.PathLike[str], problem: str, code: str) -> ChartFileError:
-    return ChartFileError(problem, code=code, path=path, hint=HINT)
+            required |= {f"{name}_least", f"{name}_most", f"{name}_colours"}
+    return required
 
 
 MIN_TIME = 1.0
 """Left end of the time axes in ns."""
 MIN_ERROR = 1e-4
 """Smaller errors are not visible and are drawn here, so that the faster of two such methods is on the front."""
-CLEAR_RATIO = 0.99
-"""Share of an error below which another one is clearly smaller; the rest is noise."""
 
 
 @dataclass(frozen=True)
-class Panel:
-    """A panel of error over time.
+class Criterion:
+    """An error over a time: what a panel compares.
 
     ``title``: title, without the number of colours.
     ``error``: name of the error in `MethodResult.numbers`, without ``_mean``; the mean is drawn.
     ``unit``: its unit.
     ``batch``: number of colours per call.
     ``whole``: whether time is that of all colours of the batch and of the set-up, instead of that per RGB.
-    ``whiskers``: whether lines join the mean with the 99 % quantile and the largest error.
     """
 
     title: str
@@ -210,7 +182,6 @@ class Panel:
     unit: str
     batch: int
     whole: bool = False
-    whiskers: bool = False
 
     @property
     def colours(self) -> str:
@@ -232,51 +203,31 @@ class Panel:
     def point(self, result: MethodResult) -> tuple[float, float] | None:
         """Return time and mean error, None if either is unknown."""
         time, error = self.time(result), result.numbers.get(f"{self.error}_mean")
-        if time is None or error is None:
-            return None
-        return max(time, MIN_TIME), max(error, MIN_ERROR)
+        return None if time is None or error is None else (max(time, MIN_TIME), max(error, MIN_ERROR))
 
     def labels(self, result: MethodResult) -> tuple[str, str]:
         """Return time and mean error as text."""
         return format_time(self.time(result) or 0.0), format_error(result.numbers[f"{self.error}_mean"])
 
-    def whisker(self, result: MethodResult) -> tuple[float, float]:
-        """Return the 99 % quantile and the largest error."""
-        p99, largest = (result.numbers[f"{self.error}_{kind}"] for kind in ("p99", "max"))
-        return max(p99, MIN_ERROR), max(largest, MIN_ERROR)
-
     def front(self, chart: Chart) -> tuple[MethodResult, ...]:
         """Return the Pareto front, fastest first: each is clearly more accurate than all faster methods."""
-        points = [(result, point) for result in chart.measured if (point := self.point(result)) is not None]
-        array = np.array([point for _, point in points]).reshape(-1, 2)
-        return tuple(points[row][0] for row in pareto_front(array, CLEAR_RATIO))
+        points = {result: point for result in chart.measured if (point := self.point(result)) is not None}
+        results = tuple(points)
+        return tuple(results[row] for row in pareto_front(list(points.values())))
 
 
 UNSEEN = "Unseen materials, mean of five lights"
 
 
-def panels_of(batch: int) -> tuple[Panel, ...]:
-    """Return the panels of a number of colours per call."""
+def criteria(batch: int) -> tuple[Criterion, ...]:
+    """Return what is compared for a number of colours per call."""
     return (
-        Panel("Round trip, judged at 1 nm", "round_trip", "ΔE00", batch, whiskers=True),
-        Panel(UNSEEN, "lights", "ΔE00", batch),
-        Panel(f"{UNSEEN}, with set-up", "lights", "ΔE00", batch, whole=True),
-        Panel("Unseen materials, the spectrum", "rms", "rms of reflectance", batch),
-        Panel("Materials of the atlas itself, mean of five lights", "own_lights", "ΔE00", batch),
+        Criterion("Round trip, judged at 1 nm", "round_trip", "ΔE00", batch),
+        Criterion(UNSEEN, "lights", "ΔE00", batch),
+        Criterion(f"{UNSEEN}, with set-up", "lights", "ΔE00", batch, whole=True),
+        Criterion("Unseen materials, the spectrum", "rms", "rms of reflectance", batch),
+        Criterion("Materials of the atlas itself, mean of five lights", "own_lights", "ΔE00", batch),
     )
-
-
-def all_panels(chart: Chart) -> tuple[Panel, ...]:
-    """Return the panels of all numbers of colours per call, those of one number together."""
-    return tuple(panel for batch in chart.batches for panel in panels_of(batch))
-
-
-MEASURED = "measured.csv"
-
-
-def shipped_chart() -> Chart:
-    """Return the chart of docs/chart.md, which is part of the package."""
-    return parse_chart(files("uplift.lab.chart").joinpath(MEASURED).read_text(encoding="utf-8"), MEASURED)
 
 
 @dataclass(frozen=True)
@@ -297,12 +248,10 @@ class Requirement:
     own: bool = False
 
     def __post_init__(self) -> None:
-        limits = {"time_ns": self.time_ns, "delta_e": self.delta_e}
-        if all(limit is None for limit in limits.values()):
-            raise OptionError("time_ns or delta_e is required", code="no-requirements", hint="give one or both")
-        for name, limit in limits.items():
-            if limit is not None and not 0 < limit < float("inf"):
-                raise OptionError(f"{name} must be a positive number, got {limit:g}", code="limit-not-positive")
+        limits = [limit for limit in (self.time_ns, self.delta_e) if limit is not None]
+        if not limits or not all(0 < limit < float("inf") for limit in limits):
+            got = ", ".join(f"{limit:g}" for limit in limits) or "neither"
+            raise OptionError(f"time_ns, delta_e or both must be given as positive numbers, got {got}")
         if self.light not in (None, DEFAULT_ILLUMINANT, *CHART_LIGHTS):
             raise unknown_name(str(self.light), (DEFAULT_ILLUMINANT, *CHART_LIGHTS), "light")
 
@@ -327,39 +276,27 @@ def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
 
     Raises `OptionError`.
     """
-    cubes = [
-        result for result in chart.measured if result.build and {"time_ns", requirement.error} <= result.numbers.keys()
-    ]
+    name, longest, largest = requirement.error, requirement.time_ns, requirement.delta_e
+    cubes = [result for result in chart.measured if result.build and name in result.numbers]
     if not cubes:
-        raise OptionError(
-            f"the chart has no cube with {requirement.error}",
-            code="chart-without-cubes",
-            hint="measure one with uplift.lab.chart.measure",
-        )
-
-    def time(result: MethodResult) -> float:
-        return result.numbers["time_ns"]
-
-    def error(result: MethodResult) -> float:
-        return result.numbers[requirement.error]
-
-    fast = [cube for cube in cubes if requirement.time_ns is None or time(cube) <= requirement.time_ns]
-    if not fast:
-        fastest = min(cubes, key=time)
-        raise OptionError(
-            f"no cube takes at most {format_time(requirement.time_ns or 0)} per RGB",
-            code="requirements-not-met",
-            hint=f"the fastest, {fastest.method}, takes {format_time(time(fastest))}",
-        )
-    if requirement.delta_e is None:
-        smallest = min(map(error, fast))
-        return min((cube for cube in fast if CLEAR_RATIO * error(cube) <= smallest), key=time)
-    sufficient = [cube for cube in fast if error(cube) <= requirement.delta_e]
+        raise _unmet(f"the chart has no cube with {name}", "measure a chart with cubes")
+    times = {cube: cube.numbers["time_ns"] for cube in cubes if longest is None or cube.numbers["time_ns"] <= longest}
+    if not times:
+        fastest = min(cubes, key=lambda cube: cube.numbers["time_ns"])
+        took = format_time(fastest.numbers["time_ns"])
+        raise _unmet(f"no cube takes at most {longest:g} ns per RGB", f"the fastest, {fastest.method}, takes {took}")
+    best = min(times, key=lambda cube: cube.numbers[name])
+    smallest = best.numbers[name]
+    sufficient = [
+        cube for cube in times if cube.numbers[name] <= (smallest / CLEAR_RATIO if largest is None else largest)
+    ]
     if not sufficient:
-        best = min(fast, key=error)
-        raise OptionError(
-            f"no cube has at most ΔE00 {requirement.delta_e:g} {requirement.description}",
-            code="requirements-not-met",
-            hint=f"the most accurate, {best.method}, has {format_error(error(best))}",
+        raise _unmet(
+            f"no cube has at most ΔE00 {largest:g} {requirement.description}",
+            f"the most accurate, {best.method}, has {format_error(smallest)}",
         )
-    return min(sufficient, key=time)
+    return min(sufficient, key=times.__getitem__)
+
+
+def _unmet(problem: str, hint: str) -> OptionError:
+    return OptionError(problem, code="requirements-not-met", hint=hint)

@@ -1,13 +1,16 @@
 """Error and cost of representations: products of lights and surfaces against densely sampled ones.
 
-Measured reflectances under sets of lights, with the statistics of Kment 2011, section 5.4."""
+Measured reflectances under sets of lights, with the statistics of Kment 2011, section 5.4. A grid search finds the
+low-pass filters before point sampling that leave the smallest errors (section 6.3, tables A.1 and A.2); lights and
+surfaces are filtered alike."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, astuple, dataclass, replace
 from functools import cached_property
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -20,8 +23,23 @@ from uplift.colorimetry.lights import KMENT_LIGHTS
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError, UpliftError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.timing import Spread, environment, time_calls
-from uplift.scene.representations.samples import STEP, Representation, wavelengths, xyz_weights
+from uplift.lab.timing import Spread, environment, time_laps
+from uplift.scene.representations.filters import (
+    FINE_STRIDE,
+    KINDS,
+    Filter,
+    candidates,
+    filtered_point_samples,
+    resampling_matrix,
+)
+from uplift.scene.representations.samples import (
+    STEP,
+    TABLE_STRIDE,
+    Representation,
+    point_samples,
+    wavelengths,
+    xyz_weights,
+)
 
 NAMED_SET = "given"
 """Name of the set of lights that a user lists."""
@@ -61,12 +79,10 @@ class LightSet:
 class Scene:
     """Surfaces and the sets of lights that illuminate them.
 
-    ``names``: names of E surfaces.
-    ``surfaces`` (E, 401): their reflectances.
+    ``surfaces`` (E, 401): reflectances.
     ``sets``: sets of lights.
     """
 
-    names: tuple[str, ...]
     surfaces: Array
     sets: tuple[LightSet, ...]
 
@@ -81,18 +97,18 @@ class Scene:
 
     def thinned(self, count: int = QUICK_SURFACES) -> Scene:
         """Select at most ``count`` surfaces, evenly spaced."""
-        kept = np.unique(np.linspace(0, len(self.names) - 1, count).round().astype(np.intp))
-        return replace(self, names=tuple(self.names[row] for row in kept), surfaces=self.surfaces[kept])
+        kept = np.unique(np.linspace(0, len(self.surfaces) - 1, count).round().astype(np.intp))
+        return replace(self, surfaces=self.surfaces[kept])
 
 
 def make_scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scene:
     """Combine the entries of atlases with sets of lights. Raises `AtlasError`, `UnknownNameError`."""
     merged = merge(atlases.values())
     if not merged.entries:
-        raise AtlasError("the atlases have no entries", code="no-entries", hint="give an atlas of reflectances")
+        raise AtlasError("the atlases have no entries", hint="give an atlas of reflectances")
     named = {NAMED_SET: tuple(dict.fromkeys(lights))} if lights else KMENT_LIGHTS
     sets = tuple(LightSet(name, members, _powers(members)) for name, members in named.items())
-    return Scene(merged.names, on_grid(merged, wavelengths()), sets)
+    return Scene(on_grid(merged, wavelengths()), sets)
 
 
 def _powers(names: Sequence[str]) -> Array:
@@ -106,11 +122,7 @@ HEADINGS = ("mean", "σ", "median", "2.5 %", "25 %", "75 %", "97.5 %")
 
 @dataclass(frozen=True)
 class Statistics:
-    """Statistics of ΔE00.
-
-    ``mean``, ``deviation``, ``median``: mean, standard deviation and median.
-    ``q2_5``, ``q25``, ``q75``, ``q97_5``: quantiles of 2.5, 25, 75 and 97.5 %.
-    """
+    """Mean, standard deviation, median and quantiles of ΔE00, of 2.5, 25, 75 and 97.5 %."""
 
     mean: float
     deviation: float
@@ -120,8 +132,10 @@ class Statistics:
     q75: float
     q97_5: float
 
-    def __iter__(self) -> Iterator[float]:
-        return iter(astuple(self))
+    @property
+    def values(self) -> tuple[float, ...]:
+        """Return all of them, in the order of `HEADINGS`."""
+        return astuple(self)
 
 
 def compute_statistics(errors: ArrayLike) -> Statistics:
@@ -193,84 +207,52 @@ def compare(
     progress: ProgressCallback = ignore_progress,
 ) -> Comparison:
     """Measure representations under every set of lights of a scene. Raises `UpliftError`."""
-    references = [scene.reference(light_set) for light_set in scene.sets]
-    results = []
+    sets, results = {light_set.name: light_set.title for light_set in scene.sets}, []
     for done, representation in enumerate(representations, 1):
-        surfaces = representation.encode_surface(scene.surfaces)
-        times = _times(representation, scene, effort or TimingOptions())
-        results += [
-            _result(representation, surfaces, light_set, scene, reference, ns)
-            for light_set, reference, ns in zip(scene.sets, references, times, strict=True)
-        ]
+        floats = float(representation.storage(representation.encode_surface(scene.surfaces)).mean())
+        for light_set in scene.sets:
+            light_floats = representation.storage(representation.encode_light(light_set.powers)).mean()
+            results.append(
+                RepresentationResult(
+                    representation.name,
+                    representation.family,
+                    light_set.name,
+                    error_statistics(representation, scene, light_set),
+                    floats,
+                    float(light_floats),
+                    _time(representation, scene, light_set, effort or TimingOptions()),
+                )
+            )
         progress(Progress("representations", done, len(representations)))
-    order = [light_set.name for light_set in scene.sets]
-    ranked = sorted(results, key=lambda result: (order.index(result.lights), result.statistics.mean))
-    facts = {**environment(), "products": f"{len(scene.names)} surfaces under each light"}
-    return Comparison(facts, {light_set.name: light_set.title for light_set in scene.sets}, tuple(ranked))
+    results.sort(key=lambda result: (list(sets).index(result.lights), result.statistics.mean))
+    facts = {**environment(), "products": f"{len(scene.surfaces)} surfaces under each light"}
+    return Comparison(facts, sets, tuple(results))
 
 
 def error_statistics(representation: Representation, scene: Scene, light_set: LightSet) -> Statistics:
     """Compute the errors of a representation under a set of lights. Raises `UpliftError`."""
     surfaces = representation.encode_surface(scene.surfaces)
-    return compute_statistics(_errors(representation, surfaces, light_set, scene, scene.reference(light_set)))
-
-
-def _errors(
-    representation: Representation, surfaces: Any, light_set: LightSet, scene: Scene, reference: Array
-) -> Array:
-    """ΔE00 (K, E) of encoded ``surfaces`` under each light of a set."""
-    rows = len(scene.names)
-    xyz = [
-        representation.xyz(representation.multiply(_repeat_light(representation, power, rows), surfaces))
-        for power in light_set.powers
-    ]
-    errors = delta_e_2000(light_set.lab(np.stack(xyz)), reference)
+    lights = (_repeat_light(representation, power, len(scene.surfaces)) for power in light_set.powers)
+    xyz = np.stack([representation.xyz(representation.multiply(light, surfaces)) for light in lights])
+    errors = delta_e_2000(light_set.lab(xyz), scene.reference(light_set))
     if not np.isfinite(errors).all():
         raise UpliftError(
             f"{representation.name} returns values that are not finite under {light_set.title}",
             code="result-not-finite",
         )
-    return errors
+    return compute_statistics(errors)
 
 
-def _result(
-    representation: Representation,
-    surfaces: Any,
-    light_set: LightSet,
-    scene: Scene,
-    reference: Array,
-    ns: Spread,
-) -> RepresentationResult:
-    return RepresentationResult(
-        name=representation.name,
-        family=representation.family,
-        lights=light_set.name,
-        statistics=compute_statistics(_errors(representation, surfaces, light_set, scene, reference)),
-        floats=float(representation.storage(surfaces).mean()),
-        light_floats=float(representation.storage(representation.encode_light(light_set.powers)).mean()),
-        ns=ns,
-    )
-
-
-def _times(representation: Representation, scene: Scene, effort: TimingOptions) -> list[Spread]:
-    """CPU time of a product, in ns, for each set: each of its lights in turn, with many surfaces per call."""
-    surfaces = np.resize(scene.surfaces, (effort.rows, scene.surfaces.shape[1]))
-    encoded = representation.encode_surface(surfaces)
-    return [_time(representation, encoded, light_set, effort) for light_set in scene.sets]
-
-
-def _time(representation: Representation, surfaces: Any, light_set: LightSet, effort: TimingOptions) -> Spread:
+def _time(representation: Representation, scene: Scene, light_set: LightSet, effort: TimingOptions) -> Spread:
+    """CPU time of a product, in ns: each light of a set in turn, with many surfaces per call."""
+    surfaces = representation.encode_surface(np.resize(scene.surfaces, (effort.rows, scene.surfaces.shape[1])))
     lights = [_repeat_light(representation, power, effort.rows) for power in light_set.powers]
 
-    def multiply(laps: int) -> None:
-        for light in lights * laps:
+    def multiply() -> None:
+        for light in lights:
             representation.multiply(light, surfaces)
 
-    multiply(1)
-    _, once = time_calls(lambda: multiply(1), 1)
-    laps = max(1, round(effort.seconds / max(once.median, 1e-6)))
-    _, cpu = time_calls(lambda: multiply(laps), effort.runs)
-    return cpu.scaled(1e9 / (laps * len(lights) * effort.rows))
+    return time_laps(multiply, effort.seconds, effort.runs).scaled(1e9 / (len(lights) * effort.rows))
 
 
 def _repeat_light(representation: Representation, power: Array, rows: int) -> Any:
@@ -293,33 +275,99 @@ def cheapest(comparison: Comparison, lights: str, target: float) -> Representati
     Raises `OptionError`.
     """
     check_target(target)
-    sufficient = [result for result in comparison.of(lights) if result.statistics.q97_5 <= target]
     return min(
-        sufficient,
+        (result for result in comparison.of(lights) if result.statistics.q97_5 <= target),
         key=lambda result: (result.floats, result.light_floats, result.statistics.q97_5),
         default=None,
     )
 
 
-def most_accurate(comparison: Comparison, lights: str) -> RepresentationResult:
-    """Choose the representation of the smallest 97.5 % quantile under a set of lights."""
-    return min(comparison.of(lights), key=lambda result: result.statistics.q97_5)
-
-
 def records(comparison: Comparison) -> list[dict[str, Any]]:
     """Convert the results of a comparison to records."""
-    return [_record(result) for result in comparison.results]
+    return [
+        {
+            "lights": result.lights,
+            "representation": result.name,
+            "family": result.family,
+            **asdict(result.statistics),
+            "floats": result.floats,
+            "light_floats": result.light_floats,
+            "ns": result.ns.median,
+            "ns_least": result.ns.min,
+            "ns_most": result.ns.max,
+        }
+        for result in comparison.results
+    ]
 
 
-def _record(result: RepresentationResult) -> dict[str, Any]:
-    return {
-        "lights": result.lights,
-        "representation": result.name,
-        "family": result.family,
-        **asdict(result.statistics),
-        "floats": result.floats,
-        "light_floats": result.light_floats,
-        "ns": result.ns.median,
-        "ns_least": result.ns.min,
-        "ns_most": result.ns.max,
-    }
+COUNTS = (4, 8, 16)
+"""Numbers of samples after a filter in the thesis."""
+NONE = "none"
+
+
+@dataclass(frozen=True)
+class TunedFilter:
+    """The best filter of a kind.
+
+    ``kind``: kind of the filter, ``none`` for unfiltered samples.
+    ``count``: number of samples.
+    ``lights``: name of the set of lights.
+    ``low_pass``: the filter.
+    ``statistics``: its errors.
+    """
+
+    kind: str
+    count: int
+    lights: str
+    low_pass: Filter | None
+    statistics: Statistics
+
+    @property
+    def parameters(self) -> str:
+        """Return the filter's parameters as text."""
+        if self.low_pass is None:
+            return ""
+        named = zip(KINDS[self.kind].choices, self.low_pass.parameters, strict=True)
+        return ", ".join([f"extent {self.low_pass.extent}", *(f"{key} {value:g}" for key, value in named)])
+
+
+def tune_filters(
+    scene: Scene,
+    stride: int = FINE_STRIDE,
+    kinds: Sequence[str] = tuple(KINDS),
+    counts: Sequence[int] = COUNTS,
+    progress: ProgressCallback = ignore_progress,
+) -> tuple[TunedFilter, ...]:
+    """Search the best filter of each kind, for each number of samples and each set of lights."""
+    results = [
+        TunedFilter(NONE, count, light_set.name, None, error_statistics(point_samples(count), scene, light_set))
+        for count in counts
+        for light_set in scene.sets
+    ]
+    tasks = list(product(kinds, counts))
+    for done, (kind, count) in enumerate(tasks, 1):
+        filters = list(candidates(kind, stride))
+        encoders = [resampling_matrix(low_pass, count).T for low_pass in filters]
+        for light_set in scene.sets:
+            best = filters[int(_mean_errors(scene, light_set, count, encoders).argmin())]
+            errors = error_statistics(filtered_point_samples(count, best), scene, light_set)
+            results.append(TunedFilter(kind, count, light_set.name, best, errors))
+        progress(Progress("filters", done, len(tasks)))
+    return tuple(results)
+
+
+def _mean_errors(scene: Scene, light_set: LightSet, count: int, encoders: Iterable[Array]) -> Array:
+    """Mean ΔE00 of encoders (81, count) of the 5 nm table, faster than `error_statistics`."""
+    surfaces, lights = scene.surfaces[:, ::TABLE_STRIDE], light_set.powers[:, ::TABLE_STRIDE]
+    reference, weights = scene.reference(light_set), point_samples(count).weights
+    products = ((lights @ encoder)[:, None] * (surfaces @ encoder) for encoder in encoders)
+    return np.array([delta_e_2000(light_set.lab(each @ weights), reference).mean() for each in products])
+
+
+def filter_records(tuned: Iterable[TunedFilter]) -> list[dict[str, Any]]:
+    """Convert tuned filters to records."""
+    return [
+        {"lights": each.lights, "samples": each.count, "filter": each.kind, "parameters": each.parameters}
+        | asdict(each.statistics)
+        for each in tuned
+    ]

@@ -23,21 +23,11 @@ import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.lab.chart.method import (
-    Claims,
-    Family,
-    Method,
-    NotInstalledError,
-    PreparedMethod,
-    Task,
-    stated_sensor,
-    stopwatch,
-)
+from uplift.lab.chart.method import Method, NotInstalledError, PreparedMethod, Task, stated_sensor, stopwatch
 from uplift.models.sigmoid import evaluate_unscaled
 
 VARIANT, COMPILED = "scalar_spectral", "llvm_ad_spectral"
 """The spectral variant that does not need LLVM, and the vectorised one."""
-TABLE = Path("data", "srgb.coeff")
 XYZ_TO_RGB = np.array(
     [[3.240479, -1.537150, -0.498535], [-0.969256, 1.875991, 0.041556], [0.055648, -0.204043, 1.057311]]
 )
@@ -49,9 +39,10 @@ LLVM = "LLVM 19, with which Mitsuba 3.9 works: apt install libllvm19, or name it
 """What the methods need."""
 
 
-def prepare(task: Task) -> PreparedMethod:
-    """Load Mitsuba and locate its table."""
-    return PreparedMethod(spectra, table_file().stat().st_size, None)
+@cache
+def judge() -> Sensor:
+    """Return the sensor of the matrix of rgb2spec, under D65."""
+    return stated_sensor(XYZ_TO_RGB)
 
 
 def table_file() -> Path:
@@ -59,20 +50,30 @@ def table_file() -> Path:
     found = find_spec("mitsuba")
     if found is None or found.origin is None:
         raise NotInstalledError(f"needs {MITSUBA}")
-    return Path(found.origin).parent / TABLE
+    return Path(found.origin).parent / "data" / "srgb.coeff"
+
+
+def _mitsuba(variant: str) -> Any:
+    mitsuba = import_module("mitsuba")
+    mitsuba.set_variant(variant)
+    return mitsuba
+
+
+def prepare(task: Task) -> PreparedMethod:
+    """Locate the table; Mitsuba loads it."""
+    return PreparedMethod(spectra, table_file().stat().st_size, None)
 
 
 def spectra(rgb: Array, wavelengths: Array) -> Array:
     """Return the reflectances (n, N) that Mitsuba gives linear sRGB (n, 3) at wavelengths (N,) in nm."""
-    mitsuba = _mitsuba()
+    mitsuba = _mitsuba(VARIANT)
     coefficients = [mitsuba.srgb_model_fetch(colour) for colour in rgb.tolist()]
     return evaluate_unscaled(np.array(coefficients, dtype=float), wavelengths)
 
 
 def prepare_compiled(task: Task) -> PreparedMethod:
     """Load Mitsuba's vectorised variant, without the kernels of earlier calls."""
-    size = table_file().stat().st_size
-    drjit = import_module("drjit")
+    size, drjit = table_file().stat().st_size, import_module("drjit")
     if not drjit.has_backend(drjit.JitBackend.LLVM):  # true does not mean that LLVM works
         raise NotInstalledError(f"needs {LLVM}")
     drjit.flush_kernel_cache()
@@ -111,48 +112,31 @@ def _evaluate(mitsuba: Any, drjit: Any, rgb: Array, wavelengths: Array) -> Array
     return np.stack(channels).T
 
 
-@cache
-def judge() -> Sensor:
-    """Return the sensor of the matrix of rgb2spec, under D65."""
-    return stated_sensor(XYZ_TO_RGB)
-
-
-def _mitsuba(variant: str = VARIANT) -> Any:
-    try:
-        mitsuba = import_module("mitsuba")
-    except ImportError as error:
-        raise NotInstalledError(f"needs {MITSUBA}") from error
-    mitsuba.set_variant(variant)
-    return mitsuba
-
-
-FAMILIES = (
-    Family(
-        "Mitsuba 3",
-        "Jakob et al., Mitsuba 3, the table of Jakob & Hanika 2019 for sRGB",
-        "#f08c2e",
-        (
-            Method(
-                "mitsuba3-table",
-                "Mitsuba 3, table of 64",
-                prepare,
-                Claims(round_trip=0.1),
-                judge=judge,
-                batch=False,
-                note="coefficients from Python, one colour per call; spectra by numpy",
-                needs=MITSUBA,
-            ),
-            Method(
-                "mitsuba3-llvm",
-                "Mitsuba 3, LLVM, table of 64",
-                prepare_compiled,
-                Claims(round_trip=0.1),
-                dtype="float32",
-                judge=judge,
-                quick=True,
-                note="a bitmap texture with a texel for each colour, loaded and evaluated, on one thread",
-                needs=LLVM,
-            ),
-        ),
+_TEXTS: dict[str, Any] = {
+    "family": "Mitsuba 3",
+    "source": "Jakob et al., Mitsuba 3, the table of Jakob & Hanika 2019 for sRGB",
+}
+METHODS = (
+    Method(
+        method="mitsuba3-table",
+        title="Mitsuba 3, table of 64",
+        prepare=prepare,
+        judge=judge,
+        claimed_error=0.1,
+        batch=False,
+        note="coefficients from Python, one colour per call; spectra by numpy",
+        needs=MITSUBA,
+        **_TEXTS,
+    ),
+    Method(
+        method="mitsuba3-llvm",
+        title="Mitsuba 3, LLVM, table of 64",
+        prepare=prepare_compiled,
+        judge=judge,
+        claimed_error=0.1,
+        dtype="float32",
+        note="a bitmap texture with a texel for each colour, loaded and evaluated, on one thread",
+        needs=LLVM,
+        **_TEXTS,
     ),
 )

@@ -1,0 +1,206 @@
+"""Comparison of representations: errors are those of single products, the best filter is found, pictures have all."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+
+import matplotlib.image
+import numpy as np
+import pytest
+
+from tests.browsing import check_page
+from tests.conftest import MACBETH, ROOT
+from tests.helpers import raises
+from tests.pages import Page
+from uplift.atlas import Atlas, read_atlas
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.common.errors import AtlasError, OptionError, UnknownNameError, UpliftError
+from uplift.lab.comparison.compare import (
+    NONE,
+    Comparison,
+    RepresentationResult,
+    TimingOptions,
+    cheapest,
+    compare,
+    compute_statistics,
+    error_statistics,
+    make_scene,
+    tune_filters,
+)
+from uplift.lab.comparison.pictures import cost_panels, names, render_comparison, write_boxes, write_costs
+from uplift.lab.timing import Spread
+from uplift.scene.representations.composite import enhanced_riemann, sun_composite
+from uplift.scene.representations.filters import COARSE_STRIDE, candidates, filtered_point_samples
+from uplift.scene.representations.models import trigonometric_moments
+from uplift.scene.representations.samples import SampleRepresentation, point_samples, riemann_sums, xyz_weights
+
+EFFORT = TimingOptions(runs=3, seconds=0.001, rows=32)
+
+
+@pytest.fixture(scope="module")
+def checker():
+    return make_scene({"macbeth": read_atlas(MACBETH)})
+
+
+@pytest.fixture(scope="module")
+def found(checker):
+    made = [make(count) for make in (point_samples, riemann_sums, enhanced_riemann) for count in (16, 32)]
+    return compare(checker, [*made, sun_composite(15), trigonometric_moments(9)], EFFORT)
+
+
+def test_dense_data_have_no_error(checker):
+    dense = SampleRepresentation("dense", "dense", np.eye(401), xyz_weights())
+    for part in checker.sets:
+        assert max(error_statistics(dense, checker, part).values) < 1e-9
+
+
+def test_errors_match_explicit_loops(checker):
+    part, samples, apart = checker.sets[1], point_samples(16), []
+    for power in part.powers:
+        white = power @ xyz_weights()
+        for surface in checker.surfaces:
+            product = samples.multiply(samples.encode_light(power[None]), samples.encode_surface(surface[None]))
+            pair = (lab(samples.xyz(product)[0], white), lab((power * surface) @ xyz_weights(), white))
+            apart.append(float(delta_e_2000(*pair)))
+    expected = [np.mean(apart), np.std(apart), *np.quantile(apart, (0.5, 0.025, 0.25, 0.75, 0.975))]
+    np.testing.assert_allclose(error_statistics(samples, checker, part).values, expected, rtol=1e-9)
+
+
+def test_result_that_is_not_finite_is_an_error(checker):
+    broken = SampleRepresentation("broken", "broken", np.full((401, 3), np.nan), np.eye(3))
+    with raises(UpliftError, "result-not-finite"):
+        compare(checker, [broken], EFFORT)
+
+
+def test_results_are_ranked_within_their_sets(checker, found):
+    np.testing.assert_allclose(checker.powers @ xyz_weights()[:, 1], 1)
+    assert list(found.sets) == ["smooth", "spiky"]
+    for name in found.sets:
+        means = [row.statistics.mean for row in found.of(name)]
+        assert means == sorted(means)
+        assert len(means) == 8
+    assert all(row.ns.median > 0 and row.ns.runs == EFFORT.runs for row in found.results)
+
+
+def test_storage_includes_spikes(found):
+    (row,) = [row for row in found.of("spiky") if row.name == "RE16"]
+    assert row.floats == 16
+    assert 16 + 2 * 2 < row.light_floats < 16 + 2 * 10
+    (row,) = [row for row in found.of("spiky") if row.name == "TM9"]
+    assert (row.floats, row.light_floats) == (9, 81)
+
+
+def test_findings_of_the_thesis_hold_for_the_colorchecker(found):
+    smooth, spiky = ({row.name: row.statistics.mean for row in found.of(name)} for name in ("smooth", "spiky"))
+    assert all(smooth[f"{family}32"] < 1 for family in ("PS", "RS", "RE"))
+    assert spiky["PS16"] > 10 * smooth["PS16"]
+    assert max(spiky["CS15"], spiky["RE16"]) < spiky["RS16"] < spiky["PS32"] < spiky["PS16"]
+
+
+def test_named_lights_form_one_set():
+    atlases = {"macbeth": read_atlas(MACBETH)}
+    (part,) = make_scene(atlases, ["HP1", "LED-B3", "HP1"]).sets
+    assert part.title == "given lights (HP1, LED-B3)"
+    with raises(UnknownNameError, "unknown-illuminant"):
+        make_scene(atlases, ["F2"])
+    with raises(AtlasError):
+        make_scene({"none": Atlas()})
+
+
+def row(name, high, floats, light_floats=8.0, ns=5.0, lights="smooth"):
+    found = compute_statistics([high])
+    return RepresentationResult(name, "made up", lights, found, floats, light_floats, Spread(ns, ns, ns, 3))
+
+
+ROWS = (
+    row("near", 0.2, 32.0),
+    row("even", 0.8, 9.0, 12.0, 30.0),
+    row("rough", 0.9, 9.0, 12.0, 3.0),
+    row("tabled", 0.7, 9.0, 81.0, 1.0),
+    row("far", 1.1, 3.0),
+    row("other", 0.1, 1.0, lights="spiky"),
+)
+FOUND = Comparison({}, {"smooth": "smooth lights (A)", "spiky": "spiky lights (FL2)"}, ROWS)
+
+
+@pytest.mark.parametrize(
+    ("target", "name"),
+    [(2.0, "far"), (1.0, "even"), (0.75, "tabled"), (0.5, "near"), (0.1, None)],
+)
+def test_surfaces_count_first_then_lights_then_errors(target, name):
+    best = cheapest(FOUND, "smooth", target)
+    assert (best and best.name) == name
+    assert cheapest(FOUND, "spiky", 0.5).name == "other"
+
+
+@pytest.mark.parametrize("target", [0, float("nan"), float("inf")])
+def test_target_must_be_positive(target):
+    with raises(OptionError, "target-not-positive"):
+        cheapest(FOUND, "smooth", target)
+
+
+@pytest.fixture(scope="module")
+def tuned(checker):
+    kinds = ("tent", "lanczos", "mitchell")
+    return {(one.lights, one.kind): one for one in tune_filters(checker, COARSE_STRIDE, kinds, (16,))}
+
+
+@pytest.mark.parametrize("kind", ["tent", "lanczos"])
+def test_no_candidate_filter_is_better(checker, tuned, kind):
+    part = checker.sets[1]
+    means = {
+        one: error_statistics(filtered_point_samples(16, one), checker, part).mean
+        for one in candidates(kind, COARSE_STRIDE)
+    }
+    best = tuned[part.name, kind]
+    assert best.low_pass == min(means, key=means.__getitem__)
+    assert best.statistics.mean == pytest.approx(min(means.values()), rel=1e-9)
+
+
+def test_filters_improve_point_sampling_under_spiky_lights(checker, tuned):
+    for part in checker.sets:
+        assert tuned[part.name, NONE].statistics == error_statistics(point_samples(16), checker, part)
+    for kind in ("mitchell", "lanczos"):
+        assert tuned["spiky", kind].statistics.mean < 0.3 * tuned["spiky", NONE].statistics.mean
+
+
+def reference(name):
+    with (ROOT / "tests" / "reference" / name).open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def test_stored_tables_of_the_thesis_agree():
+    tables = {(row["lights"], row["representation"]): row for row in reference("representations_kment2011.csv")}
+    filters = reference("filters_kment2011.csv")
+    bare = [row for row in filters if row["filter"] == "none" and row["samples"] != "4"]
+    assert len(bare) == 4
+    for row in bare:
+        other = tables[row["lights"], f"PS{row['samples']}"]
+        assert (row["mean"], row["deviation"]) == (other["mean"], other["deviation"])
+    means = {row["filter"]: float(row["mean"]) for row in filters if (row["lights"], row["samples"]) == ("spiky", "16")}
+    for kind, change in (("mitchell", -85.32), ("lanczos", -83.89), ("tent", -76.80)):  # table 7.1
+        assert 100 * (means[kind] / means["none"] - 1) == pytest.approx(change, abs=0.005)
+
+
+def test_files_are_images(found, tmp_path):
+    for write in (write_boxes, write_costs):
+        write(found, tmp_path / f"{write.__name__}.png")
+        pixels = matplotlib.image.imread(tmp_path / f"{write.__name__}.png")
+        assert min(pixels.shape[:2]) > 200
+        assert pixels.std() > 0.05
+
+
+def test_page_has_every_representation_fits_and_is_accessible(found, tmp_path):
+    html = render_comparison(found)
+    assert render_comparison(found) == html
+    known = names(found)
+    for panel in range(len(cost_panels(found))):
+        assert all(html.count(f'id="marker-{panel}-{number}"') == 1 for number in range(len(known)))
+    (data,) = re.findall(r'<script type="application/json" id="rows">(.*?)</script>', html, re.DOTALL)
+    assert [one["title"] for one in json.loads(data)] == known
+    tables = [[row[0].parts[0] for row in table[1:]] for table in Page(html).tables]
+    for name in found.sets:
+        assert [result.name for result in found.of(name)] in tables
+    check_page(html, tmp_path)

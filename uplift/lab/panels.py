@@ -1,0 +1,185 @@
+"""Panels of error over cost on logarithmic axes: markers with labels and the Pareto front, for figures and pages."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+
+from uplift.common.arrays import Array, StrPath
+from uplift.viz.figure import GREY, INK, STYLE, figure_text, new_figure, style_axes, to_page_svg, write_png
+from uplift.viz.scatter import LEGEND, Label, draw_labels, style_title
+
+CLEAR_RATIO = 0.99
+"""Share of an error below which another one is clearly smaller; the rest is noise."""
+SIZE, LEGEND_HEIGHT = (4.8, 3.4), 0.2
+"""Inches of a panel, and of the height of a row of the legend."""
+FRONT_LINE: dict[str, Any] = {"color": INK, "linewidth": 1.1, "marker": ""}
+MARKER_SIZES = {"*": 9.5, "D": 5.5}
+"""Points; others are 6.5 wide."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """A marker in a panel.
+
+    ``row``: its row in the tooltips of a page.
+    ``label``: its name, written next to it if it is on the front or ``named``.
+    ``cost``, ``error``: its position.
+    ``colour``, ``marker``: ``#rrggbb``, and the name of a marker of matplotlib.
+    ``hollow``: whether it is not filled.
+    ``group``: markers of one group are joined by a line, in order.
+    """
+
+    row: int
+    label: str
+    cost: float
+    error: float
+    colour: str
+    marker: str = "o"
+    hollow: bool = False
+    named: bool = True
+    group: str = ""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Points over a kind of cost.
+
+    ``title``, ``axis``: title, and label of the axis of cost.
+    ``format``: text of a cost.
+    """
+
+    title: str
+    axis: str
+    format: Callable[[float], str]
+    points: Sequence[Point]
+
+
+def pareto_front(points: Sequence[tuple[float, float]]) -> list[int]:
+    """Return the rows of cost and error whose error is clearly below that of every cheaper one, cheapest first."""
+    front: list[int] = []
+    for row in sorted(range(len(points)), key=points.__getitem__):
+        if not front or points[row][1] < CLEAR_RATIO * points[front[-1]][1]:
+            front.append(row)
+    return front
+
+
+def write_panels(
+    panels: Sequence[Panel],
+    columns: int,
+    path: StrPath,
+    legend: Mapping[str, Mapping[str, Any]],
+    *,
+    force: bool = False,
+) -> None:
+    """Write panels as PNG, with a legend of styles by name. Raises `OutputError`."""
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        write_png(panel_figure(panels, columns, legend), path, force=force)
+
+
+def page_panel(panel: Panel, number: int) -> Markup:
+    """Draw a panel for a page, whose titles are in its text. The artists are named ``marker-<number>-<row>`` etc."""
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        return to_page_svg(panel_figure([panel], 1, titles=False, first=number), f"{panel.title}, over {panel.axis}")
+
+
+def panel_figure(
+    panels: Sequence[Panel],
+    columns: int,
+    legend: Mapping[str, Mapping[str, Any]] | None = None,
+    *,
+    titles: bool = True,
+    first: int = 0,
+) -> Any:
+    """Return the matplotlib figure of panels in rows."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.lines import Line2D
+
+    rows = math.ceil(len(panels) / columns)
+    legend_rows = math.ceil(len(legend or ()) / (2 * columns))
+    figure = new_figure(columns * SIZE[0], rows * SIZE[1] + legend_rows * LEGEND_HEIGHT)
+    cells = figure.subplots(rows, columns, squeeze=False).ravel()
+    for number, (axes, panel) in enumerate(zip(cells, panels, strict=True), first):
+        _draw_panel(axes, panel, number)
+        if titles:
+            style_title(axes, panel.title)
+    if legend:
+        handles = [
+            Line2D([], [], **{"linestyle": "", "color": GREY, "marker": "o", **style}) for style in legend.values()
+        ]
+        figure.legend(handles, map(figure_text, legend), loc="outside lower left", ncols=2 * columns, **LEGEND)
+    # Labels are placed where there is room, once the axes have their positions.
+    FigureCanvasAgg(figure)
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    for number, (axes, panel) in enumerate(zip(cells, panels, strict=True), first):
+        _label_panel(axes, panel, number)
+    return figure
+
+
+def _draw_panel(axes: Any, panel: Panel, number: int) -> None:
+    axes.set(xscale="log", yscale="log", xlabel=panel.axis)
+    axes.minorticks_off()
+    style_axes(axes)
+    for group in dict.fromkeys(point.group for point in panel.points if point.group):
+        members = [point for point in panel.points if point.group == group]
+        line = np.transpose([(point.cost, point.error) for point in members])
+        gid = f"whisker-{number}-{members[0].row}"
+        axes.plot(*line, gid=gid, color=members[0].colour, linewidth=0.8, alpha=0.45, zorder=1)
+    front = _front(panel)
+    for point in panel.points:
+        style = {
+            "marker": point.marker,
+            "markersize": MARKER_SIZES.get(point.marker, 6.5),
+            "color": point.colour,
+            "markerfacecolor": "white" if point.hollow else point.colour,
+            "markeredgecolor": point.colour if point.hollow else "white",
+            "markeredgewidth": 1.2 if point.hollow else 0.5,
+        }
+        axes.plot(
+            point.cost, point.error, gid=f"marker-{number}-{point.row}", zorder=3 if point in front else 2, **style
+        )
+    axes.margins(0.06)
+    for axis, text in ((axes.xaxis, panel.format), (axes.yaxis, "{:g}".format)):
+        _set_ticks(axis, text)
+    axes.plot(*_staircase(axes, panel).T, zorder=1, scalex=False, **FRONT_LINE)
+
+
+def _set_ticks(axis: Any, text: Callable[[float], str]) -> None:
+    """Ticks at powers of ten and, on axes of few decades, between them."""
+    from matplotlib.ticker import LogLocator
+
+    low, high = sorted(axis.get_view_interval())
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 1000 * low else (1,), numticks=40))
+    axis.set_major_formatter(lambda value, _: text(value))
+
+
+def _front(panel: Panel) -> list[Point]:
+    return [panel.points[row] for row in pareto_front([(point.cost, point.error) for point in panel.points])]
+
+
+def _staircase(axes: Any, panel: Panel) -> Array:
+    """Corners (2 k, 2) of the Pareto front, up to the right end of the axes."""
+    front = np.array([(point.cost, point.error) for point in _front(panel)]).reshape(-1, 2)
+    x = np.append(front[:, 0].repeat(2)[1:], axes.get_xlim()[1])[: 2 * len(front)]
+    return np.stack([x, front[:, 1].repeat(2)], axis=1)
+
+
+def _label_panel(axes: Any, panel: Panel, number: int) -> None:
+    front = _front(panel)
+    labels = [
+        Label(point.label, (point.cost, point.error), point.colour, point in front, f"label-{number}-{point.row}")
+        for point in panel.points
+        if point.named or point in front
+    ]
+    markers = np.array([(point.cost, point.error) for point in panel.points]).reshape(-1, 2)
+    draw_labels(axes, labels, markers, _staircase(axes, panel))
