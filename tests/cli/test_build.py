@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import signal
@@ -14,8 +13,6 @@ import numpy as np
 import pytest
 
 import uplift
-from tests.helpers import raises
-from uplift.pipeline.options import Options, check_memory
 
 from .conftest import warning_lines
 
@@ -105,59 +102,32 @@ def test_verbose_prints_every_round_and_storing(run, home):
     assert result.stdout.count("\n") == 1
 
 
-def test_files_are_replaced_only_with_force(run, refuse, home):
-    (home / "cube").write_text("mine")
-    error = refuse("build", *SMALL, "-o", "cube")
-    assert (error.code, error.where) == ("file-exists", "cube")
-    assert (home / "cube").read_text() == "mine"
-    run("build", *SMALL, "-o", "cube", "--force")
-    assert uplift.load(home / "cube").data.lattice.dim == 4
-
-
 @pytest.mark.parametrize(
     ("args", "code"),
     [
-        (("-o", "none/cube"), "output"),
-        (("-o", "."), "not-a-regular-file"),
-        (("-o", ""), "not-a-regular-file"),
-        (("-o", "x" * 300), "output"),
-        (("--dim", "1"), "dim-too-small"),
-        (("--dim", "1000000000000"), "option"),
-        (("--illuminant", "D66"), "unknown-illuminant"),
-        (("--space", "no/where"), "unknown-rgb-space"),
-        (("--observer", "CIE 1931"), "unknown-observer"),
-        (("--light", "FL99"), "unknown-illuminant"),
-        (("--model", "moment"), "unknown-model"),
-        (("--warp", "bent"), "unknown-warp"),
-        (("--axis", "log"), "unknown-axis-spacing"),
-        (("--start", "seeds"), "unknown-start"),
-        (("--solver", "newton"), "unknown-solver"),
-        (("--range", "360"), "option"),
-        (("--range", "830:360"), "option"),
-        (("--range", "361:830"), "range-not-in-steps"),
-        (("--step", "3"), "unsupported-step"),
-        (("--coefficients", "18"), "coefficients-out-of-range"),
-        (("--entry-coefficients", "18"), "entry-coefficients-out-of-range"),
-        (("--threshold", "0.2"), "threshold-out-of-range"),
-        (("--atlas", "none.txt"), "file-not-found"),
-        (("--atlas", "empty.txt"), "atlas"),
-        (("--atlas", "."), "not-a-regular-file"),
-        (("--look", "empty.txt", "-o", "empty.txt", "--force"), "output-is-input"),
+        ("-o none/cube", "output"),
+        ("-o .", "not-a-regular-file"),
+        ("-o mine", "file-exists"),
+        ("--dim 1", "dim-too-small"),
+        ("--dim 1000000000000", "option"),
+        ("--illuminant D66", "unknown-illuminant"),
+        ("--space no/where", "unknown-rgb-space"),
+        ("--observer CIE", "unknown-observer"),
+        ("--model moment", "unknown-model"),
+        ("--axis log", "unknown-axis-spacing"),
+        ("--range 360", "option"),
+        ("--range 361:830", "range-not-in-steps"),
+        ("--entry-coefficients 18", "entry-coefficients-out-of-range"),
+        ("--atlas none.txt", "file-not-found"),
+        ("--atlas mine", "atlas"),
+        ("--look mine -o mine --force", "output-is-input"),
     ],
 )
 def test_invalid_input_is_reported_before_the_build(refuse, monkeypatch, home, args, code):
     monkeypatch.setattr("uplift.pipeline.build.grow_from_prior", lambda *_, **__: pytest.fail("built"))
-    (home / "empty.txt").write_text("")
-    assert refuse("build", "--dim", "2", *args).code == code
-    assert os.listdir(home) == ["empty.txt"]
-
-
-def test_suggested_dim_fits_into_memory(refuse):
-    error = refuse("build", "--dim", "100000")
-    dim = int(re.search(r"\d+", error.hint)[0])
-    check_memory(Options(dim=dim))
-    with raises(uplift.OptionError, "option"):
-        check_memory(Options(dim=dim + 1))
+    (home / "mine").write_text("")
+    assert refuse("build", "--dim", "2", *args.split()).code == code
+    assert os.listdir(home) == ["mine"]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no SIGKILL there")
@@ -188,14 +158,14 @@ def test_looks_are_built_summarised_and_shown(run, home):
     run("check", "looks.uplift")
 
 
-def test_a_camera_cube_is_built_queried_shown_and_checked(run):
+def test_a_camera_cube_is_built_queried_shown_and_checked(run, ask):
     run("build", *CAMERA, NIKON, "--quiet")
     query = ("query", "--cube", "camera-3.uplift", 0.5, 0.5, 0.5)
-    answer = json.loads(run(*query, "--mode", "refined", "--format", "json").stdout)
+    answer = ask(*query, "--mode", "refined")
     assert answer["round_trip"]["rgb"] == pytest.approx([0.5, 0.5, 0.5], abs=1e-4)
     assert len(answer["xyz"]) == 3
     assert "XYZ" in run(*query).stdout
-    facts = json.loads(run("info", "camera-3.uplift", "--format", "json").stdout)
+    facts = ask("info", "camera-3.uplift")
     assert (facts["space"], facts["provenance"]["options"]["observer"]) == (NIKON, NIKON)
     run("check", "camera-3.uplift")
 
@@ -203,10 +173,7 @@ def test_a_camera_cube_is_built_queried_shown_and_checked(run):
 @pytest.mark.parametrize(
     ("text", "args", "code"),
     [
-        ("400,1,0,0\n500,0,nan,0\n", (), "option"),
         ("400,1,0,0\n500,0,-1,0\n", (), "option"),
-        ("500,1,0,0\n400,0,1,0\n", (), "option"),
-        ("900,1,0,0\n999,0,1,1\n", (), "option"),
         ("400,1,0,0\n", ("-o", "bad.csv", "--force"), "output-is-input"),
     ],
 )

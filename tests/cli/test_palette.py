@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import matplotlib.image
 import numpy as np
 import pytest
@@ -44,23 +42,20 @@ def pair(home):
     return "two.toml"
 
 
-def test_matrix_is_printed(run, spec):
+def test_the_matrix_and_goals_that_cannot_be_met_are_printed(run, spec, home):
+    """A material cannot be brighter than the perfect reflector."""
     text = run("palette", spec()).stdout
     assert "#a06040 #a06040" in text
     assert "new*" in text
     assert "not met" not in text
-
-
-def test_goals_that_cannot_be_met_are_printed(run, spec, home):
-    """A material cannot be brighter than the perfect reflector."""
     path = home / spec()
     path.write_text(path.read_text().replace('"#a06040"', "[1.2, 1.2, 1.2]"), encoding="utf-8")
     (line,) = [line for line in run("palette", path).stdout.splitlines() if line.startswith("not met: ")]
     assert all(word in line for word in ("new", "day", "ΔE00"))
 
 
-def test_json_reproduces_the_matrix(run, spec):
-    found = json.loads(run("palette", spec(), "--format", "json").stdout)
+def test_json_reproduces_the_matrix(ask, spec):
+    found = ask("palette", spec())
     assert [part["designed"] for part in found["materials"]] == [False, True]
     light, material = found["lights"][0], found["materials"][1]
     product = np.array(light["coefficients"]) * material["coefficients"]
@@ -89,13 +84,6 @@ def test_pages(run, pair, home):
     assert 'width="3" height="1"' in (home / "three.html").read_text(encoding="utf-8")
 
 
-def test_invalid_specs_are_errors(refuse, spec):
-    error = refuse("palette", spec("reddish"))
-    assert error.code == "invalid-colour"
-    assert "reddish" in error.problem
-    assert refuse("palette", "none.toml").code == "file-not-found"
-
-
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
@@ -109,6 +97,7 @@ def test_invalid_input_is_reported_before_any_work(refuse, pair, home, monkeypat
     monkeypatch.setattr("uplift.design.palette.design", lambda *_: pytest.fail("designed"))
     assert refuse("palette", pair, *arguments).code == code
     assert not (home / "a.html").exists()
+    assert refuse("palette", "none.toml").code == "file-not-found"
 
 
 @pytest.mark.parametrize("arguments", [("--image", "labels.png"), ("--html", "a.html", "--label", "leaf=#ff0000")])

@@ -18,18 +18,13 @@ from uplift_cli import colours
 import uplift
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.srgb import hex_codes
-from uplift.common.errors import ColourError, OptionError
+from uplift.common.errors import ColourError
 
 from .conftest import warning_lines
 
 RED = [0.6038273388553378, 0.033104766570885055, 0.009721217320237849]
 """Linear sRGB of #cc3319."""
-
-
-@pytest.fixture
-def ask(run):
-    """Parsed JSON output of a query."""
-    return lambda *args, **options: json.loads(run("query", *args, "--format", "json", **options).stdout)
+P3 = "0.68,0.32 0.265,0.69 0.15,0.06 0.3127,0.329"
 
 
 @pytest.fixture
@@ -44,44 +39,52 @@ def table(home):
     return table
 
 
+@pytest.fixture
+def macbeth_cube(cubes):
+    return cubes / "moments-8-macbeth.uplift"
+
+
 @pytest.mark.parametrize(
     ("words", "rgb"),
     [
         (["#cc3319"], RED),
         (["cc3319"], RED),
         (["204", "51", "25", "--encoded"], RED),
-        (["204,51,25", "--encoded"], RED),
         (["#cc3319", "--encoded"], RED),
         (["#c31"], [RED[0], RED[1], 0.005605391624202723]),
         (["0.8", "0.2", "0.1"], [0.8, 0.2, 0.1]),
         (["0.8, 0.2, 0.1"], [0.8, 0.2, 0.1]),
         (["0.8 0.2 0.1"], [0.8, 0.2, 0.1]),
-        (["1", "0", "1e-1"], [1, 0, 0.1]),
-        (["-0.0", "0.2", "0.1"], [0, 0.2, 0.1]),
+        (["-0.0", "0.2", "1e-1"], [0, 0.2, 0.1]),
         (["123456"], [0.006048833022857055, 0.03433980680868217, 0.09305896284668747]),
     ],
 )
 def test_syntax_of_colours(ask, words, rgb):
-    np.testing.assert_allclose(ask(*words)["rgb"], rgb, rtol=0, atol=1e-15)
-
-
-@pytest.mark.parametrize("words", ["#cc331", "c31", "red", "0.1 0.2", "0.1 0.2 0.3 0.4", "0.1 0.2 x", "#cc3319 0.5"])
-def test_unreadable_colours_are_quoted(refuse, words):
-    error = refuse("query", *words.split())
-    assert isinstance(error, ColourError)
-    assert f"'{words}'" in error.problem
+    np.testing.assert_allclose(ask("query", *words)["rgb"], rgb, rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize(
-    "words", ["0.1 1.2 0.3", "-0.1 0.2 0.3", "0.3 -.1 0.3 --mode moments", "nan 0.2 0.3", "204 51 25"]
+    ("words", "code"),
+    [
+        *((words, "colour") for words in ("#cc331", "c31", "red", "0.1 0.2", "0.1 0.2 0.3 0.4", "#cc3319 0.5")),
+        *((words, "rgb-out-of-gamut") for words in ("0.1 1.2 0.3", "0.3 -.1 0.3", "nan 0.2 0.3", "204 51 25")),
+        ("--encoded 256 0 0", "invalid-codes"),
+        ("--encoded -1 0 0", "invalid-codes"),
+        ("--encoded nan 0 0 --out-of-gamut clip", "invalid-codes"),
+        ("nan 0 0 --out-of-gamut scale", "rgb-not-finite"),
+        ("0.5 0.6 0.3 --input-space P9", "unknown-rgb-space"),
+        ("0.5 0.6 0.3 --input-space 1,2", "invalid-primaries"),
+        ("--xy 0.3 0 --luminance 0.2", "colour"),
+        ("--xyz 0.05 0.9 0.1", "colour-unrealisable"),
+        ("#fff --light FL99", "unknown-illuminant"),
+        ("#fff --cube none.uplift", "cube-not-found"),
+        *((f"#fff --wavelengths {text}", "option") for text in ("red", "400:700", "400:700:0", "700:400:5", "4,,5")),
+        *((f"#fff --wavelengths {text}", "option") for text in ("400:inf:5", "400:700:1e-9")),
+        *((f"#fff --plot {name}", "output") for name in ("red.gif", "red.png.txt", "none/red.png")),
+    ],
 )
-def test_linear_rgb_out_of_gamut_is_an_error(refuse, words):
-    assert refuse("query", *words.split()).code == "rgb-out-of-gamut"
-
-
-@pytest.mark.parametrize("words", ["256 0 0", "-1 0 0", "nan 0 0 --out-of-gamut clip"])
-def test_codes_out_of_range_are_errors(refuse, words):
-    assert refuse("query", "--encoded", *words.split()).code == "invalid-codes"
+def test_invalid_input_is_an_error(refuse, words, code):
+    assert refuse("query", *words.split()).code == code
 
 
 @pytest.mark.parametrize(
@@ -93,67 +96,40 @@ def test_codes_out_of_range_are_errors(refuse, words):
         ("desaturate-oklab", [1, 0.4215, 0.1069]),
     ],
 )
-def test_out_of_gamut_colours_are_mapped_with_a_warning(run, ask, method, rgb):
-    words = ("1.4", "0.3", "-0.1", "--out-of-gamut", method)
-    result = run("query", *words)
+def test_out_of_gamut_colours_are_mapped_with_a_warning(run, method, rgb):
+    words = ("query", "-", "--out-of-gamut", method)
+    result = run(*words, "--format", "json", input="1.4,0.3,-0.1\n#cc3319\n")
     (warning,) = warning_lines(result)
-    assert "1 of 1" in warning
-    assert "1.400000 0.300000 -0.100000" in result.stdout.splitlines()[0]
-    answer = ask(*words)
+    assert "1 of 2" in warning
+    answer, inside = json.loads(result.stdout)
     np.testing.assert_allclose(answer["rgb"], rgb, rtol=0, atol=1e-3)
     assert answer["requested_rgb"] == [1.4, 0.3, -0.1]
     assert answer["round_trip"]["delta_e_2000"] < 0.01
-
-
-def test_out_of_gamut_colours_in_files_are_mapped_with_a_warning(run, table):
-    words = ("--input", table("0.8,0.2,0.1\n1.5,0.5,0.25\n#cc3319\n"), "--out-of-gamut", "scale")
-    result = run("query", *words, "--format", "json")
-    (warning,) = warning_lines(result)
-    assert "1 of 3" in warning
-    answers = json.loads(result.stdout)
-    np.testing.assert_allclose([answer["rgb"] for answer in answers], [[0.8, 0.2, 0.1], [1, 1 / 3, 1 / 6], RED])
-    assert answers[1]["requested_rgb"] == [1.5, 0.5, 0.25]
-
-
-@pytest.mark.parametrize(("text", "line"), [("0,0,0\n0,0,inf\n", 2), ("nan,0,0\n", 1)])
-def test_colours_that_are_not_finite_cannot_be_mapped(refuse, table, text, line):
-    error = refuse("query", "--input", table(text), "--out-of-gamut", "clip")
-    assert isinstance(error, ColourError)
-    assert error.line == line
-    assert isinstance(refuse("query", "nan", "0", "0", "--out-of-gamut", "scale"), ColourError)
-
-
-P3 = "0.68,0.32 0.265,0.69 0.15,0.06 0.3127,0.329"
+    np.testing.assert_allclose(inside["rgb"], RED)
+    text = run("query", "1.4", "0.3", "-0.1", *words[2:]).stdout
+    assert "1.400000 0.300000 -0.100000" in text.splitlines()[0]
 
 
 @pytest.mark.parametrize("name", ["P3-D65", P3])
 def test_colours_of_another_display(ask, name):
     theirs = colour.matrix_RGB_to_RGB("P3-D65", "sRGB")
-    requested = ask("0.5", "0.6", "0.3", "--input-space", name)["requested_rgb"]
+    requested = ask("query", "0.5", "0.6", "0.3", "--input-space", name)["requested_rgb"]
     np.testing.assert_allclose(requested, theirs @ [0.5, 0.6, 0.3], rtol=0, atol=3e-4)
-    green = ask("0", "1", "0", "--input-space", name, "--out-of-gamut", "clip")
+    green = ask("query", "0", "1", "0", "--input-space", name, "--out-of-gamut", "clip")
     np.testing.assert_allclose(green["requested_rgb"], theirs[:, 1], rtol=0, atol=3e-4)
     assert green["rgb"] == [0, 1, 0]
 
 
 def test_range_is_checked_after_conversion_from_another_display(ask, table):
-    results = ask("--input", table("-0.1,0.5,0.4"), "--input-space", "0.4,0.34 0.31,0.4 0.25,0.2 0.3127,0.329")
-    assert 0 <= min(results[0]["rgb"]) <= max(results[0]["rgb"]) <= 1
-
-
-@pytest.mark.parametrize(
-    ("name", "code"),
-    [("P9", "unknown-rgb-space"), ("1,2", "invalid-primaries"), ("1,0 2,0 3,0 0.3,0.3", "invalid-primaries")],
-)
-def test_invalid_primaries_are_errors(refuse, name, code):
-    assert refuse("query", "0.5", "0.6", "0.3", "--input-space", name).code == code
+    words = ("--input", table("-0.1,0.5,0.4"), "--input-space", "0.4,0.34 0.31,0.4 0.25,0.2 0.3127,0.329")
+    (answer,) = ask("query", *words)
+    assert 0 <= min(answer["rgb"]) <= max(answer["rgb"]) <= 1
 
 
 @pytest.mark.parametrize(
     "text",
     [
         "0.8,0.2,0.1\n0.1,0.1,0.1",
-        "r,g,b\n0.8,0.2,0.1\n0.1,0.1,0.1\n",
         '"r","g","b"\n"0.8","0.2","0.1"\n"0.1","0.1","0.1"\n',
         "\ufeffr,g,b\n0.8,0.2,0.1\n0.1,0.1,0.1\n",
         "0.8,0.2,0.1\r\n0.1,0.1,0.1\r\n",
@@ -164,12 +140,12 @@ def test_invalid_primaries_are_errors(refuse, name, code):
 )
 def test_syntax_of_files(ask, table, text):
     for source in (["--input", table(text)], ["-"], ["--input", "-"]):
-        answers = ask(*source, input=text.encode())
+        answers = ask("query", *source, input=text.encode())
         np.testing.assert_array_equal([answer["rgb"] for answer in answers], [[0.8, 0.2, 0.1], [0.1] * 3])
 
 
 def test_files_of_codes_and_hex(ask, table):
-    answers = ask("--input", table("#cc3319\ncc3319\n204,51,25\n#cc3319,brick\n"), "--encoded")
+    answers = ask("query", "--input", table("#cc3319\ncc3319\n204,51,25\n#cc3319,brick\n"), "--encoded")
     np.testing.assert_allclose([answer["rgb"] for answer in answers], [RED] * 4, rtol=0, atol=1e-15)
 
 
@@ -177,6 +153,7 @@ def test_files_of_codes_and_hex(ask, table):
     ("text", "line"),
     [
         ("0,0,0\n0,0,x\n", 2),
+        ("0,0,0\n0,0,inf\n", 2),
         ("r,g,b\n0,0,0\n\n0,0\n", 4),
         ("r,g,b\nr,g,b\n", 2),
         ("0,0,0\n# a remark\n", 2),
@@ -190,31 +167,26 @@ def test_files_of_codes_and_hex(ask, table):
 def test_errors_in_files_have_the_line(refuse, table, text, line):
     path = table(text)
     error = refuse("query", "--input", path)
-    assert (type(error), error.path, error.line) == (ColourError, str(path), line)
+    assert isinstance(error, ColourError)
+    assert error.where == (str(path) if line is None else f"{path}:{line}")
     assert len(str(error)) < len(str(path)) + 250
     piped = refuse("query", "-", input=path.read_bytes())
     assert (piped.path, piped.line, piped.problem) == ("standard input", line, error.problem)
 
 
-def test_codes_out_of_range_in_files_have_the_line(refuse, table):
+def test_files_that_cannot_be_read_are_errors(refuse, home, table):
+    for path in ("none.csv", str(home)):
+        error = refuse("query", "--input", path)
+        assert (type(error), error.where) == (ColourError, path)
     error = refuse("query", "--input", table("0,0,0\n\n0,256,0\n"), "--encoded")
     assert (error.line, error.code) == (3, "invalid-codes")
 
 
-def test_files_that_cannot_be_read_are_errors(refuse, home):
-    for path in ("none.csv", str(home)):
-        error = refuse("query", "--input", path)
-        assert (type(error), error.where) == (ColourError, path)
-    for path in ("none.uplift", "x" * 300):
-        error = refuse("query", "--cube", path, "#fff")
-        assert (type(error), error.where) == (uplift.CubeFileError, path)
-
-
-@pytest.mark.parametrize("chunk", [1, 2, 3, 5])
+@pytest.mark.parametrize("chunk", [1, 3])
 def test_lines_and_their_numbers_do_not_depend_on_the_blocks(ask, run, table, monkeypatch, chunk):
     monkeypatch.setattr(colours, "CHUNK", chunk)
     path = table("\ufeffr,g,b,\u00e9\r\n0.1,0.2,0.3\r\u0020\n\n0.5,0.5,0.5")
-    answers = ask("--input", path)
+    answers = ask("query", "--input", path)
     np.testing.assert_array_equal([answer["rgb"] for answer in answers], [[0.1, 0.2, 0.3], [0.5] * 3])
     path.write_bytes(path.read_bytes() + b"\r\n0.5,0.5")
     assert f"{path}:6: '0.5 0.5' is not a colour" in run("query", "--input", path, code=2).stderr
@@ -229,7 +201,8 @@ def test_an_endless_line_is_an_error(refuse):
 def test_lines_of_a_stream_are_answered_as_they_come(style):
     words = ["query", "-", "--format", style, "--wavelengths", "500,600"]
     command = [sys.executable, "-m", "uplift_cli", *words]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as query:
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment) as query:
         for line in (b"#cc3319\n", b"0.5,0.5,0.5\n"):
             query.stdin.write(line)
             query.stdin.flush()
@@ -242,10 +215,11 @@ def test_lines_of_a_stream_are_answered_as_they_come(style):
 
 
 def test_colours_by_xyz_and_by_chromaticity(ask):
-    xyz = ask("--xyz", "0.05", "0.2", "0.1")
+    xyz = ask("query", "--xyz", "0.05", "0.2", "0.1", "--light", "D65")
     assert min(xyz["rgb"]) < 0
     assert xyz["round_trip"]["delta_e_2000"] < 1e-3
-    by_xy = ask("--xy", str(0.05 / 0.35), str(0.2 / 0.35), "--luminance", "0.2")
+    np.testing.assert_allclose(xyz["lights"]["D65"]["xyz"], [0.05, 0.2, 0.1], atol=1e-5)
+    by_xy = ask("query", "--xy", str(0.05 / 0.35), str(0.2 / 0.35), "--luminance", "0.2")
     np.testing.assert_allclose(by_xy["reflectance"], xyz["reflectance"], rtol=0, atol=1e-6)
 
 
@@ -260,58 +234,46 @@ def test_colours_by_xyz_and_by_chromaticity(ask):
         "--xyz 0.1 0.1 0.1 --xy 0.3 0.3 --luminance 0.1",
     ],
 )
-def test_one_colour_is_given_in_one_way(misuse, words):
+def test_exactly_one_source_of_colours(misuse, words):
     misuse("query", *words.split())
 
 
-def test_xyz_that_no_reflectance_has_is_an_error(refuse):
-    assert refuse("query", "--xyz", "0.05", "0.9", "0.1").code == "colour-unrealisable"
-    assert isinstance(refuse("query", "--xy", "0.3", "0", "--luminance", "0.1"), ColourError)
-
-
-def test_json_has_all_fields(ask, cubes):
-    path = cubes / "moments-8-macbeth.uplift"
-    cube = uplift.load(path)
+def test_json_has_every_field(ask, macbeth_cube):
+    cube = uplift.load(macbeth_cube)
     row = cube.data.atlas.names.index("red")
-    answer = ask("--cube", path, *cube.data.atlas.rgb[row].tolist())
+    answer = ask("query", "--cube", macbeth_cube, *cube.data.atlas.rgb[row].tolist())
     assert answer.keys() == {
         *("rgb", "requested_rgb", "wavelengths", "reflectance", "xyz", "round_trip", "cell", "status"),
-        "realisable",
-        *("entry", "standard_error", "error_bound", "reference", "standard_errors", "error_bounds"),
-        *("lights", "unlike_atlas"),
-        *("hsv", "hsl", "yiq", "dominant_wavelength", "complementary", "purity"),
+        *("realisable", "entry", "standard_error", "error_bound", "reference", "standard_errors", "error_bounds"),
+        *("lights", "unlike_atlas", "hsv", "hsl", "yiq", "dominant_wavelength", "complementary", "purity"),
     }
-    assert answer["lights"] == {}
-    assert (answer["standard_errors"], answer["unlike_atlas"]) == ({}, False)
+    assert (answer["lights"], answer["standard_errors"], answer["unlike_atlas"]) == ({}, {}, False)
     assert answer["standard_error"] == pytest.approx(cube.data.atlas.error[row])
     assert answer["error_bound"] == pytest.approx(answer["standard_error"])
     assert answer["rgb"] == cube.data.atlas.rgb[row].tolist()
     assert answer["wavelengths"] == list(range(380, 781, 5))
     np.testing.assert_allclose(answer["reflectance"], cube.reflectance(answer["rgb"]), rtol=0, atol=1e-12)
-    assert answer["round_trip"].keys() == {"rgb", "delta_e_2000"}
     np.testing.assert_allclose(answer["round_trip"]["rgb"], answer["rgb"], rtol=0, atol=1e-6)
     assert answer["round_trip"]["delta_e_2000"] < 0.01
     assert len(answer["cell"]) == 3
-    assert answer["status"] == ["atlas primary", "atlas corner"]
-    assert answer["entry"] == "red"
+    assert (answer["status"], answer["entry"]) == (["atlas primary", "atlas corner"], "red")
 
 
 def test_classical_coordinates(ask):
     """Of encoded RGB; #ff0000 has the I and Q that the FCC's matrix of 1953 gives to red."""
-    red = ask("#ff0000")
+    red = ask("query", "#ff0000")
     assert (red["hsv"], red["hsl"]) == ([0, 1, 1], [0, 1, 0.5])
     np.testing.assert_allclose(red["yiq"], [0.30, 0.60, 0.21], atol=0.005)
     assert red["dominant_wavelength"] == pytest.approx(611.4, abs=0.5)
-    grey = ask("#808080")
+    grey = ask("query", "#808080")
     assert (grey["dominant_wavelength"], grey["purity"]) == (None, 0)
-    assert ask("#ff00ff")["complementary"]
+    assert ask("query", "#ff00ff")["complementary"]
 
 
 def test_csv_has_a_row_per_colour(run, table):
     path = table("0.8,0.2,0.1\n0.1,0.1,0.1\n")
-    header, *rows = csv.reader(
-        io.StringIO(run("query", "--input", path, "--format", "csv", "--wavelengths", "450,550.5").stdout)
-    )
+    text = run("query", "--input", path, "--format", "csv", "--wavelengths", "450,550.5").stdout
+    header, *rows = csv.reader(io.StringIO(text))
     assert header == ["r", "g", "b", "delta_e_2000", "standard_error", "error_bound", "entry", "450", "550.5"]
     expected = uplift.load().reflectance([[0.8, 0.2, 0.1], [0.1] * 3], [450, 550.5])
     np.testing.assert_allclose([[float(cell) for cell in row[7:]] for row in rows], expected, atol=1e-12)
@@ -319,84 +281,63 @@ def test_csv_has_a_row_per_colour(run, table):
     assert rows[0][4:7] == ["", "", ""]
 
 
-def test_standard_errors_under_other_lights(ask, run, table, cubes):
-    path = cubes / "moments-8-macbeth.uplift"
-    cube, rgb, lights = uplift.load(path), [0.8, 0.2, 0.1], ("FL11", "HP1")
-    words = [word for light in lights for word in ("--light", light)]
+def test_standard_errors_under_other_lights(ask, run, table, macbeth_cube):
+    cube, rgb, lights = uplift.load(macbeth_cube), [0.8, 0.2, 0.1], ("FL11", "HP1")
+    words = ["--cube", macbeth_cube, *(word for light in lights for word in ("--light", light))]
     expected = {light: pytest.approx(float(cube.standard_error(rgb, light))) for light in lights}
     bounds = {light: pytest.approx(float(cube.error_bound(rgb, light))) for light in lights}
-    answer = ask("--cube", path, *rgb, *words)
+    answer = ask("query", *rgb, *words)
     assert (answer["standard_errors"], answer["error_bounds"]) == (expected, bounds)
     file = table("0.8,0.2,0.1\n0,1,0\n")
-    lines = run("query", "--cube", path, "--input", file, "--format", "csv", "--wavelengths", "500", *words).stdout
-    rows = list(csv.DictReader(io.StringIO(lines)))
-    assert {light: float(rows[0][f"standard_error_{light}"]) for light in lights} == expected
-    assert {light: float(rows[0][f"error_bound_{light}"]) for light in lights} == bounds
+    rows = csv.DictReader(io.StringIO(run("query", "--input", file, "--format", "csv", *words).stdout))
+    row = next(rows)
+    assert {light: float(row[f"standard_error_{light}"]) for light in lights} == expected
+    assert {light: float(row[f"error_bound_{light}"]) for light in lights} == bounds
     for options, style in ((["--input", file], ".2f"), (["0", "1", "0"], ".2g")):
-        text = run("query", "--cube", path, *options, *words).stdout
+        text = run("query", *options, *words).stdout
         assert "unlike the atlas" in text
         assert format(float(cube.standard_error([0, 1, 0], "HP1")), style) in text
         assert max(map(len, text.splitlines())) <= 80
 
 
-def test_lights_must_be_known(refuse, ask):
-    assert refuse("query", "#fff", "--light", "FL99").code == "unknown-illuminant"
-    assert ask("#fff", "--light", "FL11")["standard_errors"] == {}
-
-
-def test_colours_under_lights_are_those_of_relit_images(run, ask, cubes):
+def test_colours_under_lights_are_those_of_relit_images(run, ask, macbeth_cube):
     """sRGB with the white of the light, as looks state them."""
-    path = cubes / "moments-8-macbeth.uplift"
-    cube = uplift.load(path)
+    cube = uplift.load(macbeth_cube)
     (screen,) = display_sensors(["FL11"], cube.observer)
     expected = screen.rgb(cube.reflectance([0.2, 0.1, 0.05]))
-    found = ask("--cube", path, "0.2", "0.1", "0.05", "--light", "FL11")["lights"]["FL11"]
+    words = ("query", "--cube", macbeth_cube, "0.2", "0.1", "0.05", "--light", "FL11")
+    found = ask(*words)["lights"]["FL11"]
     np.testing.assert_allclose(found["srgb"], expected, atol=1e-12)
     np.testing.assert_allclose(found["xyz"], screen.xyz(expected), atol=1e-12)
     assert found["hex"] == hex_codes(expected[None])[0]
-    assert found["hex"] in run("query", "--cube", path, "0.2", "0.1", "0.05", "--light", "FL11").stdout
-    rows = run("query", "--cube", path, "#fff", "--light", "FL11", "--format", "csv").stdout.splitlines()
-    assert dict(zip(rows[0].split(","), rows[1].split(","), strict=True))["hex_FL11"] == "#ffffff"
-
-
-def test_colours_outside_the_space_have_colours_under_lights(ask):
-    found = ask("--xyz", "0.05", "0.2", "0.1", "--light", "D65")
-    np.testing.assert_allclose(found["lights"]["D65"]["xyz"], [0.05, 0.2, 0.1], atol=1e-5)
+    assert found["hex"] in run(*words).stdout
+    (row,) = csv.DictReader(io.StringIO(run(*words, "--format", "csv").stdout))
+    assert row["hex_FL11"] == found["hex"]
 
 
 def test_modes_differ_and_spectra_is_the_default(ask):
-    found = {mode: ask(*map(str, RED), "--mode", mode)["reflectance"] for mode in ("spectra", "moments", "refined")}
-    assert found["spectra"] == ask(*map(str, RED))["reflectance"]
+    found = {mode: ask("query", *RED, "--mode", mode)["reflectance"] for mode in ("spectra", "moments", "refined")}
+    assert found["spectra"] == ask("query", *RED)["reflectance"]
     assert len({tuple(values) for values in found.values()}) == 3
 
 
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("450", [450]),
         ("650,450.5", [650, 450.5]),
-        ("400:700:100", [400, 500, 600, 700]),
         ("400:699:100", [400, 500, 600]),
         ("400:400:5", [400]),
         ("400:401:0.1", np.linspace(400, 401, 11)),
     ],
 )
 def test_wavelengths(ask, text, expected):
-    answer = ask("#cc3319", "--wavelengths", text)
+    answer = ask("query", "#cc3319", "--wavelengths", text)
     np.testing.assert_allclose(answer["wavelengths"], expected, rtol=1e-14)
     assert len(answer["reflectance"]) == len(expected)
 
 
-@pytest.mark.parametrize(
-    "text",
-    ["", "red", "400:700", "400:700:0", "700:400:5", "400,,500", "nan", "-5:700:5", "400:inf:5", "400:700:1e-9"],
-)
-def test_invalid_wavelengths_are_errors(refuse, text):
-    assert isinstance(refuse("query", "#cc3319", "--wavelengths", text), OptionError)
-
-
-def test_tables(run, table, cubes):
-    text = run("query", "--cube", cubes / "moments-8-macbeth.uplift", "#cc3319").stdout
+def test_texts(run, table, macbeth_cube):
+    text = run("query", "--cube", macbeth_cube, "#cc3319").stdout
     assert all(word in text for word in ("#cc3319", *(f"{wavelength} nm" for wavelength in range(380, 781, 5))))
     assert "\x1b" not in text
     lines = run("query", "--input", table("#cc3319\n#ffffff\n#000000\n")).stdout.splitlines()
@@ -408,17 +349,6 @@ def test_plot(run, refuse, home, table):
     picture = matplotlib.image.imread(home / "red.png")
     distance = np.abs(picture[..., :3] - np.array([204, 51, 25]) / 255).max(axis=-1)
     assert (distance < 0.01).sum() > 100  # the curve has the colour
-    before = (home / "red.png").read_bytes()
     assert refuse("query", "#ffffff", "--plot", "red.png").code == "file-exists"
-    assert (home / "red.png").read_bytes() == before
     run("query", "--input", table("#cc3319\n#ffffff\n"), "--plot", "red.png", "--force")
-    assert (home / "red.png").read_bytes() != before
-    for suffix, start in (("svg", b"<?xml"), ("PDF", b"%PDF")):
-        run("query", "#cc3319", "--plot", f"red.{suffix}")
-        assert (home / f"red.{suffix}").read_bytes().startswith(start)
-
-
-def test_plots_that_cannot_be_written_are_reported_before_the_query(refuse, home):
-    (home / "folder.png").mkdir()
-    for name in ("none/red.png", "folder.png", f"{'x' * 300}.png", "red.gif", "red", "red.png.txt"):
-        assert isinstance(refuse("query", "#cc3319", "--plot", name), uplift.OutputError)
+    assert (matplotlib.image.imread(home / "red.png").shape) == picture.shape
