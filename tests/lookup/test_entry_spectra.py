@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.helpers import raises
-from uplift.common.errors import OptionError
 from uplift.lookup import MODES
 from uplift.lookup.interpolate import extended_multipliers
 from uplift.models import evaluate, reflectance
@@ -119,15 +117,3 @@ def test_outside_boxes_multipliers_have_the_refined_spectra(small_cube, data):
     found = extended(data, rgb)[outside]
     np.testing.assert_allclose(found, small_cube.reflectance(rgb[outside], mode="refined"), atol=1e-12)
     assert (extended_multipliers(data, rgb)[outside][:, 9:] == 0).all()
-
-
-@pytest.mark.parametrize("count", [0, 10, 17.5, "nine", True])
-def test_other_counts_are_refused(small_cube, count):
-    with raises(OptionError, "option"):
-        small_cube.coefficients([0.5, 0.5, 0.5], count)
-
-
-def test_answers_are_continuous_at_entries(small_cube, data):
-    near = np.clip(data.atlas.rgb + 1e-9 * np.random.default_rng(1).normal(size=data.atlas.rgb.shape), 0, 1)
-    for name, lookup in lookups(small_cube).items():
-        np.testing.assert_allclose(lookup(near), lookup(data.atlas.rgb), rtol=0, atol=1e-5, err_msg=name)

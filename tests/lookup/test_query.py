@@ -29,20 +29,14 @@ def xyz(cube, reflectance):
     return colour.sd_to_XYZ(sd, cmfs, light, method="Integration") / 100
 
 
-def test_cells_are_positions_along_the_axes(small_cube):
-    nodes = small_cube.data.lattice.nodes
-    inside = (nodes[:-1] + nodes[1:]) / 2
-    found = results_of(small_cube, (inside[2], inside[0], inside[6]), (0, 0, 0), (1, 1, 1), (nodes[3], 1, 0))
-    assert [answer.cell for answer in found] == [(2, 0, 6), (0, 0, 0), (6, 6, 6), (3, 6, 0)]
-
-
-def test_statuses_are_those_of_the_corners_of_the_cell(small_cube):
+def test_cell_and_statuses_are_those_around_the_colour(small_cube):
     data = small_cube.data
     grid = data.points.status.reshape(8, 8, 8)
     rgb = np.random.default_rng(5).random((100, 3))
-    found_statuses = set()
+    found_statuses, nodes = set(), data.lattice.nodes
     for answer in query(small_cube, rgb):
         r, g, b = answer.cell
+        assert ((nodes[[r, g, b]] <= answer.rgb) & (answer.rgb <= nodes[[r + 1, g + 1, b + 1]])).all()
         expected = sorted(set(grid[r : r + 2, g : g + 2, b : b + 2].ravel().tolist()))
         assert [int(status) for status in answer.statuses] == expected
         found_statuses |= set(answer.statuses)
@@ -60,44 +54,27 @@ def test_the_reflectance_is_that_of_the_cube(small_cube, mode):
         np.testing.assert_allclose(answer.reflectance, expected, rtol=0, atol=1e-12)
 
 
-def test_every_entry_is_found_at_its_nearest_codes(small_cube):
+def test_entries_are_found_at_their_nearest_codes_and_not_two_codes_away(small_cube):
     atlas = small_cube.data.atlas
-    nearest = small_cube.decode(np.round(small_cube.encode(atlas.rgb)))
-    assert [answer.entry for answer in query(small_cube, nearest)] == list(atlas.names)
-
-
-@pytest.mark.parametrize("channel", range(3))
-@pytest.mark.parametrize("by", [-2, 2])
-def test_no_entry_is_found_two_codes_away(small_cube, channel, by):
-    codes = np.round(small_cube.encode(small_cube.data.atlas.rgb))
-    codes[:, channel] += by
-    inside = ((codes >= 0) & (codes <= 255)).all(axis=1)
-    assert inside.sum() > 15
-    found = query(small_cube, small_cube.decode(codes[inside]))
-    assert {answer.entry for answer in found} == {None}
+    nearest = np.round(small_cube.encode(atlas.rgb))
+    assert [answer.entry for answer in query(small_cube, small_cube.decode(nearest))] == list(atlas.names)
+    moved = (nearest + np.concatenate([2 * np.eye(3), -2 * np.eye(3)])[:, None]).reshape(-1, 3)
+    moved = moved[((moved >= 0) & (moved <= 255)).all(axis=1)]
+    assert len(moved) > 90
+    assert {answer.entry for answer in query(small_cube, small_cube.decode(moved))} == {None}
 
 
 @pytest.mark.parametrize("mode", MODES)
-def test_the_round_trip_agrees_with_colour_science(small_cube, mode):
-    rgb = np.random.default_rng(7).random((6, 3))
-    for answer in query(small_cube, rgb, mode=mode):
-        back = small_cube.data.sensor.xyz_to_rgb @ xyz(small_cube, answer.reflectance)
-        np.testing.assert_allclose(answer.round_trip, back, rtol=0, atol=1e-12)
-
-
-def test_the_colour_difference_is_that_of_colour_science(small_cube):
-    # Round trips of the mode "moments" have visible differences.
-    rgb = np.random.default_rng(8).random((40, 3))
-    white = xyz(small_cube, np.ones(81))
-    xy = colour.XYZ_to_xy(white)
+def test_round_trip_and_difference_agree_with_colour_science(small_cube, mode):
+    xy, to_rgb = colour.XYZ_to_xy(xyz(small_cube, np.ones(81))), small_cube.data.sensor.xyz_to_rgb
     differences = []
-    for answer in query(small_cube, rgb, mode="moments"):
-        queried = colour.XYZ_to_Lab(np.linalg.solve(small_cube.data.sensor.xyz_to_rgb, answer.rgb), xy)
-        given = colour.XYZ_to_Lab(xyz(small_cube, answer.reflectance), xy)
-        expected = colour.delta_E(queried, given, method="CIE 2000")
-        assert answer.delta_e_2000 == pytest.approx(expected, abs=1e-9)
-        differences.append(expected)
-    assert max(differences) > 0.01
+    for answer in query(small_cube, np.random.default_rng(8).random((10, 3)), mode=mode):
+        back = xyz(small_cube, answer.reflectance)
+        np.testing.assert_allclose(answer.round_trip, to_rgb @ back, rtol=0, atol=1e-12)
+        queried = colour.XYZ_to_Lab(np.linalg.solve(to_rgb, answer.rgb), xy)
+        differences.append(colour.delta_E(queried, colour.XYZ_to_Lab(back, xy), method="CIE 2000"))
+        assert answer.delta_e_2000 == pytest.approx(differences[-1], abs=1e-9)
+    assert max(differences) > 0.01 or mode in ("spectra", "refined")
 
 
 def test_results_are_in_order_across_blocks(small_cube):
