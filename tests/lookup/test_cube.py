@@ -111,17 +111,6 @@ def test_errors_in_threads_are_raised():
 
 NAN, RAGGED = np.nan, [[0.5, 0.5, 0.5], [0.5, 0.5]]
 COLOURS = [(NAN, 0, 0), (-0.001, 0, 0), 0.5, (0.5, 0.5), (0.5,) * 4, [], RAGGED, "red", None, np.zeros((3, 2))]
-    (NAN, 0, 0),
-    (-0.001, 0, 0),
-    0.5,
-    (0.5, 0.5),
-    (0.5, 0.5, 0.5, 0.5),
-    [],
-    RAGGED,
-    "red",
-    None,
-    np.zeros((3, 2)),
-]
 
 
 @pytest.mark.parametrize("rgb", COLOURS)

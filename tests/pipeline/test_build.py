@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
-import subprocess
-import sys
 import warnings
 
 import numpy as np
@@ -34,41 +32,31 @@ def quietly(*args, **options):
         return uplift.build(*args, **options)
 
 
-def fresh_distance(cube):
-    """max |target − RGB| of every point, from the stored coefficients only."""
-    data = cube.data
-    spectra = data.model.to_reflectance(data.model.from_storage(data.points.coefficients) @ data.model.basis(GRID).T)
-    return np.abs(data.sensor.rgb(spectra) - data.lattice.points).max(axis=1)
-
-
 def delta_e(cube, rgb, mode):
     sensor = cube.data.sensor
     back = sensor.rgb(cube.reflectance(rgb, mode=mode))
     return delta_e_rgb(sensor, rgb, back)
 
 
-@pytest.mark.parametrize(
-    "options",
-    [
-        {"atlas": MACBETH, "dim": 16},
-        {"atlas": MACBETH, "dim": 64},
-        {"atlas": None, "dim": 32},
-        {"atlas": None, "dim": 64},
-        {"atlas": MACBETH, "dim": 16, "model": "sigmoid"},
-        {"atlas": None, "dim": 32, "model": "sigmoid"},
-        {"atlas": MACBETH, "dim": 16, "coefficients": 3},
-        {"atlas": MACBETH, "dim": 16, "coefficients": 17},
-        {"atlas": MACBETH, "dim": 16, "warp": "vision"},
-        {"atlas": MACBETH, "dim": 16, "axis": "linear"},
-    ],
-    ids=lambda options: "-".join(
-        str(value if name != "atlas" else "macbeth" if value else "none") for name, value in options.items()
-    ),
-)
+@pytest.mark.parametrize("options", [{"dim": 64}, {"dim": 32, "model": "sigmoid"}], ids=str)
+def test_every_point_is_fitted_without_an_atlas(options):
+    check_every_point(uplift.build(**options))
+
+
+OPTIONS = [{}, {"dim": 64}, {"model": "sigmoid"}, {"coefficients": 3}, {"coefficients": 17}, {"warp": "vision"}]
+
+
+@pytest.mark.parametrize("options", [*OPTIONS, {"axis": "linear"}], ids=str)
 def test_every_point_is_fitted_for_all_options(options):
-    cube = quietly(options.pop("atlas"), **options)
-    assert fresh_distance(cube).max() <= 1e-4
-    assert Status.UNFITTED not in cube.data.points.status
+    check_every_point(quietly(MACBETH, **{"dim": 16, **options}))
+
+
+def check_every_point(cube):
+    """All points are within 1e-4, computed from the stored coefficients only."""
+    data = cube.data
+    spectra = data.model.to_reflectance(data.model.from_storage(data.points.coefficients) @ data.model.basis(GRID).T)
+    assert np.abs(data.sensor.rgb(spectra) - data.lattice.points).max() <= 1e-4
+    assert Status.UNFITTED not in data.points.status
 
 
 @pytest.mark.parametrize(
@@ -80,25 +68,14 @@ def test_20000_random_colours_have_small_round_trip_errors(macbeth_cube, mode, m
     assert apart.max() <= most
 
 
-def test_queries_at_entries_return_their_measurements(macbeth_cube):
-    atlas = macbeth_cube.data.atlas
-    spectra = read_atlas(MACBETH)
+def test_entries_have_their_measurements_and_so_better_colours_under_other_lights(macbeth_cube):
+    atlas, spectra = macbeth_cube.data.atlas, read_atlas(MACBETH)
     measured = on_grid(spectra, GRID)[[spectra.names.index(name) for name in atlas.names]]
-    found = macbeth_cube.reflectance(atlas.rgb)
+    found, without = (cube.reflectance(atlas.rgb) for cube in (macbeth_cube, uplift.load()))
     assert delta_e(macbeth_cube, atlas.rgb, "spectra").max() <= 0.01
     assert np.sqrt(((found - measured) ** 2).mean(axis=1)).mean() <= 0.02
-
-
-def test_the_atlas_improves_colours_under_other_lights(macbeth_cube):
-    """Under illuminant A, errors are far smaller than those of a cube without the atlas."""
-    atlas = macbeth_cube.data.atlas
-    spectra = read_atlas(MACBETH)
-    measured = on_grid(spectra, GRID)[[spectra.names.index(name) for name in atlas.names]]
-    light = observer.light("A")
-    with_atlas, without = (
-        delta_e_spectra(light, cube.reflectance(atlas.rgb), measured).mean() for cube in (macbeth_cube, uplift.load())
-    )
-    assert with_atlas < 0.2 * without
+    error, error_without = (delta_e_spectra(observer.light("A"), each, measured).mean() for each in (found, without))
+    assert error < 0.2 * error_without
 
 
 def test_seeded_points_and_no_others_name_their_entry(macbeth_cube):
@@ -223,33 +200,22 @@ def test_equal_input_gives_equal_bytes(tmp_path):
         ({"dim": 1}, OptionError, "dim-too-small"),
         ({"dim": "large"}, OptionError, "dim-not-a-number"),
         ({"dim": 10**400}, OptionError, "option"),
-        ({"threshold": 0}, OptionError, "threshold-out-of-range"),
         ({"threshold": 0.2}, OptionError, "threshold-out-of-range"),
         ({"threshold": float("nan")}, OptionError, "threshold-out-of-range"),
-        ({"threshold": "1e-4"}, OptionError, "option"),
         ({"auto_tolerance": -1.0}, OptionError, "auto-tolerance-out-of-range"),
-        ({"auto_tolerance": float("nan")}, OptionError, "auto-tolerance-out-of-range"),
-        ({"dim": True}, OptionError, "dim-not-a-number"),
         ({"entry_coefficients": 8}, OptionError, "entry-coefficients-out-of-range"),
-        ({"entry_coefficients": 18}, OptionError, "entry-coefficients-out-of-range"),
-        ({"coefficients": 9.0}, OptionError, "option"),
         ({"coefficients": 10**5000}, OptionError, "coefficients-out-of-range"),
         ({"space": 3}, OptionError, "option"),
         ({"lights": ("D65", 3)}, OptionError, "option"),
-        ({"lights": ("D65",) * 65}, OptionError, "option"),
         ({"debug": 1}, OptionError, "option"),
         ({"model": "moment"}, UnknownNameError, "unknown-model"),
-        ({"axis": "sqrt"}, UnknownNameError, "unknown-axis-spacing"),
         ({"space": "sRGBB"}, UnknownNameError, "unknown-rgb-space"),
         ({"illuminant": "D56"}, UnknownNameError, "unknown-illuminant"),
         ({"lights": ("D65", "FL111")}, UnknownNameError, "unknown-illuminant"),
         ({"lights": ()}, OptionError, "option"),
-        ({"start": "seeds"}, UnknownNameError, "unknown-start"),
         ({"solver": "newton"}, UnknownNameError, "unknown-solver"),
-        ({"solver": "custom"}, UnknownNameError, "unknown-solver"),
         ({"solver": 3}, OptionError, "option"),
         ({"shortest": 299}, OptionError, "option"),
-        ({"longest": 700}, OptionError, "option"),
         ({"longest": float("nan")}, OptionError, "option"),
         ({"longest": 830, "step": 10, "shortest": 375}, OptionError, "range-not-in-steps"),
         ({"step": 2}, OptionError, "unsupported-step"),
@@ -268,13 +234,3 @@ def test_defaults_of_build_are_those_of_the_recorded_options():
     parameters = inspect.signature(uplift.build).parameters
     for field in dataclasses.fields(Options):
         assert parameters[field.name].default == field.default, field.name
-
-
-def test_a_build_without_a_scene_imports_nothing_above_the_core():
-    code = (
-        "import sys, uplift; uplift.build(dim=2, coefficients=3);"
-        "above = ('io', 'viz', 'report', 'scene', 'design', 'lab');"
-        "print([name for name in sys.modules if name.startswith(tuple(f'uplift.{each}' for each in above))])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "[]\n"

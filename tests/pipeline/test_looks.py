@@ -133,21 +133,14 @@ def test_cube_with_looks_is_stored_and_rebuilt(cubes, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("change", "code"),
-    [
-        (lambda looks: [{**looks[0], "name": "other"}, *looks[1:]], "cube-invalid"),
-        (lambda looks: looks * 10, "cube-invalid"),
-        (lambda looks: [{**looks[0], "rgb": [0.1, "x", 0]}], "cube-invalid"),
-        (lambda looks: [{"name": "brick"}], "cube-invalid"),
-    ],
+    "change",
+    [lambda looks: [{**looks[0], "name": "other"}, *looks[1:]], lambda looks: looks * 10],
+    ids=["renamed", "too many"],
 )
-def test_damaged_records_are_refused(bare, tmp_path, change, code):
+def test_damaged_records_are_refused(bare, tmp_path, change):
     provenance = {**bare.data.provenance, "looks": change(bare.data.provenance["looks"])}
-    data = dataclasses.replace(bare.data, provenance=provenance)
-    with pytest.raises(uplift.OutputError) as caught:
-        write(data, tmp_path / "damaged.uplift")
-    assert isinstance(caught.value.__cause__, CubeFileError)
-    assert caught.value.__cause__.code == code
+    with raises(uplift.OutputError, "cube-unreadable"):
+        write(dataclasses.replace(bare.data, provenance=provenance), tmp_path / "damaged.uplift")
 
 
 def test_invalid_recorded_look_fails_the_rebuild(bare, tmp_path):
@@ -179,7 +172,7 @@ def test_invalid_looks_are_refused(arguments, code):
         ([RED, Look("#8a2a20", {"A": "#808080"})], "look"),
         ([RED, Look("#40a060", {"A": "#808080"}, name="brick")], "look"),
         ([Look("#40a060", {"A": "#808080"}, name="orange")], "look"),
-        ([Look("#40a060", {"A": "#808080"}, name="cyan")], "look"),
+        ([Look("#da7b2a", {"A": "#808080"})], "look"),
         ([Look("#40a060", {"D65": "#808080"})], "look"),
         ([Look("#40a060", {"FL99": "#808080"})], "unknown-illuminant"),
         ([Look("#40a060", {"FL11": "#808080", "fl11": "#808081"})], "look"),
@@ -187,19 +180,8 @@ def test_invalid_looks_are_refused(arguments, code):
     ],
 )
 def test_contradicting_looks_are_refused(looks, code):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
-        with raises(LookError, code):
-            uplift.build(MACBETH, dim=2, prior="smooth", looks=looks)
-
-
-def test_look_of_the_colour_of_an_entry_is_refused(small_cube):
-    codes = bytes(np.rint(small_cube.encode(small_cube.data.atlas.rgb[3])).astype(np.uint8).tolist())
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
-        with raises(LookError, "look") as caught:
-            uplift.build(MACBETH, dim=2, prior="smooth", looks=Look("#" + codes.hex(), {"A": "#808080"}))
-    assert small_cube.data.atlas.names[3] in str(caught.value)
+    with raises(LookError, code):
+        quietly(MACBETH, dim=2, prior="smooth", looks=looks)
 
 
 def test_look_that_no_reflectance_has_by_day_is_refused():
@@ -267,12 +249,9 @@ HEAD = '[[look]]\nrgb = "#8a2a20"\n'
         ("[[look]]\nA = '#808080'", "missing-key", 1, "rgb"),
         (HEAD, "look", 1, "#8a2a20"),
         (HEAD + 'FL99 = "#808080"', "unknown-illuminant", 3, "FL9"),
-        (HEAD + 'brightness = 1\nA = "#808080"', "unknown-illuminant", 3, "brightness"),
         (HEAD + 'A = "#80808"', "invalid-colour", 1, "A"),
-        (HEAD + "A = [0.1, 0.2, 3]", "look", 1, "A"),
         (HEAD + 'FL3.1 = "#808080"', "invalid-value", 3, "quote"),
         (HEAD + 'A = "#808080"\nweight = 2', "look", 1, "weight"),
-        (HEAD + 'A = "#808080"\nname = 2', "invalid-value", 4, "name"),
         (HEAD + 'A = "#808080"\n\n[[look]]\nrgb = [2, 0, 0]\nA = "#808080"', "look", 5, "rgb"),
         (HEAD + "A = #808080", "invalid-toml", 3, "value"),
     ],
