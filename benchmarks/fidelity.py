@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 import warnings
 from collections.abc import Iterator
 from dataclasses import asdict
@@ -49,8 +48,9 @@ from uplift.lab.study.held_out import (
     HoldoutSplit,
     holdout,
     mismatch_centroids,
+    random_halves,
+    spectrum_errors,
 )
-from uplift.lattice import Status
 from uplift.lookup import Cube
 from uplift.report.measures import check_calibration, compute_smoothness
 
@@ -65,8 +65,10 @@ MIN_COLOURS = 10
 """Fewer colours are not listed."""
 LIBRARY_SETS = tuple(name for names in FAMILIES.values() for name in names)
 PUBLISHED = ("otsu2018", "mallett2019", "smits1999")
-RUNS = 2
 Row = dict[str, Any]
+Splits = tuple[HoldoutSplit, ...]
+Pairs = list[tuple[Cube, Materials]]
+"""Cubes and the materials that they are queried for."""
 
 
 def main() -> None:
@@ -77,6 +79,14 @@ def main() -> None:
         for name in LARGE
         for count in COUNTS
     }
+    known = {(name, count): other_halves(name, dim=DIM, coefficients=count) for name in LARGE for count in (9, 17)}
+    others = {
+        (atlas, name): [(build(atlas, dim=DIM, leave_out=shipped_families(name)), materials(name))]
+        for atlas in KNOWN
+        for name in LARGE
+        if name != atlas
+    }
+    first = {f"{atlas}, queried for {name}": pairs for (atlas, name), pairs in others.items() if atlas == KNOWN[0]}
     record(
         "fidelity",
         dim=DIM,
@@ -88,7 +98,15 @@ def main() -> None:
         smoothness=[
             neighbour_steps(name, count) for name in (None, "macbeth", "rawtoaces", *LARGE[2:]) for count in (9, 17)
         ],
-        **coverage(),
+        light_splits=SPLITS,
+        standard_errors=[
+            *(quartiles(*key, pairs) for key, pairs in known.items()),
+            *(quartiles(label, 9, pairs) for label, pairs in first.items()),
+        ],
+        light_errors=[
+            {"atlas": name, "coefficients": count, "covered": covered(pairs)} for (name, count), pairs in known.items()
+        ],
+        other_families=[row for key, pairs in others.items() for row in across(*key, pairs)],
     )
     record(
         "fidelity",
@@ -100,26 +118,18 @@ def main() -> None:
         sets=[compare_methods(name) for name in SETS],
     )
     sets = (*LIBRARY_SETS, *(["munsell"] if MUNSELL.exists() else []))
+    size = FILE.stat().st_size
     record(
         "fidelity",
         "prior",
         dim=COARSE,
-        build_dim=DIM,
         lights=list(HELD_OUT_LIGHTS),
-        parameters={
-            "length": LENGTH,
-            "nugget": NUGGET,
-            "spread": SPREAD,
-            "otsu_spread": OTSU_SPREAD,
-            "bytes": FILE.stat().st_size,
-        },
+        parameters={"length": LENGTH, "nugget": NUGGET, "spread": SPREAD, "otsu_spread": OTSU_SPREAD, "bytes": size},
         library=[{"name": each.name, "spectra": len(each.measured)} for each in shipped_library()],
         unseen=[unseen(name, count) for name in sets for count in (9, 17)],
         atlases=[with_atlas(name) for name in sets if name not in FAMILIES["checker"]],
         relevance=[relevance(name) for name in ("macbeth", "rawtoaces", "cie2017")],
         libraries=[row for name in LARGE for row in with_library(name)],
-        smoothness=list(coarse_smoothness()),
-        builds=[build_time(space) for space in ("sRGB", "ACEScg")],
     )
 
 
@@ -137,32 +147,27 @@ def at_entries(name: str) -> Iterator[Row]:
         yield {"atlas": name, "cube": label, "megabytes": size / 1e6, **errors(cube.reflectance(some.rgb), some)}
 
 
-def halves(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> Iterator[Row]:
+def halves(name: str, count: int, splits: Splits) -> Iterator[Row]:
     """Yield the errors of every cube at the held-out half, with their standard deviation over the splits."""
     for method in (HALF, NO_ATLAS, SIGMOID):
-        means = np.array([split.errors[method].means() for split in splits])
-        mean, std = as_record(means.mean(axis=0)), as_record(means.std(axis=0))
-        both = {key: {"mean": mean["errors"][key], "std": std["errors"][key]} for key in mean["errors"]}
-        rms = {"mean": mean["rms"], "std": std["rms"]}
-        yield {"atlas": name, "coefficients": count, "cube": method, "rms": rms, "errors": both}
+        found = np.array([split.errors[method].means() for split in splits])
+        pairs = zip(found.mean(axis=0).tolist(), found.std(axis=0).tolist(), strict=True)
+        rms, *delta_e = [{"mean": mean, "std": std} for mean, std in pairs]
+        by_light = dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True))
+        yield {"atlas": name, "coefficients": count, "cube": method, "rms": rms, "errors": by_light}
 
 
-def shares(name: str, count: int, splits: tuple[HoldoutSplit, ...]) -> Row:
+def shares(name: str, count: int, splits: Splits) -> Row:
     """Return the errors relative to the sigmoid, and the light under which the atlas helps least."""
     ours, sigmoid, plain = (pooled(splits, method) for method in (HALF, SIGMOID, NO_ATLAS))
     share, against = as_record(ours / sigmoid), as_record(ours / plain)["errors"]
     worst = max(against, key=against.__getitem__)
-    return {
-        "atlas": name,
-        "coefficients": count,
-        "rms": share["rms"],
-        "A": share["errors"]["A"],
-        "FL11": share["errors"]["FL11"],
-        "worst": {"ratio": against[worst], "light": worst},
-    }
+    lights = {light: share["errors"][light] for light in ("A", "FL11")}
+    least = {"ratio": against[worst], "light": worst}
+    return {"atlas": name, "coefficients": count, "rms": share["rms"], **lights, "worst": least}
 
 
-def pooled(splits: tuple[HoldoutSplit, ...], method: str) -> Array:
+def pooled(splits: Splits, method: str) -> Array:
     """Mean rms, then mean ΔE00 under each light, over the splits; splits of one set differ by one entry at most."""
     return np.mean([split.errors[method].means() for split in splits], axis=0)
 
@@ -174,78 +179,51 @@ def neighbour_steps(name: str | None, count: int) -> Row:
     return {"atlas": name or "none", "coefficients": count, **quantiles}
 
 
-def coverage() -> Row:
-    """Return how many errors the standard errors cover: of the other halves of sets, and of other sets."""
-    known = {(name, count): other_halves(name, dim=DIM, coefficients=count) for name in LARGE for count in (9, 17)}
-    others = {
-        (atlas, name): [(build(atlas, dim=DIM, leave_out=shipped_families(name)), materials(name))]
-        for atlas in KNOWN
-        for name in LARGE
-        if name != atlas
-    }
-    own_light = [quartiles(name, count, pairs) for (name, count), pairs in known.items()]
-    own_light += [
-        quartiles(f"{atlas}, queried for {name}", 9, pairs)
-        for (atlas, name), pairs in others.items()
-        if atlas == KNOWN[0]
+def stated(pairs: Pairs, light: Light) -> tuple[Array, Array]:
+    """Return errors (3, n), actual, standard and bounds, and the shares (n, 2) that the latter two cover."""
+    parts = [
+        np.array(
+            [
+                delta_e_spectra(light, cube.reflectance(some.rgb), some.measured),
+                cube.standard_error(some.rgb, light),
+                cube.error_bound(some.rgb, light),
+            ]
+        )
+        for cube, some in pairs
     ]
-    return {
-        "light_splits": SPLITS,
-        "standard_errors": own_light,
-        "light_errors": [
-            {"atlas": name, "coefficients": count, "covered": covered(pairs)} for (name, count), pairs in known.items()
-        ],
-        "other_families": [row for key, pairs in others.items() for row in across(*key, pairs)],
-    }
+    found = np.concatenate(parts, axis=1)
+    return found, (found[0] <= found[1:]).T
 
 
-def quartiles(label: str, count: int, pairs: list[tuple[Cube, Materials]]) -> Row:
+def quartiles(label: str, count: int, pairs: Pairs) -> Row:
     """Return the coverage under the light of the nodes, overall and by quartile of the standard error."""
-    light = observer.light(pairs[0][0].data.error_illuminant)
-    parts = [_errors(cube, some, light) for cube, some in pairs]
-    actual, predicted, bound = (np.concatenate(part) for part in zip(*parts, strict=True))
-    found = check_calibration(actual, predicted, bound)
-    assert found is not None
-    within = np.stack([actual <= predicted, actual <= bound], axis=1)
-    by_size = np.array_split(predicted.argsort(kind="stable"), 4)
+    found, within = stated(pairs, observer.light(pairs[0][0].data.error_illuminant))
+    overall = check_calibration(*found)
+    assert overall is not None
+    by_size = np.array_split(found[1].argsort(kind="stable"), 4)
     return {
         "atlas": label,
         "coefficients": count,
-        "all": [found.actual, found.predicted],
-        "within_error": found.within_error,
-        "within_bound": found.within_bound,
-        "quartiles": [within[rows].mean(axis=0).tolist() for rows in by_size],
+        "all": [overall.actual, overall.predicted],
+        "within_error": overall.within_error,
+        "within_bound": overall.within_bound,
+        "quartiles": [within[rows].mean(axis=0) for rows in by_size],
     }
 
 
-def across(atlas: str, name: str, pairs: list[tuple[Cube, Materials]]) -> Iterator[Row]:
+def covered(pairs: Pairs, rows: Mask | slice = slice(None)) -> dict[str, Array]:
+    """Return, by light, the shares of errors within the standard error and within the error bound."""
+    return {name: stated(pairs, observer.light(name))[1][rows].mean(axis=0) for name in HELD_OUT_LIGHTS}
+
+
+def across(atlas: str, name: str, pairs: Pairs) -> Iterator[Row]:
     """Yield the coverage of another set, of colours that are like the atlas and of those that are not."""
     ((cube, some),) = pairs
     unlike = cube.unlike_atlas(some.rgb)
     for label, rows in {"like the atlas": ~unlike, "unlike the atlas": unlike}.items():
         if rows.sum() >= MIN_COLOURS:
-            share, found = float(rows.mean()), covered(pairs, rows)
-            yield {"atlas": atlas, "queried": name, "colours": label, "share": share, "covered": found}
-
-
-def covered(pairs: list[tuple[Cube, Materials]], rows: Mask | None = None) -> dict[str, list[float]]:
-    """Return, by light, the shares of errors within the standard error and within the error bound."""
-    found = {}
-    for name in HELD_OUT_LIGHTS:
-        parts = [_errors(cube, some, observer.light(name)) for cube, some in pairs]
-        actual, predicted, bound = (np.concatenate(part) for part in zip(*parts, strict=True))
-        within = np.stack([actual <= predicted, actual <= bound], axis=1)
-        found[name] = within[slice(None) if rows is None else rows].mean(axis=0).tolist()
-    return found
-
-
-def _errors(cube: Cube, some: Materials, light: Light) -> tuple[Array, Array, Array]:
-    """Return actual errors (n,), standard errors and error bounds."""
-    actual = delta_e_spectra(light, cube.reflectance(some.rgb), some.measured)
-    predicted, bound = cube.standard_error(some.rgb, light), cube.error_bound(some.rgb, light)
-    assert predicted is not None
-    assert bound is not None
-    return actual, predicted, bound
+            found = {"share": rows.mean(), "covered": covered(pairs, rows)}
+            yield {"atlas": atlas, "queried": name, "colours": label, **found}
 
 
 def compare_methods(name: str) -> Row:
@@ -262,36 +240,36 @@ def compare_methods(name: str) -> Row:
         SIGMOID: pooled(learnt, SIGMOID),
     }
     some = materials(name)
-    for method, uplift_rgb in published().items():
-        answer = errors(uplift_rgb(some.rgb, SENSOR.wavelengths), some)
-        found[method] = np.array([answer["rms"], *answer["errors"].values()])
+    for method, answers in published(some).items():
+        found[method] = spectrum_errors(answers, some.measured).means()
     means = {method: float(np.mean(values[1:])) for method, values in found.items()}
-    best = min(means, key=lambda method: means[method])
-    kept, held_out = np.array_split(np.random.default_rng(0).permutation(len(some.rgb)), 2)
+    kept, held_out = random_halves(len(some.rgb), 0)
     centroids = mismatch_centroids(SENSOR, some.measured[kept], some.rgb[held_out], [SENSOR.light])
-    return {
-        "set": name,
-        "spectra": len(some.rgb),
-        "without_metamer": float(np.isnan(centroids[:, 0, 0]).mean()),
-        "rows": [
-            {
-                "method": method,
-                "rms": None if np.isnan(values[0]) else values[0],
-                "mean": means[method],
-                "errors": dict(zip(HELD_OUT_LIGHTS, values[1:].tolist(), strict=True)),
-                "best": method == best,
-                "optimistic": is_optimistic([name], method),
-            }
-            for method, values in found.items()
-        ],
-    }
+    rows = [
+        {
+            "method": method,
+            "rms": None if np.isnan(values[0]) else values[0],
+            "mean": means[method],
+            "errors": as_record(values)["errors"],
+            "best": means[method] == min(means.values()),
+            "optimistic": is_optimistic([name], method),
+        }
+        for method, values in found.items()
+    ]
+    without = np.isnan(centroids[:, 0, 0]).mean()
+    return {"set": name, "spectra": len(some.rgb), "without_metamer": without, "rows": rows}
 
 
 @cache
-def published() -> dict[str, Any]:
+def methods() -> dict[str, Any]:
     """Return the methods of other authors, which use no atlas."""
     task = make_task({"macbeth": spectra("macbeth")})
     return {method.title: method.prepare(task).uplift for method in select_methods(PUBLISHED)}
+
+
+def published(some: Materials) -> dict[str, Array]:
+    """Return the answers (n, N) of other authors' methods."""
+    return {method: uplift_rgb(some.rgb, SENSOR.wavelengths) for method, uplift_rgb in methods().items()}
 
 
 def family(name: str) -> list[str]:
@@ -305,41 +283,39 @@ def smooth_cube(count: int) -> Cube:
     return build(None, dim=COARSE, coefficients=count, prior="smooth")
 
 
-def means(answers: Array, some: Materials) -> Array:
+def means(answers: Cube | Array, some: Materials) -> Array:
     """Mean ΔE00 (L,) under each light."""
-    return np.array(list(errors(answers, some)["errors"].values()))
+    spectra = answers.reflectance(some.rgb) if isinstance(answers, Cube) else answers
+    return spectrum_errors(spectra, some.measured).means()[1:]
 
 
 def unseen(name: str, count: int) -> Row:
     """Return the errors without an atlas where the prior does not know the family, relative to other methods."""
     some = materials(name)
-    learnt = means(build(None, dim=COARSE, coefficients=count, leave_out=family(name)).reflectance(some.rgb), some)
-    smooth = means(smooth_cube(count).reflectance(some.rgb), some)
-    others = {method: uplift_rgb(some.rgb, SENSOR.wavelengths) for method, uplift_rgb in published().items()}
-    others["sigmoid"] = build(None, dim=COARSE, model="sigmoid").reflectance(some.rgb)
-    worst = {method: float((learnt / means(answers, some)).max()) for method, answers in others.items()}
+    learnt = means(build(None, dim=COARSE, coefficients=count, leave_out=family(name)), some)
+    others = {"smooth": smooth_cube(count), **published(some), "sigmoid": build(None, dim=COARSE, model="sigmoid")}
+    ratios = {method: learnt / means(answers, some) for method, answers in others.items()}
     return {
         "set": name,
         "spectra": len(some.rgb),
         "coefficients": count,
-        "learnt": dict(zip(HELD_OUT_LIGHTS, learnt.tolist(), strict=True)),
-        "against_smooth": dict(zip(HELD_OUT_LIGHTS, (learnt / smooth).tolist(), strict=True)),
-        "worst": {"smooth": float((learnt / smooth).max()), **worst},
+        "learnt": dict(zip(HELD_OUT_LIGHTS, learnt, strict=True)),
+        "against_smooth": dict(zip(HELD_OUT_LIGHTS, ratios["smooth"], strict=True)),
+        "worst": {method: ratio.max() for method, ratio in ratios.items()},
     }
 
 
 def with_atlas(name: str) -> Row:
     """Return the mean error over the lights of ColorChecker cubes, queried for a set that the prior does not know."""
     some, left_out = materials(name), [*family(name), "checker"]
-    cubes = {
-        "smooth": build("macbeth", dim=COARSE, prior="smooth"),
-        "learnt": build("macbeth", dim=COARSE, leave_out=left_out),
-        "no_atlas": build(None, dim=COARSE, leave_out=left_out),
+    found = {
+        "smooth": means(build("macbeth", dim=COARSE, prior="smooth"), some),
+        "learnt": means(build("macbeth", dim=COARSE, leave_out=left_out), some),
+        "no_atlas": means(build(None, dim=COARSE, leave_out=left_out), some),
     }
-    found = {key: means(cube.reflectance(some.rgb), some) for key, cube in cubes.items()}
     ratios = found["learnt"] / found["smooth"]
-    mean_errors = {key: float(each.mean()) for key, each in found.items()}
-    return {"set": name, **mean_errors, "ratio": float(ratios.mean()), "worst": float(ratios.max())}
+    mean_errors = {key: each.mean() for key, each in found.items()}
+    return {"set": name, **mean_errors, "ratio": ratios.mean(), "worst": ratios.max()}
 
 
 def relevance(name: str) -> Row:
@@ -350,56 +326,23 @@ def relevance(name: str) -> Row:
 
 def with_library(name: str) -> Iterator[Row]:
     """Yield the errors at one half of a set, relative to smooth spectra, with the other half as a library."""
-    rows = np.random.default_rng(0).permutation(len(spectra(name)))
-    atlas = Atlas(tuple(spectra(name)[int(row)] for row in sorted(np.array_split(rows, 2)[0])))
+    entries = spectra(name).entries
+    atlas = Atlas(tuple(entries[row] for row in sorted(random_halves(len(entries), 0)[0])))
     known = {entry.values.tobytes() for entry in atlas}
-    others = Atlas(tuple(entry for entry in spectra(name) if entry.values.tobytes() not in known))
+    others = Atlas(tuple(entry for entry in entries if entry.values.tobytes() not in known))
     measured = resample(others, SENSOR.wavelengths).values
     rgb = SENSOR.rgb(measured)
     inside = SENSOR.contains(rgb)
     queried = Materials(name, measured[inside], np.clip(rgb[inside], 0, 1))
-    smooth = means(smooth_cube(9).reflectance(queried.rgb), queried)
+    smooth = means(smooth_cube(9), queried)
     for label, options in {
         "learnt": {"leave_out": family(name)},
         "learnt, the other half as library": {"library": atlas, "leave_out": family(name)},
         "smooth, the other half as atlas": {"atlas": atlas, "prior": "smooth"},
         "learnt, the other half as atlas": {"atlas": atlas, "leave_out": family(name)},
     }.items():
-        ratio = means(uplift.build(dim=COARSE, **options).reflectance(queried.rgb), queried) / smooth
-        yield {"set": name, "cube": label, "mean": float(ratio.mean()), "worst": float(ratio.max())}
-
-
-def coarse_smoothness() -> Iterator[Row]:
-    """Yield the rms differences between neighbours of cubes, and of spectra by Otsu et al. at the same colours."""
-    found = {}
-    for count in (9, 17):
-        for label, cube in {
-            "smooth": smooth_cube(count),
-            "learnt": build(None, dim=COARSE, coefficients=count),
-        }.items():
-            found[f"{label}, {count} coefficients"] = compute_smoothness(cube.data).differences
-    points = smooth_cube(9).data.lattice.points
-    answers = published()["Otsu 2018"](points, SENSOR.wavelengths).reshape(COARSE, COARSE, COARSE, -1)
-    steps = [np.sqrt((np.diff(answers, axis=axis) ** 2).mean(axis=-1)).ravel() for axis in range(3)]
-    found["Otsu 2018 at the same colours"] = np.concatenate(steps)
-    for label, differences in found.items():
-        high = np.percentile(differences, 99)
-        yield {"cube": label, "mean": differences.mean(), "high": high, "max": differences.max()}
-
-
-def build_time(space: str) -> Row:
-    """Return the CPU seconds of builds with both priors in turn, and their unfitted nodes."""
-    seconds: dict[str, list[float]] = {"smooth": [], "learnt": []}
-    unfitted = {}
-    for run in range(RUNS + 1):
-        for prior, times in seconds.items():
-            begin = time.process_time()
-            cube = build(None, dim=DIM, space=space, illuminant="D65", prior=prior)
-            if run:  # the first one compiles
-                times.append(time.process_time() - begin)
-            unfitted[prior] = int((cube.data.points.status == Status.UNFITTED).sum())
-    medians = {prior: float(np.median(times)) for prior, times in seconds.items()}
-    return {"space": space, "illuminant": "D65", **medians, "unfitted": list(unfitted.values())}
+        ratio = means(uplift.build(dim=COARSE, **options), queried) / smooth
+        yield {"set": name, "cube": label, "mean": ratio.mean(), "worst": ratio.max()}
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array
 from uplift.fit.families import families_with
-from uplift.lab.study.held_out import spectrum_errors
+from uplift.lab.study.held_out import random_halves, spectrum_errors
 from uplift.lookup import Cube
 
 MUNSELL = ROOT / "out" / "munsell.csv"
@@ -79,8 +79,7 @@ def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
     """Return cubes of random halves of a set, and the other halves: every material is queried equally often."""
     pairs = []
     for seed in range(SPLITS):
-        rows = np.random.default_rng(seed).permutation(len(materials(name).rgb))
-        halves = [materials(name).take(part) for part in np.array_split(rows, 2)]
+        halves = [materials(name).take(rows) for rows in random_halves(len(materials(name).rgb), seed)]
         for kept, queried in (halves, halves[::-1]):
             pairs.append((build(kept, leave_out=shipped_families(name), **options), queried))
     return pairs
