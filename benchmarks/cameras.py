@@ -17,9 +17,10 @@ from uplift.colorimetry.camera import CAMERA
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import solid
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices
 from uplift.common.errors import UpliftWarning
 from uplift.fit.families import families_with, shipped_library
+from uplift.lab.study.held_out import random_halves
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
@@ -57,43 +58,36 @@ def lab_matrix(raw: Array, xyz: Array, white: Array) -> Array:
     return matrix(least_squares(residuals, start[:, :2].ravel()).x)
 
 
-def methods(atlas: Atlas, training: Array, sensor: Sensor, plain: Cube) -> dict[str, ToXyz]:
+def methods(atlas: Atlas, training: Indices, sensor: Sensor, plain: Cube) -> dict[str, ToXyz]:
     """Return the methods, each trained on the entries of an atlas in rows ``training``, ``plain`` on none."""
     measured = on_grid(atlas, sensor.wavelengths)
-    left_out = families_with(measured)
-    library = np.concatenate([family.measured for family in shipped_library(left_out)])
+    library = np.concatenate([family.measured for family in shipped_library(families_with(measured))])
+    half, more = measured[training], np.concatenate([measured[training], library])
+    cube = _build(Atlas(tuple(atlas.entries[row] for row in training)), sensor, measured)
+    white = sensor.light.white
 
-    def samples(spectra: Array) -> tuple[Array, Array]:
-        return sensor.rgb(spectra), spectra @ sensor.light.xyz.T
-
-    def by_matrix(matrix: Array) -> ToXyz:
+    def by_matrix(spectra: Array, *white: Array) -> ToXyz:
+        fit = lab_matrix if white else xyz_matrix
+        matrix = fit(sensor.rgb(spectra), spectra @ sensor.light.xyz.T, *white)
         return lambda raw: raw @ matrix.T
 
     def by_cube(cube: Cube, mode: str = "spectra") -> ToXyz:
         return lambda raw: cube.reflectance(raw, sensor.wavelengths, mode) @ sensor.light.xyz.T
 
-    cube = _build(Atlas(tuple(atlas.entries[row] for row in training)), sensor, left_out)
-    half, white = samples(measured[training]), sensor.light.white
-    more = samples(np.concatenate([measured[training], library]))
     return {
-        "matrix, XYZ": by_matrix(xyz_matrix(*half)),
-        "matrix, L*a*b*": by_matrix(lab_matrix(*half, white)),
-        "matrix, L*a*b*, with the library": by_matrix(lab_matrix(*more, white)),
+        "matrix, XYZ": by_matrix(half),
+        "matrix, L*a*b*": by_matrix(half, white),
+        "matrix, L*a*b*, with the library": by_matrix(more, white),
         "cube without an atlas": by_cube(plain),
         "cube": by_cube(cube),
         "cube, refined": by_cube(cube, "refined"),
     }
 
 
-def _build(entries: Atlas | None, sensor: Sensor, left_out: tuple[str, ...]) -> Cube:
-    return build(
-        entries,
-        dim=DIM,
-        space=CAMERA,
-        observer=sensor.space,
-        illuminant=sensor.illuminant,
-        leave_out=left_out,
-    )
+def _build(entries: Atlas | None, sensor: Sensor, measured: Array) -> Cube:
+    """Build a cube whose prior does not know the families of measured reflectances (E, N)."""
+    options = {"observer": sensor.space, "illuminant": sensor.illuminant, "leave_out": families_with(measured)}
+    return build(entries, dim=DIM, space=CAMERA, **options)
 
 
 def realisable_share(sensor: Sensor, dim: int = DIM) -> float:
@@ -107,42 +101,32 @@ def compare(camera: str, illuminant: str) -> dict[str, Any]:
     atlas, sensor = read_atlas(ATLAS), observer.sensor(CAMERA, illuminant, camera)
     measured, white = on_grid(atlas, sensor.wavelengths), sensor.light.white
     raw, expected = sensor.rgb(measured), lab(measured @ sensor.light.xyz.T, white)
-    plain = _build(None, sensor, families_with(measured))
+    plain = _build(None, sensor, measured)
     errors: dict[str, list[Array]] = {}
     for seed in range(SPLITS):
-        training, held_out = np.array_split(np.random.default_rng(seed).permutation(len(measured)), 2)
+        training, held_out = random_halves(len(measured), seed)
         for name, to_xyz in methods(atlas, training, sensor, plain).items():
             found = lab(to_xyz(raw[held_out]), white)
             errors.setdefault(name, []).append(delta_e_2000(found, expected[held_out]))
-    figures = {name: _summary(np.concatenate(each)) for name, each in errors.items()}
+    pooled = {name: np.concatenate(each) for name, each in errors.items()}
     return {
         "camera": camera,
         "light": illuminant,
         "realisable": 100 * realisable_share(sensor),
-        "errors": figures,
-    }
-
-
-def _summary(delta_e: Array) -> dict[str, float]:
-    return {
-        "mean": float(delta_e.mean()),
-        "high": float(np.percentile(delta_e, 95)),
-        "largest": float(delta_e.max()),
+        "errors": {name: {"mean": each.mean(), "high": np.percentile(each, 95)} for name, each in pooled.items()},
     }
 
 
 def main() -> None:
     """Measure, and write the data of the page."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UpliftWarning)
-        rows = [compare(camera, light) for camera in observer.names("camera") for light in LIGHTS]
-    left_out = list(families_with(on_grid(read_atlas(ATLAS), observer.grid())))
+    warnings.simplefilter("ignore", UpliftWarning)
+    rows = [compare(camera, light) for camera in observer.names("camera") for light in LIGHTS]
     record(
         "cameras",
         atlas=ATLAS,
         splits=SPLITS,
         dim=DIM,
-        left_out=left_out,
+        left_out=families_with(on_grid(read_atlas(ATLAS), observer.grid())),
         marks={method: mark([ATLAS], CHOSEN_AS[method]) if method in CHOSEN_AS else "" for method in rows[0]["errors"]},
         rows=rows,
     )

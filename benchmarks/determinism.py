@@ -7,15 +7,12 @@ lattice. They may change spectra; the largest difference is what `uplift check` 
 
 from __future__ import annotations
 
-import dataclasses
 import os
 import subprocess
 import sys
 import tempfile
 import warnings
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from itertools import groupby
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,67 +20,55 @@ import click
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, ROOT, record
+from benchmarks import ROOT, record
 from uplift.atlas import Atlas
 from uplift.report.regression import LIMITS, compare_rebuilt
 
 Row = dict[str, Any]
-CASES: dict[str, dict[str, object]] = {
-    "moments, Macbeth, 16³": {"atlas": ("macbeth",), "dim": 16},
-    "sigmoid, Macbeth, 16³": {"atlas": ("macbeth",), "dim": 16, "model": "sigmoid"},
-    "17 coefficients, four atlases, 12³": {
-        "atlas": ("babelcolor", "cie2017", "pmc", "vs"),
-        "dim": 12,
-        "coefficients": 17,
-    },
-    "ProPhoto RGB, Macbeth, 12³": {"atlas": ("macbeth",), "dim": 12, "space": "ProPhoto RGB"},
+CASES: dict[str, tuple[tuple[str, ...], Row]] = {
+    "moments, Macbeth, 16³": (("macbeth",), {"dim": 16}),
+    "sigmoid, Macbeth, 16³": (("macbeth",), {"dim": 16, "model": "sigmoid"}),
+    "17 coefficients, four atlases, 12³": (("babelcolor", "cie2017", "pmc", "vs"), {"dim": 12, "coefficients": 17}),
+    "ProPhoto RGB, Macbeth, 12³": (("macbeth",), {"dim": 12, "space": "ProPhoto RGB"}),
 }
-
-
-@dataclass(frozen=True)
-class Setting:
-    """Environment variables of a process, a command prefix, and rows of a batch."""
-
-    name: str
-    environment: dict[str, str] = field(default_factory=dict)
-    prefix: tuple[str, ...] = ()
-    batch: tuple[int, ...] = ()
-
-
-DEFAULT = Setting("default")
-SAME = (
-    Setting("again"),
-    Setting("one core", prefix=("taskset", "-c", "0")),
-    Setting("1 thread of BLAS", {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}),
-    Setting("2 threads of BLAS", {"OPENBLAS_NUM_THREADS": "2", "OMP_NUM_THREADS": "2"}),
-    Setting("8 threads of BLAS", {"OPENBLAS_NUM_THREADS": "8"}),
-    Setting("1 thread of XLA", {"NPROC": "1"}),
-    Setting("16 threads of XLA", {"NPROC": "16"}),
-    Setting("no threads in a product of XLA", {"XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false"}),
-    Setting("3 devices", {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"}),
-    Setting("batches of 1024 and 64", batch=(1024, 64)),
-    Setting("batches of 4000 and 100", batch=(4000, 100)),
-)
+"""Atlases and options of the cubes."""
 NUMPY_SSE4 = {"NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR"}
 """numpy at its baseline. A feature is disabled by its own name only, those above it must be named too."""
 NUMPY_AVX2 = {"NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR"}
-WITHOUT_AVX512 = NUMPY_AVX2 | {"XLA_FLAGS": "--xla_cpu_max_isa=AVX2", "OPENBLAS_CORETYPE": "Haswell"}
+XLA_SSE4, XLA_AVX2 = ({"XLA_FLAGS": f"--xla_cpu_max_isa={name}"} for name in ("SSE4_2", "AVX2"))
+BLAS_SSE4, BLAS_AVX2 = ({"OPENBLAS_CORETYPE": name} for name in ("Nehalem", "Haswell"))
+WITHOUT_AVX512 = NUMPY_AVX2 | XLA_AVX2 | BLAS_AVX2
 """Environment of a process that computes as on a CPU with AVX2 and without AVX-512."""
-APART = (
-    Setting("numpy without AVX-512", NUMPY_AVX2),
-    Setting("numpy without AVX2", NUMPY_SSE4),
-    Setting("XLA with AVX2", {"XLA_FLAGS": "--xla_cpu_max_isa=AVX2"}),
-    Setting("XLA with AVX", {"XLA_FLAGS": "--xla_cpu_max_isa=AVX"}),
-    Setting("XLA with SSE 4.2", {"XLA_FLAGS": "--xla_cpu_max_isa=SSE4_2"}),
-    Setting("BLAS for Haswell (AVX2)", {"OPENBLAS_CORETYPE": "Haswell"}),
-    Setting("BLAS for Sandy Bridge (AVX)", {"OPENBLAS_CORETYPE": "Sandybridge"}),
-    Setting("BLAS for Nehalem (SSE 4.2)", {"OPENBLAS_CORETYPE": "Nehalem"}),
-    Setting("all three without AVX-512", WITHOUT_AVX512),
-    Setting(
-        "all three without AVX",
-        NUMPY_SSE4 | {"XLA_FLAGS": "--xla_cpu_max_isa=SSE4_2", "OPENBLAS_CORETYPE": "Nehalem"},
-    ),
-)
+SAME: dict[str, dict[str, str]] = {
+    "again": {},
+    "one core": {},
+    "1 thread of BLAS": {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
+    "2 threads of BLAS": {"OPENBLAS_NUM_THREADS": "2", "OMP_NUM_THREADS": "2"},
+    "8 threads of BLAS": {"OPENBLAS_NUM_THREADS": "8"},
+    "1 thread of XLA": {"NPROC": "1"},
+    "16 threads of XLA": {"NPROC": "16"},
+    "no threads in a product of XLA": {"XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false"},
+    "3 devices": {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"},
+    "batches of 1024 and 64": {},
+    "batches of 4000 and 100": {},
+}
+"""Environment variables of settings that must not change a byte."""
+APART: dict[str, dict[str, str]] = {
+    "numpy without AVX-512": NUMPY_AVX2,
+    "numpy without AVX2": NUMPY_SSE4,
+    "XLA with AVX2": XLA_AVX2,
+    "XLA with AVX": {"XLA_FLAGS": "--xla_cpu_max_isa=AVX"},
+    "XLA with SSE 4.2": XLA_SSE4,
+    "BLAS for Haswell (AVX2)": BLAS_AVX2,
+    "BLAS for Sandy Bridge (AVX)": {"OPENBLAS_CORETYPE": "Sandybridge"},
+    "BLAS for Nehalem (SSE 4.2)": BLAS_SSE4,
+    "all three without AVX-512": WITHOUT_AVX512,
+    "all three without AVX": NUMPY_SSE4 | XLA_SSE4 | BLAS_SSE4,
+}
+"""Environment variables of settings that must not change nodes."""
+PREFIXES = {"one core": ("taskset", "-c", "0")}
+BATCHES = {"batches of 1024 and 64": ("1024", "64"), "batches of 4000 and 100": ("4000", "100")}
+"""Commands before that of a setting, and rows of a large and of a small batch."""
 
 
 @click.command()
@@ -92,96 +77,70 @@ APART = (
 def main(into: str | None, batch: tuple[int, int] | None) -> None:
     """Build under all settings and compare."""
     if into is not None:
-        _build(Path(into), batch)
+        build_cubes(Path(into), batch)
         return
-    with tempfile.TemporaryDirectory() as folder:
-        base = _run(DEFAULT, Path(folder) / "base")
-        same = [row for setting in SAME for row in _rows(setting, base, Path(folder) / setting.name)]
-        apart = [row for setting in APART for row in _rows(setting, base, Path(folder) / setting.name)]
-    worst = {name: max(row["measures"][name] for row in apart) for name in LIMITS}
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        run("default", {}, folder)
+        same, apart = ([measure(key, each[key], folder) for key in each] for each in (SAME, APART))
     record(
         "determinism",
         "stability-determinism",
         cubes=list(CASES),
-        same=[
-            {"setting": name, "cubes": len(rows), "different": sum(not row["same_bytes"] for row in rows)}
-            for name, rows in _by_setting(same)
-        ],
-        apart=[
-            {
-                "setting": name,
-                "different_nodes": sum(not row["nodes_same"] for row in rows),
-                "measures": {one: max(row["measures"][one] for row in rows) for one in LIMITS},
-                "status_changes": sum(not row["status_same"] for row in rows),
-            }
-            for name, rows in _by_setting(apart)
-        ],
+        same=[select(row, "setting", "cubes", "different") for row in same],
+        apart=[select(row, "setting", "different_nodes", "measures", "status_changes") for row in apart],
         limits=dict(LIMITS),
     )
-    different = [row for row in same if not row["same_bytes"]] + [row for row in apart if not row["nodes_same"]]
-    click.echo(
-        f"{len(same)} builds must have the same bytes, {len(apart)} others the same nodes; failures: {different}"
-    )
-    click.echo(f"across instruction sets at most {worst}")
-    raise SystemExit(bool(different))
+    failed = [row["setting"] for row in same if row["different"]]
+    failed += [row["setting"] for row in apart if row["different_nodes"]]
+    click.echo(f"settings that change bytes, or nodes across instruction sets: {', '.join(failed) or 'none'}")
+    raise SystemExit(bool(failed))
 
 
-def _by_setting(rows: list[Row]) -> Iterator[tuple[str, list[Row]]]:
-    for name, group in groupby(rows, key=lambda row: row["setting"]):
-        yield name, list(group)
-
-
-def _build(folder: Path, batch: tuple[int, int] | None) -> None:
+def build_cubes(folder: Path, batch: tuple[int, int] | None) -> None:
+    """Build the cubes of all cases; names of entries get their atlas as prefix."""
     from uplift.fit import batch as batches
 
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     if batch:
         batches.CPU_BATCH_ROWS = batch
-    for number, options in enumerate(CASES.values()):
-        chosen = {key: value for key, value in options.items() if key != "atlas"}
-        cube = uplift.build(_atlas(options["atlas"]), **chosen)
-        cube.save(folder / f"{number}.uplift")
+    for number, (names, options) in enumerate(CASES.values()):
+        atlases = [(name, uplift.read_atlas(name)) for name in names]
+        entries = [replace(each, name=f"{name} {each.name}") for name, atlas in atlases for each in atlas.entries]
+        uplift.build(Atlas(tuple(entries)), **options).save(folder / f"{number}.uplift")
 
 
-def _atlas(names: object) -> Atlas:
-    """Merge atlases; entry names get the atlas as prefix."""
-    entries = []
-    for name in names:
-        entries += [
-            dataclasses.replace(entry, name=f"{name} {entry.name}")
-            for entry in uplift.read_atlas(ATLASES / f"{name}.txt").entries
-        ]
-    return Atlas(tuple(entries))
-
-
-def _run(setting: Setting, folder: Path) -> Path:
-    folder.mkdir()
-    command = [*setting.prefix, sys.executable, "-m", "benchmarks.determinism", "--into", str(folder)]
-    if setting.batch:
-        command += ["--batch", *map(str, setting.batch)]
+def run(name: str, variables: dict[str, str], folder: Path) -> Path:
+    """Build the cubes in a process with a setting, into a folder of its name."""
+    into = folder / name
+    into.mkdir()
+    command = [*PREFIXES.get(name, ()), sys.executable, "-m", "benchmarks.determinism", "--into", str(into)]
+    if name in BATCHES:
+        command += ["--batch", *BATCHES[name]]
     compiled = {"JAX_ENABLE_COMPILATION_CACHE": "false"}  # no code compiled under another setting
-    subprocess.run(command, env=os.environ | compiled | setting.environment, cwd=ROOT, check=True)
-    return folder
+    subprocess.run(command, env=os.environ | compiled | variables, cwd=ROOT, check=True)
+    return into
 
 
-def _rows(setting: Setting, base: Path, folder: Path) -> list[Row]:
-    _run(setting, folder)
-    rows = []
-    for number, case in enumerate(CASES):
-        one, other = base / f"{number}.uplift", folder / f"{number}.uplift"
-        first, second = uplift.load(one).data, uplift.load(other).data
-        comparison = compare_rebuilt(other, first, second)
-        rows.append(
-            {
-                "setting": setting.name,
-                "cube": case,
-                "same_bytes": one.read_bytes() == other.read_bytes(),
-                "nodes_same": np.array_equal(first.lattice.nodes, second.lattice.nodes),
-                "measures": comparison.measures,
-                "status_same": comparison.stored_counts == comparison.rebuilt_counts,
-            }
-        )
-    return rows
+def measure(name: str, variables: dict[str, str], folder: Path) -> Row:
+    """Build the cubes under a setting, and compare them with those of the default one."""
+    into = run(name, variables, folder)
+    files = [(folder / "default" / f"{number}.uplift", into / f"{number}.uplift") for number in range(len(CASES))]
+    cubes = [(uplift.load(first).data, uplift.load(second).data) for first, second in files]
+    found = [compare_rebuilt(file, *pair) for (_, file), pair in zip(files, cubes, strict=True)]
+    return {
+        "setting": name,
+        "cubes": len(files),
+        "different": sum(first.read_bytes() != second.read_bytes() for first, second in files),
+        "different_nodes": sum(not np.array_equal(one.lattice.nodes, other.lattice.nodes) for one, other in cubes),
+        "measures": {limit: max(each.measures[limit] for each in found) for limit in LIMITS},
+        "status_changes": sum(each.stored_counts != each.rebuilt_counts for each in found),
+    }
+
+
+def select(row: Row, *keys: str) -> Row:
+    """Return some of the values of a row."""
+    return {key: row[key] for key in keys}
 
 
 if __name__ == "__main__":
