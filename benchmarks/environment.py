@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import tempfile
 import warnings
-from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import OpenEXR
@@ -32,8 +32,7 @@ HEIGHT, WIDTH = 16, 32
 SUN = 60.0
 
 
-@dataclass(frozen=True)
-class Lamp:
+class Lamp(NamedTuple):
     """A lamp of colour-science on an environment: a soft spot at ``(u, v)`` of ``size``, in shares of the height."""
 
     name: str
@@ -70,35 +69,16 @@ class Sky:
         return np.asarray(total)
 
 
+DUSK = Lamp("C100S54 (HPS)", 0.3, 0.35, 0.05, SUN), Lamp("Mercury", 1.4, 0.4, 0.04, SUN / 4)
+OFFICE = Lamp("D65", 0.2, 0.5, 0.12, 6.0), Lamp("F34/CW/RS/EW (Cool White FL)", 1.2, 0.15, 0.08, 20.0)
+SHOP = Lamp("LED-B1", 0.4, 0.3, 0.04, SUN), Lamp("LED-RGB1", 1.1, 0.35, 0.06, SUN / 3)
 SKIES = (
-    Sky(
-        "street at dusk",
-        "D75",
-        0.15,
-        (Lamp("C100S54 (HPS)", 0.3, 0.35, 0.05, SUN), Lamp("Mercury", 1.4, 0.4, 0.04, SUN / 4)),
-    ),
-    Sky(
-        "office",
-        "T8 Polylux 4000",
-        0.3,
-        (Lamp("D65", 0.2, 0.5, 0.12, 6.0), Lamp("F34/CW/RS/EW (Cool White FL)", 1.2, 0.15, 0.08, 20.0)),
-    ),
-    Sky(
-        "shop",
-        "PHOS-2",
-        0.1,
-        (Lamp("LED-B1", 0.4, 0.3, 0.04, SUN), Lamp("LED-RGB1", 1.1, 0.35, 0.06, SUN / 3)),
-    ),
+    Sky("street at dusk", "D75", 0.15, DUSK),
+    Sky("office", "T8 Polylux 4000", 0.3, OFFICE),
+    Sky("shop", "PHOS-2", 0.1, SHOP),
 )
-
-
-@dataclass(frozen=True, eq=False)
-class Renders:
-    """XYZ images by sky and method, XYZ (3,) of a perfect reflector by sky, and ΔE00 (24,) of the patches."""
-
-    images: dict[tuple[str, str], Array]
-    whites: dict[str, Array]
-    delta_e: dict[tuple[str, str], Array]
+ByMethod = dict[tuple[str, str], Array]
+"""Arrays by sky and method."""
 
 
 def main() -> None:
@@ -106,15 +86,15 @@ def main() -> None:
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     version = start_mitsuba(VARIANT)
     with tempfile.TemporaryDirectory() as folder:
-        renders = render(SKIES, Path(folder), LAYOUT, SPP)
-    captions = {key: "" if key[1] == TRUE else caption(errors) for key, errors in renders.delta_e.items()}
+        images, whites, delta_e = render(SKIES, Path(folder), LAYOUT, SPP)
+    captions = {key: "" if key[1] == TRUE else caption(errors) for key, errors in delta_e.items()}
     # XYZ relative to a white is a gamut, whose (1, 1, 1) Bradford adaptation takes to the white of the screen.
     to_screen = {
         name: conversion(SimpleNamespace(rgb_to_xyz=np.diag(white / white[1])), SRGB) / white
-        for name, white in renders.whites.items()
+        for name, white in whites.items()
     }
     picture, size = DOCS / "emission" / "environments.png", (12.5, 2.6 * len(SKIES))
-    draw(renders.images, captions, to_screen, (TRUE, KNOWN, UNKNOWN, MITSUBA), LAYOUT, picture, size)
+    draw(images, captions, to_screen, (TRUE, KNOWN, UNKNOWN, MITSUBA), LAYOUT, picture, size)
     record(
         "environment",
         precision="full",
@@ -122,27 +102,31 @@ def main() -> None:
         variant=VARIANT,
         samples=LAYOUT.patch**2 * SPP,
         skies=[{"sky": sky.name, "lights": ", ".join(sky.lamp_names)} for sky in SKIES],
-        rows=list(rows(renders)),
+        rows=[summary(*key, errors) for key, errors in delta_e.items() if key[1] != TRUE],
     )
 
 
-def render(skies: tuple[Sky, ...], folder: Path, layout: Layout, spp: int) -> Renders:
-    """Render the chart under all skies with all methods and one seed, and the truth with another seed too."""
+def render(
+    skies: tuple[Sky, ...], folder: Path, layout: Layout, spp: int
+) -> tuple[ByMethod, dict[str, Array], ByMethod]:
+    """Render the chart under all skies with all methods and one seed, and the truth with another seed too.
+
+    Returns XYZ images, XYZ (3,) of a perfect reflector by sky, and ΔE00 (24,) of the patches.
+    """
     reflectances, perfect = measured_spectra(chart()), [{"type": "uniform", "value": 1.0}] * 24
     images, whites, delta_e = {}, {}, {}
-
-    def rendered(emitter: dict[str, Any], surfaces: list[dict[str, Any]], seed: int) -> Array:
-        return render_chart(emitter, surfaces, layout, spp, seed, OF_LIGHTS)
-
     for sky in skies:
-        emitters, name = methods(sky, folder), sky.name
-        whites[name] = layout.means(rendered(emitters[TRUE], perfect, 2)).mean(axis=0)
-        for method, emitter in emitters.items():
-            images[name, method] = rendered(emitter, reflectances, 0)
-        images[name, OTHER_SEED] = rendered(emitters[TRUE], reflectances, 1)
-        labs = {method: lab(layout.means(images[name, method]), whites[name]) for method in (*emitters, OTHER_SEED)}
-        delta_e |= {(name, method): delta_e_2000(labs[TRUE], values) for method, values in labs.items()}
-    return Renders(images, whites, delta_e)
+        emitters = methods(sky, folder)
+        true = emitters[TRUE]
+        image = partial(render_chart, layout=layout, spp=spp, integrator=OF_LIGHTS)
+        white = layout.means(image(true, perfect, seed=2)).mean(axis=0)
+        found = {method: image(emitter, reflectances, seed=0) for method, emitter in emitters.items()}
+        found[OTHER_SEED] = image(true, reflectances, seed=1)
+        labs = {method: lab(layout.means(one), white) for method, one in found.items()}
+        whites[sky.name] = white
+        images |= {(sky.name, method): one for method, one in found.items()}
+        delta_e |= {(sky.name, method): delta_e_2000(labs[TRUE], values) for method, values in labs.items()}
+    return images, whites, delta_e
 
 
 def methods(sky: Sky, folder: Path) -> dict[str, dict[str, Any]]:
@@ -151,30 +135,27 @@ def methods(sky: Sky, folder: Path) -> dict[str, dict[str, Any]]:
     names = spectral_channels("S0", table.wavelengths)
     spectral = _write(folder / f"{stem}-spectral.exr", names, power, **SPECTRAL_LAYOUT)
     rgb = _write(folder / f"{stem}.exr", ("R", "G", "B"), table.rgb(power))
-    partial = folder / f"{stem}.uplift"
-    uplift.build_emission(without=sky.lamp_names).save(partial)
+    without = folder / f"{stem}.uplift"
+    uplift.build_emission(without=sky.lamp_names).save(without)
     return {
-        TRUE: {"type": "uplift_envmap", "filename": str(spectral)},
-        KNOWN: {"type": "uplift_envmap", "filename": str(rgb)},
-        UNKNOWN: {"type": "uplift_envmap", "filename": str(rgb), "cube": str(partial)},
-        MITSUBA: {"type": "envmap", "filename": str(rgb)},
+        TRUE: {"type": "uplift_envmap", "filename": spectral},
+        KNOWN: {"type": "uplift_envmap", "filename": rgb},
+        UNKNOWN: {"type": "uplift_envmap", "filename": rgb, "cube": str(without)},
+        MITSUBA: {"type": "envmap", "filename": rgb},
     }
 
 
-def _write(path: Path, names: tuple[str, ...], planes: Array, **header: Any) -> Path:
+def _write(path: Path, names: tuple[str, ...], planes: Array, **header: Any) -> str:
     channels = {name: np.ascontiguousarray(planes[..., place], dtype=np.float32) for place, name in enumerate(names)}
     OpenEXR.File({"type": OpenEXR.scanlineimage, **header}, channels).write(str(path))
-    return path
+    return str(path)
 
 
-def rows(renders: Renders) -> Iterator[dict[str, Any]]:
-    """Yield the errors by sky and method."""
-    for sky in renders.whites:
-        for method in (KNOWN, UNKNOWN, MITSUBA, OTHER_SEED):
-            errors = renders.delta_e[sky, method]
-            middle, high = np.percentile(errors, (50, 95)).tolist()
-            found = {"mean": float(errors.mean()), "median": middle, "p95": high, "worst": float(errors.max())}
-            yield {"sky": sky, "method": method, **found}
+def summary(sky: str, method: str, errors: Array) -> dict[str, Any]:
+    """Summarise the errors (24,) of the patches."""
+    median, high = np.percentile(errors, (50, 95))
+    quantiles = {"mean": errors.mean(), "median": median, "p95": high, "worst": errors.max()}
+    return {"sky": sky, "method": method, **quantiles}
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +39,7 @@ def main() -> None:
         "look-cubes",
         atlas=ATLAS,
         dim=DIM,
-        looks=looks(plain, looked),
+        looks=list(looks(plain, looked)),
         entries=entries(plain, looked),
         near=near(plain, looked),
         impossible=[impossible(*each) for each in IMPOSSIBLE],
@@ -47,27 +47,18 @@ def main() -> None:
     )
 
 
-def looks(plain: Cube, looked: Cube) -> list[Row]:
-    """Return wish, answer and distances of each look under each of its lights."""
-    rows = []
+def looks(plain: Cube, looked: Cube) -> Iterator[Row]:
+    """Yield wish, answer and distances of each look under each of its lights."""
     for look in looked.data.provenance["looks"]:
         for each in look["lights"]:
             (screen,) = display_sensors([each["light"]], plain.observer)
             wish = np.array(each["wish"])
             before, after = (screen.rgb(cube.reflectance(look["rgb"])) for cube in (plain, looked))
-            colour, wished, answered = hex_codes(np.array([look["rgb"], wish, before]))
-            rows.append(
-                {
-                    "look": look["name"],
-                    "colour": colour,
-                    "light": each["light"],
-                    "wish": wished,
-                    "before": answered,
-                    "without": delta_e_rgb(screen, before, wish),
-                    "with_look": delta_e_rgb(screen, after, wish),
-                }
+            codes = dict(
+                zip(("colour", "wish", "before"), hex_codes(np.array([look["rgb"], wish, before])), strict=True)
             )
-    return rows
+            distances = {"without": delta_e_rgb(screen, before, wish), "with_look": delta_e_rgb(screen, after, wish)}
+            yield {"look": look["name"], "light": each["light"], **codes, **distances}
 
 
 def entries(plain: Cube, looked: Cube) -> Row:
@@ -102,24 +93,22 @@ def impossible(rgb: str, light: str, wish: str) -> Row:
 def render(plain: Cube, looked: Cube) -> Row:
     """Render two balls of one RGB, of two cubes, under daylight and under the light of a look, and draw them."""
     version, look = start_mitsuba(), looked.data.provenance["looks"][0]
-    images, found = {}, {}
+    lamps, found = ("D65", look["lights"][0]["light"]), {}
+    figure = new_figure(4.5, 4.3)
     with tempfile.TemporaryDirectory() as folder:
-        paths = [Path(folder, f"{stem}.uplift") for stem in ("plain", "looks")]
+        paths = [str(Path(folder, f"{stem}.uplift")) for stem in ("plain", "looks")]
         for cube, path in zip((plain, looked), paths, strict=True):
             cube.save(path)
-        for lamp in ("D65", look["lights"][0]["light"]):
+        for axes, lamp in zip(figure.subplots(2, 1), lamps, strict=True):
             here = sensor(illuminant=lamp)
-            images[lamp] = balls([str(path) for path in paths], look["rgb"], lamp) @ here.xyz_to_rgb.T
+            image = balls(paths, look["rgb"], lamp) @ here.xyz_to_rgb.T
             middle = slice(PIXELS // 2 - 12, PIXELS // 2 + 12)
-            halves = np.split(images[lamp], 2, axis=1)
-            patches = np.array([half[middle, middle].mean(axis=(0, 1)) for half in halves])
+            patches = [half[middle, middle].mean(axis=(0, 1)) for half in np.split(image, 2, axis=1)]
             found[lamp] = {"delta_e": delta_e_rgb(here, *patches)}
-    figure = new_figure(4.5, 4.3)
-    for axes, (lamp, image) in zip(figure.subplots(2, 1), images.items(), strict=True):
-        axes.imshow(to_display_codes(image, SRGB).astype(np.uint8), interpolation="nearest")
-        axes.set(xticks=(), yticks=())
-        axes.spines[:].set_visible(False)
-        axes.set_ylabel(figure_text(lamp), fontsize=11)
+            axes.imshow(to_display_codes(image, SRGB).astype(np.uint8), interpolation="nearest")
+            axes.set(xticks=(), yticks=())
+            axes.spines[:].set_visible(False)
+            axes.set_ylabel(figure_text(lamp), fontsize=11)
     write_png(figure, DOCS / "look-cubes" / "two-cubes.png", force=True)
     return {"mitsuba": version, "look": look["name"], "lights": found}
 

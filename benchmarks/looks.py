@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import tempfile
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from benchmarks.materials import LARGE, SPLITS, other_halves
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.expected_error import mahalanobis
+from uplift.colorimetry.extreme_spectra import extreme_spectra
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
@@ -51,22 +53,30 @@ CHOICE = (("region-1", "ArrowLeft", 6), ("region-1", "ArrowDown", 2))
 def main() -> None:
     """Measure and store."""
     warnings.simplefilter("ignore")
-    cube = load(CUBE)
+    cube, atlas = load(CUBE), read_atlas(ATLAS)
     sensor = cube.data.sensor
-    atlas = read_atlas(ATLAS)
-    rgb = sensor.rgb(resample(atlas, sensor.wavelengths).values)
+    rgb, drawn = sensor.rgb(resample(atlas, sensor.wavelengths).values), sensor.decode(DRAWN)
     lights = [light(name, sensor.observer, *sensor.range) for name in LIGHTS]
-    found = [bounds(cube, rgb, each, divisions=PAGE_DIVISIONS) for each in lights]
-    drawn = sensor.decode(DRAWN)
-    regions = [bounds(cube, drawn, each, divisions=PAGE_DIVISIONS) for each in lights[:DRAWN_LIGHTS]]
-    plot_bounds(cube, [regions], PICTURE, force=True)
-    screenshot(cube, [bounds(cube, drawn[:1], each, divisions=PAGE_DIVISIONS) for each in lights])
+
+    def search(colours: Array) -> list[Bounds]:
+        return [bounds(cube, colours, each, divisions=PAGE_DIVISIONS) for each in lights]
+
+    found = search(rgb)
+    plot_bounds(cube, [search(drawn)[:DRAWN_LIGHTS]], PICTURE, force=True)
+    screenshot(cube, search(drawn[:1]))
     record(
         "looks",
         precision="full",
         lights=LIGHTS,
-        colours=[_colour(name, found, row) for row, name in enumerate(atlas.names)],
-        methods=[_method(cube, rgb, each) for each in found],
+        colours=[
+            {
+                "name": name,
+                "largest": {each.light.name: each.largest.delta_e_2000[row] for each in found},
+                "share": {each.light.name: each.share[row] for each in found},
+            }
+            for row, name in enumerate(atlas.names)
+        ],
+        methods=[method(cube, rgb, each) for each in found],
         many=MANY,
         runs=RUNS,
         programs=PROGRAMS,
@@ -77,17 +87,8 @@ def main() -> None:
     )
 
 
-def _colour(name: str, found: list[Bounds], row: int) -> dict[str, Any]:
-    return {
-        "name": name,
-        "largest": {each.light.name: float(each.largest.delta_e_2000[row]) for each in found},
-        "share": {each.light.name: float(each.share[row]) for each in found},
-    }
-
-
-def _method(cube: Cube, rgb: Array, found: Bounds) -> dict[str, Any]:
-    """Cost, and errors of the solver and of the search, under a light."""
-    sensor = cube.data.sensor
+def method(cube: Cube, rgb: Array, found: Bounds) -> dict[str, Any]:
+    """Return the cost, and errors of the solver and of the search, under a light."""
     fine = bounds(cube, rgb, found.light, divisions=FINE_DIVISIONS)
     more = fine.largest.delta_e_2000 - found.largest.delta_e_2000
     many = np.random.default_rng(1).uniform(size=(MANY, 3))
@@ -95,15 +96,15 @@ def _method(cube: Cube, rgb: Array, found: Bounds) -> dict[str, Any]:
     return {
         "light": found.light.name,
         "seconds": times,
-        "program": _program_difference(sensor, found.light, rgb),
-        "missed": {"mean": float(np.maximum(more, 0).mean()), "largest": float(more.max())},
-        "volume": float((found.volumes.volume / fine.volumes.volume).mean()),
+        "program": program_difference(cube.data.sensor, found.light, rgb),
+        "missed": {"mean": np.maximum(more, 0).mean(), "largest": more.max()},
+        "volume": (found.volumes.volume / fine.volumes.volume).mean(),
     }
 
 
-def likely(name: str) -> list[dict[str, Any]]:
-    """Return the shares of held-out materials in the likely region and in that of normal errors, by light."""
-    pairs, rows = other_halves(name, dim=32, coefficients=COEFFICIENTS), []
+def likely(name: str) -> Iterator[dict[str, Any]]:
+    """Yield the shares of held-out materials in the likely region and in that of normal errors, by light."""
+    pairs = other_halves(name, dim=32, coefficients=COEFFICIENTS)
     for each in map(light, LIKELY_LIGHTS):
         distances, radii = [], []
         for cube, some in pairs:
@@ -113,18 +114,15 @@ def likely(name: str) -> list[dict[str, Any]]:
             )
             distances.append(mahalanobis(errors.covariance(some.rgb)[:, 1:, 1:], measured - answered))
             radii.append(np.full(len(measured), errors.likely_radius))
-        found, radius = np.concatenate(distances), np.concatenate(radii)
-        rows.append(
-            {
-                "atlas": name,
-                "light": each.name,
-                "materials": len(found) // SPLITS,
-                "inside": float((found <= radius).mean()),
-                "normal": float((found <= NORMAL_RADIUS).mean()),
-                "radius": [float(radius.min()), float(radius.max())],
-            }
-        )
-    return rows
+        distance, radius = np.concatenate(distances), np.concatenate(radii)
+        yield {
+            "atlas": name,
+            "light": each.name,
+            "materials": len(distance) // SPLITS,
+            "inside": (distance <= radius).mean(),
+            "normal": (distance <= NORMAL_RADIUS).mean(),
+            "radius": [radius.min(), radius.max()],
+        }
 
 
 def screenshot(cube: Cube, found: list[Bounds]) -> None:
@@ -142,10 +140,8 @@ def screenshot(cube: Cube, found: list[Bounds]) -> None:
         SCREENSHOT.write_bytes(tab.screenshot(scale=SCALE))
 
 
-def _program_difference(sensor: Sensor, found: Light, rgb: Array) -> float:
+def program_difference(sensor: Sensor, found: Light, rgb: Array) -> float:
     """Largest difference of the extremes in XYZ, relative to white, from those of linear programs."""
-    from uplift.colorimetry.extreme_spectra import extreme_spectra
-
     directions = np.random.default_rng(2).normal(size=(len(rgb) * PROGRAMS, 3))
     response, colours = directions @ found.xyz, np.repeat(rgb, PROGRAMS, axis=0)
     ours = (extreme_spectra(sensor.matrix, colours, response).reflectance * response).sum(axis=1)

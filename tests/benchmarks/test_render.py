@@ -85,12 +85,3 @@ def test_skies_are_mixtures_of_their_lights():
         assert weights.min() > -1e-9
         np.testing.assert_allclose(weights.T @ basis, power, atol=1e-8)
         assert load_emission().contains(load_emission().rgb(power)).all()
-
-
-def test_rows_of_an_environment_state_errors_of_patches():
-    names = (environment.KNOWN, environment.UNKNOWN, environment.MITSUBA, environment.OTHER_SEED)
-    errors = dict.fromkeys([("a", name) for name in names], np.linspace(0, 1, 24))
-    found = list(environment.rows(environment.Renders({}, {"a": np.ones(3)}, errors)))
-    assert [row["method"] for row in found] == list(names)
-    assert found[0]["worst"] == 1
-    assert found[0]["mean"] == pytest.approx(0.5)
