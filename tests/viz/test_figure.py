@@ -9,10 +9,8 @@ import matplotlib
 import pytest
 from markupsafe import escape
 
-from tests.helpers import raises
-from uplift.common.errors import OutputError
 from uplift.common.text import printable
-from uplift.viz.figure import STYLE, figure_text, new_figure, style_axes, to_svg, write_png
+from uplift.viz.figure import STYLE, figure_text, new_figure, style_axes, to_svg
 
 
 def drawn(value):
@@ -37,17 +35,6 @@ def test_equal_figures_have_equal_svg_and_others_share_no_identifier():
     first, second = (set(re.findall(r' id="([^"]+)"', drawn(value))) for value in (1, 2))
     assert first
     assert not first & second
-
-
-def test_png_does_not_replace_a_file(tmp_path):
-    path = tmp_path / "figure.png"
-    write_png(new_figure(1, 1), path)
-    stored = path.read_bytes()
-    with raises(OutputError, "file-exists"):
-        write_png(new_figure(2, 1), path)
-    assert path.read_bytes() == stored
-    write_png(new_figure(1, 1), path, force=True)
-    assert path.read_bytes() == stored
 
 
 @pytest.mark.parametrize("text", [r"$\frac{A$", "$$", r"a\$b", "_hidden", "a\x00\x1b[2Jb", "\ud800", "{$x$}"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import jinja2
 import pytest
 
-from uplift.viz.html import Markup, _environment, render
+from uplift.viz.html import _environment, render
 
 HOSTILE = "</script><b title='\"'>&"
 BASE = "viz/templates/base.html.j2"
@@ -23,10 +23,6 @@ def test_page_escapes_its_texts():
     assert page.startswith('<!DOCTYPE html>\n<html lang="en">')
 
 
-def test_markup_is_not_escaped():
-    assert '<p class="lead"><b>bold</b></p>' in render(BASE, title="", lead=Markup("<b>bold</b>"))
-
-
 def test_missing_value_is_an_error():
     with pytest.raises(jinja2.UndefinedError, match="'lead' is undefined"):
         render(BASE, title="")
@@ -38,21 +34,3 @@ def test_json_cannot_end_its_script():
     assert "ΔE00" in text
     with pytest.raises(ValueError, match="not JSON compliant"):
         rendered("{{ rows | tojson }}", rows=[float("nan")])
-
-
-@pytest.mark.parametrize(
-    ("source", "expected"),
-    [
-        (
-            "{{ parts.swatch(['#000000', '#ffffff']) }}",
-            '<span class="swatch" title="#000000 | #ffffff">'
-            '<i style="background:#000000"></i><i style="background:#ffffff"></i></span>',
-        ),
-        ("{{ parts.number(text) }}", '<td class="number">&lt;i&gt;</td>'),
-        ("{{ parts.name_cell(text, 'x') }}", '<td class="name">&lt;i&gt;<small>x</small></td>'),
-        ("{% call parts.note() %}{{ text }}{% endcall %}", '<p class="note">&lt;i&gt;</p>'),
-        ("{{ parts.facts([('a', text)]) }}", "<dl><div><dt>a</dt><dd>&lt;i&gt;</dd></div></dl>"),
-    ],
-)
-def test_shared_parts(source, expected):
-    assert rendered(source, text="<i>") == expected

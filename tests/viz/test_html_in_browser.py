@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import pytest
 
 from benchmarks.browser import browser
@@ -75,23 +73,6 @@ INTERACTIVE = "viz/templates/interactive.html.j2"
 ATTACK = Markup("<script>document.title = 'attacked'</script><b onclick='document.title = \"attacked\"'>x</b>")
 
 
-@pytest.fixture
-def opened(tab, tmp_path):
-    """A function that shows a page."""
-
-    def show(html):
-        path = tmp_path / "page.html"
-        path.write_text(html, encoding="utf-8")
-        tab.errors.clear()
-        tab.call("Page.navigate", url=path.as_uri())
-        end = time.monotonic() + 30
-        while not tab.evaluate("document.readyState === 'complete' && location.protocol === 'file:'"):
-            assert time.monotonic() < end
-        return tab
-
-    return show
-
-
 def interactive(**values):
     circle = "<svg viewBox='0 0 9 9'><g id='marker-0-0'><circle r='3' cx='4' cy='4'/></g></svg>"
     tooltips = [{"title": "a point", "family": "one", "lines": [("", "1 ns")]}]
@@ -105,25 +86,19 @@ HOVER = """(() => {
 })()"""
 
 
-def test_script_of_the_page_runs(opened):
-    tab = opened(interactive())
+def test_the_script_of_the_page_runs_and_others_do_not(tab, tmp_path):
+    open_page(tab, interactive(), tmp_path)
     assert "a point" in tab.evaluate(HOVER)
     assert tab.errors == []
-
-
-def test_other_scripts_do_not_run(opened):
-    tab = opened(interactive(lead=ATTACK))
+    open_page(tab, interactive(lead=ATTACK), tmp_path)
     tab.evaluate("document.querySelector('.lead b').click()")
     assert tab.evaluate("document.title") == "A page"
     assert any("Content Security Policy" in error for error in tab.errors)
 
 
-def test_page_without_a_script_runs_none(opened):
-    tab = opened(render("viz/templates/base.html.j2", title="A page", lead=ATTACK))
-    assert tab.evaluate("document.title") == "A page"
-
-
-def test_without_the_policy_the_attack_succeeds(opened):
+def test_without_the_policy_the_attack_succeeds(tab, tmp_path):
     html = render("viz/templates/base.html.j2", title="A page", lead=ATTACK)
-    tab = opened(html.replace("Content-Security-Policy", "x"))
+    open_page(tab, html, tmp_path)
+    assert tab.evaluate("document.title") == "A page"
+    open_page(tab, html.replace("Content-Security-Policy", "x"), tmp_path)
     assert tab.evaluate("document.title") == "attacked"

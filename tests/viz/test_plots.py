@@ -6,9 +6,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-from tests.helpers import raises
 from uplift.colorimetry import observer
-from uplift.common.errors import OutputError
 from uplift.lookup import bounds
 from uplift.viz.plots import plot_bounds
 
@@ -33,10 +31,3 @@ def test_regions_have_their_colours(small_cube, blocks, tmp_path):
     pixels = matplotlib.image.imread(tmp_path / "plot.png")[..., :3].reshape(-1, 3)
     spread = pixels.max(axis=1) - pixels.min(axis=1)
     assert 0.05 < (spread > 0.3).mean() < 0.6
-
-
-def test_existing_files_stay(small_cube, blocks, tmp_path):
-    (tmp_path / "plot.png").write_bytes(b"mine")
-    with raises(OutputError, "file-exists"):
-        plot_bounds(small_cube, blocks, tmp_path / "plot.png")
-    assert (tmp_path / "plot.png").read_bytes() == b"mine"

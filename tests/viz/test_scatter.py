@@ -35,12 +35,6 @@ def test_labels_without_room_are_left_out():
     assert np.isnan(corners).any(axis=1).tolist() == [False, True]
 
 
-def test_single_label_is_next_to_its_point():
-    anchors = np.array([[100.0, 100.0]])
-    (corner,) = place_labels(anchors, np.array([[40.0, 8.0]]), anchors, PANEL)
-    np.testing.assert_allclose(corner, [106, 96])
-
-
 def test_label_does_not_cover_a_marker():
     anchors, markers = np.array([[100.0, 100.0]]), np.array([[100.0, 100.0], [120.0, 100.0]])
     (corner,) = place_labels(anchors, np.array([[40.0, 8.0]]), markers, PANEL)

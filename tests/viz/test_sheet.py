@@ -11,9 +11,7 @@ import pytest
 from matplotlib.image import imread
 
 from tests.cube.hand_made import hand_made
-from tests.helpers import raises
 from uplift.colorimetry.srgb import encode
-from uplift.common.errors import OutputError
 from uplift.viz.sheet import BACKGROUND, GAP, HIGHLIGHT, RAMP, STATUS, Layout, compose, panels, write_sheet
 
 COLOUR, DISTANCE, STATE, ERROR, ROUND = range(5)
@@ -97,17 +95,6 @@ def test_exr_is_flat_linear_rgb(tmp_path):
     assert (image[0] == np.float32(BACKGROUND)).all()
 
 
-def test_text_is_drawn(tmp_path):
-    data = hand_made()
-    write_sheet(data, tmp_path / "sheet.exr")
-    with_text = OpenEXR.File(str(tmp_path / "sheet.exr")).channels()["RGB"].pixels
-    sheet = compose(data)
-    for label in sheet.labels:
-        row, left = round(label.y), round(label.x)
-        area = np.s_[row - 6 : row + 6, left : left + 20]
-        assert (with_text[area] > sheet.image[area]).any(), label.text
-
-
 def test_png_is_the_same_in_srgb(tmp_path):
     data = hand_made()
     write_sheet(data, tmp_path / "sheet.png")
@@ -116,19 +103,6 @@ def test_png_is_the_same_in_srgb(tmp_path):
     for position in ((0, 0, 0), (3, 1, 2), (1, 3, 0)):
         expected = encode(data.points.rgb[data.lattice.index(np.array(position))])
         np.testing.assert_allclose(pixel(data, image[..., :3], COLOUR, position), expected, atol=0.51 / 255)
-
-
-def test_an_existing_file_is_replaced_only_with_force_and_the_suffix_must_be_known(tmp_path):
-    for name in ("sheet.jpg", "sheet"):
-        with raises(OutputError, "unknown-suffix"):
-            write_sheet(hand_made(), tmp_path / name)
-    path = tmp_path / "sheet.PNG"
-    path.write_text("old")
-    with raises(OutputError, "file-exists"):
-        write_sheet(hand_made(), path)
-    assert path.read_text() == "old"
-    write_sheet(hand_made(), path, force=True)
-    assert path.stat().st_size > 1000
 
 
 @pytest.mark.parametrize("deficiency", ["Protanomaly", "Deuteranomaly", "Tritanomaly"])
