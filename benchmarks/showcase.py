@@ -17,7 +17,7 @@ from PIL import Image
 import uplift
 from benchmarks import DOCS, record
 from benchmarks.checker import BACKGROUND, Layout, chart, draw
-from tests.examples.installed import build_wheel, run_lines, unpack
+from tests.examples import build_wheel, run_lines, unpack
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.colorimetry.observer import light, sensor

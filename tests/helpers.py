@@ -1,4 +1,4 @@
-"""Assertions on the errors and warnings of uplift by their stable codes."""
+"""Assertions on errors and warnings by their stable codes; cubes with changed or absent points."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from uplift.common.errors import UpliftError, UpliftWarning
 from uplift.cube import CubeData
+from uplift.cube.file import POINTS
+from uplift.lattice import ABSENT_VALUES
 
 
 @contextlib.contextmanager
@@ -36,3 +39,18 @@ def warns(*codes: str) -> Iterator[list[UpliftWarning]]:
 def with_points(data: CubeData, **arrays: Any) -> CubeData:
     """Return ``data`` with some arrays of its point table replaced."""
     return replace(data, points=replace(data.points, **arrays))
+
+
+def with_absent_points(data: CubeData, present: np.ndarray) -> CubeData:
+    """Return the cube with the points ``present`` (dim³,) only, as a build for a scene returns it."""
+    arrays = {name: getattr(data.points, name) for name in POINTS}
+    arrays = {name: array.copy() for name, array in arrays.items() if array is not None}
+    for name, array in arrays.items():
+        array[~present] = ABSENT_VALUES.get(name, 0)
+    return with_points(data, **arrays)
+
+
+def near_black(data: CubeData) -> np.ndarray:
+    """Mask (dim³,) of the points in the lowest quarter of every axis."""
+    position = data.lattice.position(np.arange(data.lattice.size))
+    return (position <= data.lattice.dim // 4).all(axis=1)

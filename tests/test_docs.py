@@ -9,16 +9,18 @@ import click
 import pytest
 from uplift_cli.main import COMMANDS, main
 
+import uplift
 from tests.conftest import ROOT
-from tests.examples.collect import examples
+from tests.examples import examples
 from tests.helpers import warns
+from tests.parts import MITSUBA, need
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 REFERENCE = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
+COVERAGE = (ROOT / "docs" / "coverage.md").read_text(encoding="utf-8")
+TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
 PYTHON = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
-
-
-LINES = [each.line.split(" > ")[0].split(" | ")[0] for each in examples() if each.line.startswith("uplift ")]
+LINES = [each.split(" > ")[0].split(" | ")[0] for each in examples() if each.startswith("uplift ")]
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -62,3 +64,44 @@ def test_files_that_the_pages_name_exist():
         named = re.findall(r"`((?:uplift|cli|tests|benchmarks|tools|docs|atlases)/[\w./-]+)`", page.read_text("utf-8"))
         missing = [name for name in named if "NAME" not in name and not (ROOT / name).exists()]
         assert missing == [], page.name
+
+
+def unknown_options(text):
+    """Options next to a command in code that this command does not have, and unknown commands."""
+    unknown = []
+    with click.Context(main, **main.context_settings) as context:
+        for code in re.findall(r"`uplift ([^`]+)`", text):
+            name, *words = code.split()
+            command = main.get_command(context, name)
+            if isinstance(command, click.Group) and words:
+                command = command.commands.get(words.pop(0))
+            known = {option for each in (command.params if command else ()) for option in each.opts}
+            unknown += [code] if command is None else []
+            unknown += [word for word in words if word.startswith("-") and word not in known]
+    return unknown
+
+
+def test_the_page_of_coverage_has_no_empty_row_and_names_what_exists():
+    lines = [line.strip("|").split("|") for line in COVERAGE.splitlines() if line.startswith("| ")]
+    table = [[cell.strip() for cell in row] for row in lines]
+    assert len(table) > 80
+    assert [row for row in table if len(row) != 3 or not all(row)] == []
+    assert unknown_options(COVERAGE) == []
+
+
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+def test_the_tutorial_runs(tmp_path, monkeypatch):
+    need(MITSUBA)
+    monkeypatch.chdir(tmp_path)
+    names: dict[str, object] = {}
+    blocks = re.findall(r"```(\w*)\n(.*?)```", TUTORIAL, re.DOTALL)
+    assert [language for language, _ in blocks].count("python") == 2
+    for language, block in blocks:
+        if language == "python":
+            exec(compile(block, "tutorial.md", "exec"), names)
+        else:
+            for line in block.splitlines():
+                assert main.main(args=shlex.split(line)[1:], standalone_mode=False) in (None, 0), line
+    written = {path.name for path in tmp_path.iterdir()}
+    assert written >= {"orange.png", "macbeth-32.html", "chart.exr", "chart-moments.exr", "fl11.png"}
+    assert uplift.load("macbeth-32.uplift").dim == 32

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import configparser
 import email
-import shutil
 import subprocess
 import sys
 import zipfile
@@ -13,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import uplift
-from tests.examples.installed import build_wheel, source_files
+from tests.examples import build_wheel, source_files
 from uplift.common.version import DISTRIBUTION
 
 FOLDERS = {"uplift": "uplift", "cli": "uplift_cli", "atlases": "uplift_atlases"}
@@ -23,8 +22,6 @@ INFO = f"{DISTRIBUTION.replace('-', '_')}-{uplift.__version__}.dist-info"
 @pytest.fixture(scope="module")
 def wheel(repository, tmp_path_factory):
     """Built once a run, from a copy that holds no leftovers of earlier builds."""
-    if shutil.which("git") is None or not (repository / ".git").exists():
-        pytest.skip("needs the git checkout to know its files")
     path = build_wheel(tmp_path_factory.mktemp("package"))
     with zipfile.ZipFile(path) as archive:
         yield archive

@@ -7,8 +7,8 @@ import json
 import numpy as np
 import pytest
 
+from tests.helpers import near_black, with_absent_points
 from tests.io.texture.conftest import channels, planes, write_exr
-from tests.sparse_cubes import near_black, with_absent_points
 from uplift.cube import read, write
 
 from .conftest import warning_lines

@@ -7,8 +7,7 @@ import pytest
 
 from tests.cube.cube_files import forge
 from tests.cube.hand_made import hand_made
-from tests.helpers import raises
-from tests.sparse_cubes import near_black, with_absent_points
+from tests.helpers import near_black, raises, with_absent_points
 from uplift.common.errors import CubeFileError
 from uplift.cube import digest, read, write
 from uplift.cube.file import POINTS

@@ -11,9 +11,8 @@ from PIL import Image
 
 import uplift
 from tests.conftest import ATLASES, MACBETH
-from tests.helpers import raises
+from tests.helpers import near_black, raises, with_absent_points
 from tests.io.texture.conftest import PHOTO, WAVELENGTHS, planes, write_exr
-from tests.sparse_cubes import near_black, with_absent_points
 from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import conversion
 from uplift.common.errors import ColourError, CubeFileError, OptionError, TextureError, UpliftWarning

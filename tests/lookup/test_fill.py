@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import uplift
-from tests.helpers import raises
-from tests.sparse_cubes import near_black, with_absent_points
+from tests.helpers import near_black, raises, with_absent_points
 from uplift.common.errors import ColourError
 from uplift.lookup import MODES, Cube
 

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from tests.cube.hand_made import hand_made
-from tests.helpers import raises
-from tests.sparse_cubes import near_black, with_absent_points
+from tests.helpers import near_black, raises, with_absent_points
 from uplift.common.errors import ColourError, OptionError
 from uplift.cube import contents
 from uplift.io.export import arrays, write_coeff, write_csv, write_npz, write_program
