@@ -39,7 +39,7 @@ def prose(path: Path) -> Iterator[tuple[int, str]]:
                 yield token.start[0], token.string.replace("_", " ")
             elif kind in ("STRING", "COMMENT", "FSTRING_MIDDLE") and token.string.strip("\"'") not in FILE_KEYS:
                 for offset, line in enumerate(token.string.splitlines()):
-                    yield token.start[0] + offset, re.sub(r"\{[^{}]*\}|`[^`]*`", " ", line)
+                    yield token.start[0] + offset, re.sub(r"\{[^{}]*\}|``[^`]*``|`[^`]*`", " ", line)
         return
     fenced = False
     for number, line in enumerate(text.splitlines(), 1):

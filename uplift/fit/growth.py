@@ -4,7 +4,7 @@ Rounds go from a coarse lattice to finer ones. The answer at a node is the spect
 prior. The correction between prior and answer is smooth over the lattice: a node starts from its prior plus the
 correction interpolated from earlier rounds, and one step then does what two did. The answer does not depend on the
 start. Nodes that fail are tried again from the mean of their fitted neighbours. The improvement pass (Tódová 2020,
-"Constrained spectral uplifting", section 3.1.4) moves what is left over the threshold out of local minima.
+"Constrained spectral uplifting", section 3.1.4) moves nodes over the threshold out of local minima.
 
 `uplift.fit.growth_thesis` grows outward from seeds instead, as Tódová 2020 does.
 """
