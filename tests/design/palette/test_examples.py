@@ -47,32 +47,26 @@ def test_the_infeasible_example_is_missed_because_of_its_bounds(model, tmp_path)
     assert unmet[1].relaxations[0][0] == "the bounds of soot"
 
 
-def test_metamers_differ_under_the_second_light(examples):
-    found = examples["metamers"]
-    assert delta_e(found, "fox", "moss", "day") <= 0.1
-    assert delta_e(found, "fox", "moss", "lamp") >= found.palette.min_differences[0].delta_e
+def test_metamers_differ_under_the_second_light_and_the_figure_vanishes_on_its_ground(examples):
+    metamers, light = examples["metamers"], examples["light"]
+    assert delta_e(metamers, "fox", "moss", "day") <= 0.1
+    assert delta_e(metamers, "fox", "moss", "lamp") >= metamers.palette.min_differences[0].delta_e
+    assert delta_e(light, "figure", "ground", "day") > 20
+    assert delta_e(light, "figure", "ground", "veil") < 0.5
+    assert light.powers.min() >= 0
 
 
 def test_the_smoke_vanishes(examples):
-    colours = matrix(examples["vanish"])
-    np.testing.assert_allclose(colours.obtained[1, 1], 0, atol=1e-3)
-    assert colours.obtained[1, 0].min() > 0.1
-    assert colours.obtained[0, 1].max() > 0.1
-
-
-def test_the_figure_vanishes_on_its_ground(examples):
-    found = examples["light"]
-    assert delta_e(found, "figure", "ground", "day") > 20
-    assert delta_e(found, "figure", "ground", "veil") < 0.5
-    assert found.powers.min() >= 0
+    obtained = matrix(examples["vanish"]).obtained
+    np.testing.assert_allclose(obtained[1, 1], 0, atol=1e-3)
+    assert min(obtained[1, 0].min(), obtained[0, 1].max()) > 0.1
 
 
 def test_one_colour_stays_and_the_other_does_not(examples):
-    found = examples["constant"]
-    firm, fickle = matrix(found).obtained
+    firm, fickle = matrix(examples["constant"]).obtained
     assert np.abs(firm[0] - firm[1]).max() < 0.003
     assert np.abs(fickle[0] - fickle[1]).max() > 0.09
-    assert delta_e(found, "firm", "fickle", "day") < 0.5
+    assert delta_e(examples["constant"], "firm", "fickle", "day") < 0.5
 
 
 HAZE, BLOCK, VALVE, PISTON = range(4)

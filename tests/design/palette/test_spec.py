@@ -50,6 +50,10 @@ delta-e = 4.5
 """
 
 
+APART = '[[apart]]\nmaterials = ["new", "new"]\n'
+HEAD = 'lights.day.illuminant = "D65"\nmaterials.new.design = true\n'
+
+
 @pytest.fixture
 def read(tmp_path):
     """A spec as text → palette."""
@@ -75,36 +79,25 @@ def test_a_complete_spec(read, sensor):
     assert (second.rgb.tolist(), second.weight) == ([0.3, 0.2, 0.1], 2)
     assert (third.free, fourth.free, fourth.weight) == ("one", "two", 0)
 
-
-def test_free_colours_default_to_the_display_gamut(read, sensor):
-    free = read(COMPLETE).free
-    assert free["one"][1].tolist() == [0.5, 0.6, 0.7]
-    np.testing.assert_allclose(free["one"][0], sensor.decode([16] * 3))
-    assert [bound.tolist() for bound in free["two"]] == [[0] * 3, [1] * 3]
+    np.testing.assert_allclose(palette.free["one"], [sensor.decode([16] * 3), [0.5, 0.6, 0.7]])
+    np.testing.assert_array_equal(palette.free["two"], [[0] * 3, [1] * 3])
 
 
 def test_given_spectra_are_those_of_their_sources(read, sensor):
-    palette = read(COMPLETE)
-    orange = on_grid(read_atlas(MACBETH), sensor.wavelengths)[read_atlas(MACBETH).names.index("orange")]
+    palette, atlas, cube = read(COMPLETE), read_atlas(MACBETH), uplift.load()
+    orange = on_grid(atlas, sensor.wavelengths)[atlas.names.index("orange")]
     np.testing.assert_array_equal(palette.material("orange").samples, orange)
-    cube = uplift.load()
     rose = cube.reflectance(cube.decode([0xCC, 0x33, 0x66]), sensor.wavelengths)
     np.testing.assert_array_equal(palette.material("rose").samples, rose)
     np.testing.assert_allclose(sensor.rgb(palette.material("sea").samples), [0.1, 0.2, 0.3], atol=1e-4)
 
 
-def test_lights_have_their_luminance(read, sensor):
-    palette = read(COMPLETE)
-    luminances = [sensor.xyz(screen_matrix(sensor) @ palette.light(name).samples)[1] for name in ("day", "glow")]
+def test_lights_have_their_luminance_or_their_norm(read, sensor):
+    """The norm is the root mean square: 1 for a flat power of 1."""
+    palette = read(HEAD + 'lights.a = { planck = 2856, luminance = 0.5 }\nlights.b = { illuminant = "E", norm = 2 }')
+    luminances = [sensor.xyz(screen_matrix(sensor) @ palette.light(name).samples)[1] for name in ("day", "a")]
     np.testing.assert_allclose(luminances, [1, 0.5], atol=1e-12)
-
-
-def test_lights_may_have_a_norm(read, sensor):
-    """The root mean square: 1 for a flat power of 1, for any number of samples."""
-    text = 'colours.new.x = "#808080"\n[materials]\nnew = { design = true }\n[lights]\n'
-    palette = read(text + 'x = { planck = 3000, norm = 2 }\ny = { illuminant = "E", norm = 1 }')
-    assert np.sqrt(np.mean(palette.light("x").samples ** 2)) == pytest.approx(2)
-    np.testing.assert_allclose(palette.light("y").samples, 1, rtol=1e-9)
+    np.testing.assert_allclose(palette.light("b").samples, 2, rtol=1e-9)
 
 
 def test_a_black_body_of_2856_k_is_illuminant_a(sensor):
@@ -124,42 +117,28 @@ def test_paths_start_in_the_folder_of_the_spec(tmp_path, monkeypatch):
     assert read_palette(spec).material("x").samples is not None
 
 
-APART = '[[apart]]\nmaterials = ["new", "new"]\n'
-HEAD = 'lights.day.illuminant = "D65"\nmaterials.new.design = true\n'
-
-
 @pytest.mark.parametrize(
     ("text", "code", "key"),
     [
         ("lights = [", "invalid-toml", ""),
         ("", "missing-key", "lights"),
-        ("[lights]\n[materials]", "invalid-value", "lights"),
         (HEAD + "smothness = 1", "unknown-key", "smothness"),
         (HEAD + "smoothness = -1", "invalid-value", "smoothness"),
-        (HEAD + "fit = 'rgb'", "invalid-value", "fit"),
-        (HEAD + "model-error = nan", "invalid-value", "model-error"),
         (HEAD + "coefficients = 6.5", "invalid-value", "coefficients"),
         (HEAD + 'colours.ne.day = "#000000"', "unknown-material", "colours.ne"),
         (HEAD + 'colours.new.dya = "#000000"', "unknown-light", "colours.new.dya"),
         (HEAD + 'colours.new.day = "red"', "invalid-colour", "colours.new.day"),
-        (HEAD + "colours.new.day = [1, 2, inf]", "invalid-colour", "colours.new.day"),
         (HEAD + "colours.new.day = { weight = 2 }", "missing-key", "colours.new.day.rgb"),
         (HEAD + 'colours.new.day = { free = "a", rgb = "#000000" }', "unknown-key", "colours.new.day.rgb"),
-        (HEAD + 'colours.new.day = { free = "a", weight = -1 }', "invalid-value", "colours.new.day.weight"),
         (HEAD + 'free.a = { low = "#808080", high = "#80ffff" }', "invalid-value", "free.a"),
         (HEAD + "materials.'$x' = { design = true }", "invalid-value", "materials.$x"),
         (HEAD + "materials.x.design = false", "invalid-value", "materials.x.design"),
         (HEAD + "materials.x = { design = true, bounds = [1, 0] }", "invalid-value", "materials.x.bounds"),
-        (HEAD + "materials.x = { design = true, bounds = [0, 1e9] }", "invalid-value", "materials.x.bounds"),
         (HEAD + 'materials.x = { design = true, rgb = "#000000" }', "invalid-value", "materials.x"),
-        (HEAD + "materials.x = { design = true, entry = 'a' }", "unknown-key", "materials.x.entry"),
-        (HEAD + "lights.x = { planck = 3000, luminance = -1 }", "invalid-value", "lights.x.luminance"),
         (HEAD + "lights.x = { planck = 3000, luminance = 1, norm = 1 }", "invalid-value", "lights.x"),
         (HEAD + 'lights.x.illuminant = "D66"', "unknown-illuminant", "lights.x.illuminant"),
         (HEAD + '[[apart]]\nmaterials = ["new"]\nlight = "day"', "invalid-value", "apart[0].materials"),
-        (HEAD + APART + 'light = "day"\ndelta-e = -1', "invalid-value", "apart[0].delta-e"),
         (HEAD + APART + 'light = "dya"\ndelta-e = 1', "unknown-light", "apart[0].light"),
-        (HEAD + "a." * 2000 + "b = 1", "invalid-toml", ""),
     ],
 )
 def test_an_invalid_spec_is_refused_with_its_key(read, text, code, key):
@@ -169,10 +148,14 @@ def test_an_invalid_spec_is_refused_with_its_key(read, text, code, key):
     assert caught.value.path.name == "spec.toml"
 
 
-def test_errors_of_other_files_are_their_own(read):
-    with raises(UnknownNameError, "unknown-entry"):
-        read(HEAD + f'materials.x = {{ atlas = "{MACBETH.as_posix()}", entry = "orang" }}')
-    with pytest.raises(AtlasError):
-        read(HEAD + 'materials.x = { atlas = "none.txt", entry = "a" }')
-    with pytest.raises(CubeFileError):
-        read(HEAD + 'materials.x = { rgb = "#102030", cube = "none.uplift" }')
+@pytest.mark.parametrize(
+    ("material", "error"),
+    [
+        (f'{{ atlas = "{MACBETH.as_posix()}", entry = "orang" }}', UnknownNameError),
+        ('{ atlas = "none.txt", entry = "a" }', AtlasError),
+        ('{ rgb = "#102030", cube = "none.uplift" }', CubeFileError),
+    ],
+)
+def test_errors_of_other_files_are_their_own(read, material, error):
+    with pytest.raises(error):
+        read(HEAD + "materials.x = " + material)
