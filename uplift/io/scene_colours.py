@@ -42,7 +42,11 @@ class Images:
         check_encoding(self.encoding)
         check_method(self.out_of_gamut)
         if not self.paths:
-            raise _no_colours()
+            raise OptionError(
+                "a scene must have at least one image, got none",
+                code="scene-without-colours",
+                hint="name an image, or build without a scene",
+            )
 
     def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
         """Return the mask (dim³,) of the lattice points that answer the colours of the images; see `SceneLike`.
@@ -54,8 +58,6 @@ class Images:
             progress(Progress("images", done, len(self.paths)))
             for rgb in self.colours(path, sensor):
                 cells[cells_touched(boxes.lattice, rgb)] = True
-        if not cells.any():
-            raise _no_colours()
         return boxes.required_points(cells)
 
     def describe(self) -> list[dict[str, Any]]:
@@ -90,11 +92,3 @@ def file_digest(path: Path) -> str:
     """Return the SHA-256 digest of a file in hexadecimal."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def _no_colours() -> OptionError:
-    return OptionError(
-        "a scene must have at least one image with colours, got none",
-        code="scene-without-colours",
-        hint="name an image, or build without a scene",
-    )

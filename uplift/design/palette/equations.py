@@ -10,13 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.factor import FactorModel
-from uplift.design.palette.palette import Palette
+from uplift.design.palette.palette import Palette, SpectrumSpec
 from uplift.fit.bounded_least_squares import BoundedProblem
 
 SPACING = 10.0  # sample distance in nm that the weights of the paper refer to
@@ -64,21 +65,16 @@ def equations(palette: Palette, model: FactorModel) -> BoundedProblem:
 
 def _colours(palette: Palette, model: FactorModel, where: Unknowns) -> Iterator[Rows]:
     """Target colours (eq. 18, or 19 in the factor model), and free ones, which are unknowns too (eq. 24)."""
-    screen = screen_matrix(palette.sensor)
-    by_model = palette.fit == "factor-model"
     for goal in palette.goals:
-        spectrum, power = palette.material(goal.material).samples, palette.light(goal.light).samples
+        material, light = palette.material(goal.material), palette.light(goal.light)
         weight, blocks = goal.weight / np.sqrt(3), []
         target = np.zeros(3) if goal.rgb is None else goal.rgb
-        if power is not None:
-            block = _modelled_material(model, power) if by_model else screen * power
-            if spectrum is None:
-                blocks.append((where["material", goal.material], weight * block))
-            else:
-                target = target - block @ spectrum
-        elif spectrum is not None:
-            block = _modelled_light(model, spectrum) if by_model else screen * spectrum
-            blocks.append((where["light", goal.light], weight * block))
+        for key, by_spectra, by_model in _colour_maps(palette, model, material, light):
+            block = by_model if palette.fit == "factor-model" else by_spectra
+            if key in where:
+                blocks.append((where[key], weight * block))
+            elif material.samples is not None:
+                target = target - block @ material.samples
         if goal.free is not None:
             blocks.append((where["free", goal.free], -weight * np.eye(3)))
         if goal.weight and blocks:
@@ -101,28 +97,22 @@ def _smoothness(palette: Palette, where: Unknowns) -> Iterator[Rows]:
 
 def _model_error(palette: Palette, model: FactorModel, where: Unknowns) -> Iterator[Rows]:
     """Colours of the factor model less those of full spectra, for every product with a designed spectrum (eq. 20)."""
-    if not palette.model_error:
-        return
-    screen = screen_matrix(palette.sensor)
     weight = palette.model_error / np.sqrt(3)
-    for material in palette.materials:
-        for light in palette.lights:
-            if material.samples is None and light.samples is not None:
-                block = screen * light.samples - _modelled_material(model, light.samples)
-                position = where["material", material.name]
-            elif light.samples is None and material.samples is not None:
-                block = screen * material.samples - _modelled_light(model, material.samples)
-                position = where["light", light.name]
-            else:
-                continue
-            yield Rows(((position, weight * block),), np.zeros(3))
+    for material, light in product(palette.materials, palette.lights) if weight else ():
+        for key, by_spectra, by_model in _colour_maps(palette, model, material, light):
+            if key in where:
+                yield Rows(((where[key], weight * (by_spectra - by_model)),), np.zeros(3))
 
 
-def _modelled_material(model: FactorModel, power: Array) -> Array:
-    """Return the matrix (3, N) from a reflectance to its colour under a light, in the factor model."""
-    return np.asarray(model.matrix * model.light(power) @ model.projection)
+def _colour_maps(
+    palette: Palette, model: FactorModel, material: SpectrumSpec, light: SpectrumSpec
+) -> Iterator[tuple[tuple[str, str], Array, Array]]:
+    """Yield the kind and name of a spectrum, and the matrices (3, N) from it to its colour with the given other one.
 
-
-def _modelled_light(model: FactorModel, spectrum: Array) -> Array:
-    """Return the matrix (3, N) from a light to the colour of a reflectance under it, in the factor model."""
-    return np.asarray(model.matrix * model.reflectance(spectrum) @ model.light_projection)
+    The first matrix is by full spectra, the second by the factor model. There are none if neither spectrum is given.
+    """
+    screen = screen_matrix(palette.sensor)
+    if (power := light.samples) is not None:
+        yield ("material", material.name), screen * power, model.matrix * model.light(power) @ model.projection
+    elif (values := material.samples) is not None:
+        yield ("light", light.name), screen * values, model.matrix * model.reflectance(values) @ model.light_projection

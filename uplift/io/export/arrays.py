@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator
-from itertools import chain
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from uplift.common.arrays import Indices
 from uplift.common.csv import CsvWriter
 from uplift.common.files import atomic_write
 from uplift.cube import CubeData, contents
@@ -44,41 +43,27 @@ def write_csv(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
     Columns are linear target and lattice RGB, fitting distance, status, the atlas entry that the node is based on, if
     any, round and standard error of cubes that have them, and the coefficients. Absent nodes are left out.
     """
+    points = data.points
+    columns: dict[str, NDArray[Any] | None] = {
+        **dict(zip("rgb", data.lattice.points.T, strict=True)),
+        **dict(zip(("lattice_r", "lattice_g", "lattice_b"), points.rgb.T, strict=True)),
+        "distance": points.distance,
+        "status": np.array([Status(status).label for status in points.status], dtype=object),
+        "entry": np.array([*data.atlas.names, ""], dtype=object)[points.entry],
+        "round": points.round,
+        "standard_error": points.standard_error,
+        **{f"c{order}": column for order, column in enumerate(points.coefficients.T)},
+    }
+    arrays = {name: column for name, column in columns.items() if column is not None}
+    nodes = np.flatnonzero(points.present)
     with (
         atomic_write(path, force=force) as temporary,
         temporary.open("w", encoding="utf-8", newline="") as file,
     ):
         writer = CsvWriter(file)
-        writer.write(_column_names(data))
-        nodes = np.flatnonzero(data.points.present)
+        writer.write(list(arrays))
         for first in range(0, len(nodes), BLOCK):
-            for row in _rows(data, nodes[first : first + BLOCK]):
-                writer.write(row)
+            block = nodes[first : first + BLOCK]
+            for row in zip(*(column[block].tolist() for column in arrays.values()), strict=True):
+                writer.write(list(row))
     return len(nodes)
-
-
-def _column_names(data: CubeData) -> list[str]:
-    optional = [name for name in ("round", "standard_error") if getattr(data.points, name) is not None]
-    return [
-        *("r", "g", "b", "lattice_r", "lattice_g", "lattice_b", "distance", "status", "entry"),
-        *optional,
-        *(f"c{order}" for order in range(data.model.count)),
-    ]
-
-
-def _rows(data: CubeData, block: Indices) -> Iterator[list[object]]:
-    entries = [*data.atlas.names, ""]
-    optional = [
-        array[block, None].tolist() for array in (data.points.round, data.points.standard_error) if array is not None
-    ]
-    columns = zip(
-        data.lattice.points[block].tolist(),
-        data.points.rgb[block].tolist(),
-        data.points.distance[block, None].tolist(),
-        ([Status(status).label] for status in data.points.status[block]),
-        ([entries[entry]] for entry in data.points.entry[block]),
-        *optional,
-        data.points.coefficients[block].tolist(),
-        strict=True,
-    )
-    return (list(chain.from_iterable(row)) for row in columns)

@@ -73,12 +73,11 @@ def _sensor_bytes(sensor: Sensor) -> bytes:
 
 
 def _scale(res: int) -> Array:
-    """Return values (res,) of the largest component, dense near 0 and 1, where spectra change most."""
-    return _smoothstep(_smoothstep(np.linspace(0, 1, res)))
-
-
-def _smoothstep(x: Array) -> Array:
-    return x * x * (3 - 2 * x)
+    """Return values (res,) of the largest component, by two smoothsteps: dense near 0 and 1, where spectra change most."""
+    x = np.linspace(0, 1, res)
+    for _ in range(2):
+        x = x * x * (3 - 2 * x)
+    return x
 
 
 def _points(level: float, res: int) -> Array:

@@ -115,6 +115,8 @@ def _source(props: Any, names: tuple[str, ...]) -> str:
 
 def _texels(props: Any, *, is_light: bool) -> Texels:
     """Read the spectra of a spectral texture, or uplift an image; colours outside [0, 1] are mapped, with a warning."""
+    import mitsuba
+
     path = _resolve(props["filename"]) if "filename" in props else None
     if path is not None and (texels := read_texels(path)) is not None:
         return texels
@@ -135,7 +137,7 @@ def _texels(props: Any, *, is_light: bool) -> Texels:
         if path is not None and path.is_file() and is_exr(path):
             rgb, found = read_colours(path, sensor, method)
         else:
-            bitmap = props["bitmap"] if path is None else _bitmap(path)
+            bitmap = props["bitmap"] if path is None else mitsuba.Bitmap(str(path))
             encoded = _linear(lambda codes: cube.decode(255 * codes), bitmap)
             rgb, counts = Decoder(np.asarray, False, False, None, sensor, method)(encoded)
             found = counts.warnings(method, path)
@@ -185,12 +187,6 @@ def _constant(values: Array) -> Any:
 
     text = ", ".join(f"{value:.9g}" for value in values)
     return mitsuba.load_dict({"type": "regular", "wavelength_min": START, "wavelength_max": END, "values": text})
-
-
-def _bitmap(path: Path) -> Any:
-    import mitsuba
-
-    return mitsuba.Bitmap(str(path))
 
 
 def _linear(decoding: Callable[[Array], Array], bitmap: Any) -> Array:

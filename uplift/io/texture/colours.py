@@ -336,7 +336,7 @@ def reads_codes(part: Part, source: ImageSpace | None) -> bool:
 
 def linear_reader(sensor: Sensor, part: Part, encoding: str, source: ImageSpace | None) -> Callable[[Values], Values]:
     """Return the function from the numbers (…, 3) of a part to linear values of its space, None for the sensor's."""
-    to_linear = _code_decoder(sensor, source)
+    to_linear = (source and source.decode) or (lambda codes: sensor.decode(255 * codes))
     if not part.max_code:
         return to_linear if encoding == "encoded" or reads_codes(part, source) else np.asarray
     if source is not None and source.mixes_channels:
@@ -348,10 +348,3 @@ def linear_reader(sensor: Sensor, part: Part, encoding: str, source: ImageSpace 
         curve = table[:, 0].copy()
         return lambda codes: curve[codes]
     return lambda codes: np.stack([table[:, k][codes[..., k]] for k in range(3)], axis=-1)
-
-
-def _code_decoder(sensor: Sensor, source: ImageSpace | None) -> Callable[[Values], Values]:
-    """Return the function from codes in [0, 1] of a space, None for that of the sensor, to linear values."""
-    if source is None or source.decode is None:
-        return lambda codes: sensor.decode(255 * codes)
-    return source.decode

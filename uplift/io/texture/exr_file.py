@@ -64,13 +64,9 @@ def check_size(path: Path) -> None:
                     file.seek(CHANNEL_BYTES, os.SEEK_CUR)
                     channels += 1
             file.seek(value + size)
-            _check_limit(attributes, MAX_ATTRIBUTES, "attributes", "remove some of them")
-            _check_limit(channels, MAX_CHANNELS, "channels", "write the channels to several files")
-
-
-def _check_limit(count: int, limit: int, things: str, hint: str) -> None:
-    if count > limit:
-        raise TextureError(f"an image must have at most {limit} {things}", hint=hint)
+            if attributes > MAX_ATTRIBUTES or channels > MAX_CHANNELS:
+                problem = f"an image must have at most {MAX_CHANNELS} channels and {MAX_ATTRIBUTES} attributes"
+                raise TextureError(problem, hint="write the channels to several files, or remove attributes")
 
 
 def seal(path: Path) -> None:

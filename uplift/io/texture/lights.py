@@ -24,7 +24,14 @@ from uplift.io.texture.colours import (
     source_space,
 )
 from uplift.io.texture.image import Part, Values
-from uplift.io.texture.uplifter import SPECTRAL_LAYOUT, Converted, Converter, ReadColours, spectral_channels
+from uplift.io.texture.uplifter import (
+    SPECTRAL_LAYOUT,
+    Converted,
+    Converter,
+    ReadColours,
+    resolve_depth,
+    spectral_channels,
+)
 from uplift.lights.lookup import MAX_VALUE, EmissionTable
 from uplift.lights.table import emission_digest
 from uplift.lookup.blocks import as_wavelengths
@@ -128,13 +135,7 @@ def prepare_lights(
     >>> texture.prepare_lights(uplift.load_emission(), [450, 550]).channels
     ('S0.450,000000nm', 'S0.550,000000nm')
     """
-    depth = DEPTHS[0] if depth is None else depth
-    if depth not in DEPTHS:
-        raise OptionError(
-            f"depth of lights must be {' or '.join(DEPTHS)}, got '{depth}'",
-            code="unsupported-depth",
-            hint="use float where a component exceeds 65504",
-        )
+    depth = resolve_depth(depth, DEPTHS, "lights")
     check_encoding(encoding)
     at = as_wavelengths(wavelengths, table.wavelengths)
     channels = spectral_channels("S0", at)

@@ -263,13 +263,7 @@ def prepare(
         The RGB space is unknown.
     """
     pixels = Spectrum() if pixel_encoding is None else pixel_encoding
-    depth = pixels.depths[0] if depth is None else depth
-    if depth not in pixels.depths:
-        raise OptionError(
-            f"depth of {pixels.name} must be {' or '.join(pixels.depths)}, got '{depth}'",
-            code="unsupported-depth",
-            hint="other types are not precise enough",
-        )
+    depth = resolve_depth(depth, pixels.depths, pixels.name)
     check_encoding(encoding)
     check_method(out_of_gamut)
     channels = pixels.channels(cube)
@@ -290,6 +284,17 @@ def prepare(
         is_linear=pixels.is_linear,
         space=None if space is None else find_space(space),
     )
+
+
+def resolve_depth(depth: str | None, depths: tuple[str, ...], name: str) -> str:
+    """Return the depth, by default the first of ``depths``. Raises `OptionError` for others."""
+    if depth is not None and depth not in depths:
+        raise OptionError(
+            f"depth of {name} must be {' or '.join(depths)}, got '{depth}'",
+            code="unsupported-depth",
+            hint="other types are not precise enough",
+        )
+    return depth or depths[0]
 
 
 def _rgb_error(cube: Cube, threads: int) -> Sampler | None:
