@@ -73,7 +73,7 @@ def _sensor_bytes(sensor: Sensor) -> bytes:
 
 
 def _scale(res: int) -> Array:
-    """Return values (res,) of the largest component, by two smoothsteps: dense near 0 and 1, where spectra change most."""
+    """Return values (res,) of the largest component, dense near 0 and 1, where spectra change most."""
     x = np.linspace(0, 1, res)
     for _ in range(2):
         x = x * x * (3 - 2 * x)
