@@ -1,4 +1,4 @@
-"""ΔE00 compared with the published pairs and with colour-science."""
+"""L*a*b*, ΔE00 and dominant wavelength compared with published pairs and with colour-science."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import colour
 import numpy as np
 import pytest
 
-from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_to_xyz
+from uplift.colorimetry.dominant import GREY, dominant_wavelength
 
 PAIRS = np.loadtxt(
     Path(__file__).parents[1] / "reference" / "ciede2000_sharma2005.csv", delimiter=",", comments=("#", "L1")
@@ -17,13 +18,8 @@ PAIRS = np.loadtxt(
 
 def test_published_pairs_of_sharma_2005():
     assert len(PAIRS) == 34
-    np.testing.assert_allclose(delta_e_2000(PAIRS[:, :3], PAIRS[:, 3:6]), PAIRS[:, 6], atol=5.1e-5)
-
-
-def test_delta_e_2000_is_symmetric():
-    np.testing.assert_allclose(
-        delta_e_2000(PAIRS[:, :3], PAIRS[:, 3:6]), delta_e_2000(PAIRS[:, 3:6], PAIRS[:, :3]), rtol=1e-12
-    )
+    for first, second in ((PAIRS[:, :3], PAIRS[:, 3:6]), (PAIRS[:, 3:6], PAIRS[:, :3])):
+        np.testing.assert_allclose(delta_e_2000(first, second), PAIRS[:, 6], atol=5.1e-5)
 
 
 def test_delta_e_2000_agrees_with_colour_science():
@@ -34,10 +30,55 @@ def test_delta_e_2000_agrees_with_colour_science():
     np.testing.assert_allclose(delta_e_2000(first, second), expected, rtol=1e-9)
 
 
-@pytest.mark.parametrize("white", ["D65", "A"])
-def test_lab_agrees_with_colour_science(white):
-    xy = colour.CCS_ILLUMINANTS["CIE 1931 2 Degree Standard Observer"][white]
+@pytest.mark.parametrize("name", ["D65", "A"])
+def test_lab_agrees_with_colour_science_and_is_invertible(name):
+    xy = colour.CCS_ILLUMINANTS["CIE 1931 2 Degree Standard Observer"][name]
+    white = colour.xy_to_XYZ(xy)
     xyz = np.random.default_rng(4).uniform(-0.01, 1, (500, 3))
     xyz[0] = 0
-    expected = colour.XYZ_to_Lab(xyz, xy)
-    np.testing.assert_allclose(lab(xyz, colour.xy_to_XYZ(xy)), expected, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(lab(xyz, white), colour.XYZ_to_Lab(xyz, xy), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(lab_to_xyz(lab(xyz, white), white), xyz, atol=1e-14)
+
+
+def test_spectral_colours_and_their_tints(sensor):
+    """A mixture of white and one wavelength has that wavelength, and the purity of the distances in x, y."""
+    for wavelength in (440, 480, 520, 560, 600, 640):
+        pure = sensor.cmfs[list(sensor.wavelengths).index(wavelength)]
+        tint = pure / pure.sum() + 2 * sensor.light.white / sensor.light.white.sum()
+        for colour_, purity in ((pure, 1), (tint, 1 / 3)):
+            found = dominant_wavelength(colour_, sensor)
+            assert found.wavelength == pytest.approx(wavelength, abs=1e-6)
+            assert (found.complementary, found.purity) == (False, pytest.approx(purity))
+
+
+def test_dominant_wavelengths_agree_with_colour_science(sensor):
+    """Their locus has a step of 1 nm, ours of 5 nm."""
+    white = sensor.light.white[:2] / sensor.light.white.sum()
+    kinds = set()
+    for rgb in np.random.default_rng(3).random((60, 3)):
+        xyz = sensor.xyz(rgb)
+        xy = xyz[:2] / xyz.sum()
+        if np.hypot(*(xy - white)) < 0.02:
+            continue
+        theirs, *_ = colour.dominant_wavelength(xy, white)
+        found = dominant_wavelength(xyz, sensor)
+        kinds.add(found.complementary)
+        assert found.complementary == (theirs < 0)
+        assert found.wavelength == pytest.approx(abs(float(theirs)), abs=1.0)
+        if not found.complementary:
+            assert found.purity == pytest.approx(colour.excitation_purity(xy, white), abs=5e-3)
+    assert kinds == {True, False}
+
+
+def test_greys_and_black_have_no_dominant_wavelength(sensor):
+    for xyz in (np.zeros(3), np.full(3, -1.0), 0.3 * sensor.light.white):
+        assert dominant_wavelength(xyz, sensor) == GREY
+
+
+def test_every_direction_from_white_meets_the_locus_once(sensor):
+    white = sensor.light.white[:2] / sensor.light.white.sum()
+    for angle in np.linspace(0, 2 * np.pi, 361):
+        x, y = white + 0.01 * np.array([np.cos(angle), np.sin(angle)])
+        found = dominant_wavelength([x, y, 1 - x - y], sensor)
+        assert 380 <= found.wavelength <= 780
+        assert 0 < found.purity < 0.2

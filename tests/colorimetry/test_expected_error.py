@@ -13,7 +13,6 @@ from uplift.colorimetry.expected_error import (
     expected_error,
     expected_products,
     familiar_distance,
-    learn_radii,
     mahalanobis,
     nearest_distances,
 )
@@ -64,17 +63,24 @@ def test_errors_are_local():
     assert hard > 1.5 * easy
 
 
-def test_blocks_equal_a_plain_sum(monkeypatch):
+def test_errors_are_weighted_sums(monkeypatch):
+    """Against plain sums at colours, in blocks, and for each entry without itself."""
     queried = np.random.default_rng(6).uniform(-20, 60, (40, 3))
-    learnt = expected_error(PLACES, np.arange(1.0, 13), np.full(12, 0.5))
-    monkeypatch.setattr(module, "BLOCK_NUMBERS", 50)
-    weights = np.exp(-cdist(queried, PLACES) / LENGTH)
+    learnt = expected_error(PLACES, np.arange(1.0, 13), np.zeros(12))
     squares = learnt.squares[:, 0]
-    spread = (weights @ squares + PRIOR_COUNT * squares.mean()) / (weights.sum(axis=1) + PRIOR_COUNT)
-    plain = (1 - weights.max(axis=1) ** 2) * spread
-    np.testing.assert_allclose(learnt(queried)[:, 0], plain, rtol=1e-12)
-    distances = nearest_distances(queried, PLACES)
-    np.testing.assert_allclose(distances, cdist(queried, PLACES).min(axis=1), rtol=1e-12)
+
+    def plain(weights):
+        spread = (weights @ squares + PRIOR_COUNT * squares.mean()) / (weights.sum(axis=1) + PRIOR_COUNT)
+        return (1 - weights.max(axis=1) ** 2), spread
+
+    monkeypatch.setattr(module, "BLOCK_NUMBERS", 50)
+    distances = cdist(queried, PLACES)
+    np.testing.assert_allclose(learnt(queried)[:, 0], np.multiply(*plain(np.exp(-distances / LENGTH))), rtol=1e-12)
+    np.testing.assert_allclose(nearest_distances(queried, PLACES), distances.min(axis=1), rtol=1e-12)
+    others = np.exp(-cdist(PLACES, PLACES) / LENGTH)
+    np.fill_diagonal(others, 0)
+    variance, spread = plain(others)
+    np.testing.assert_allclose(learnt.left_out[:, 0], np.maximum(variance, 0.02) * spread, rtol=1e-12)
 
 
 def test_products_of_components_are_averaged_like_squares():
@@ -109,35 +115,6 @@ def test_distances_are_those_of_the_inverse_covariance():
     difference = rng.normal(size=(20, 2))
     plain = [np.sqrt(each @ np.linalg.inv(matrix) @ each) for each, matrix in zip(difference, covariance, strict=True)]
     np.testing.assert_allclose(mahalanobis(covariance, difference), plain, rtol=1e-9)
-
-
-def test_distances_along_directions_without_variance_are_huge_but_finite():
-    singular = np.diag([4.0, 0.0])[None]
+    singular = np.diag([4.0, 0.0])[None]  # huge but finite along directions without variance
     assert mahalanobis(singular, np.array([[6.0, 0.0]])) == pytest.approx(3)
     assert 1e100 < mahalanobis(singular, np.array([[0.0, 1.0]])) < np.inf
-
-
-@pytest.mark.parametrize("freedom", [3, np.inf])
-def test_a_learnt_radius_holds_its_share_whatever_the_tails(freedom):
-    rng = np.random.default_rng(4)
-
-    def distances(count):
-        tail = 1 if np.isinf(freedom) else np.sqrt(freedom / rng.chisquare(freedom, count))
-        return np.linalg.norm(rng.normal(size=(2, count)), axis=0) * tail
-
-    (radius,) = learn_radii(distances(800), [(0.95, 2.4477)])
-    assert (distances(20_000) <= radius).mean() == pytest.approx(0.95, abs=0.02)
-    assert (radius > 2.9) == (freedom == 3)
-
-
-def test_left_out_products_are_expected_from_the_other_entries():
-    """Oracle: each entry is removed, and the expectation at its place is computed from the rest."""
-    rng = np.random.default_rng(5)
-    errors = rng.uniform(1, 3, 12)
-    learnt = expected_error(PLACES, errors, np.zeros(12))
-    for row in range(12):
-        weights = np.exp(-np.linalg.norm(PLACES - PLACES[row], axis=1) / 6)
-        weights[row] = 0
-        own = weights @ learnt.squares[:, 0] + PRIOR_COUNT * learnt.squares.mean()
-        expected = max(1 - weights.max() ** 2, 0.02) * own / (weights.sum() + PRIOR_COUNT)
-        assert learnt.left_out[row, 0] == pytest.approx(expected, rel=1e-12)

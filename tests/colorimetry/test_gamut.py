@@ -52,49 +52,28 @@ def outside() -> Array:
 MOVERS = [method for method in METHODS if method != "error"]
 
 
-@pytest.mark.parametrize("shape", [(3,), (0, 3), (2, 3), (2, 5, 3)])
-@pytest.mark.parametrize("method", MOVERS)
-def test_shapes_are_kept(shape, method):
-    rgb = np.full(shape, 0.5)
-    rgb[..., 0] = 1.5
-    found = map_to_gamut(rgb, SRGB, method)
-    assert found.rgb.shape == found.requested.shape == shape
-    assert found.outside.shape == shape[:-1]
-    assert found.count == rgb.size // 3
-    assert found.max_change == pytest.approx(0.5 if rgb.size else 0, rel=1)
-
-
 def test_result_reports_the_moved_colours():
-    found = map_to_gamut([[0.2, 0.3, 0.4], [-0.25, 0.5, 1.5], [1.125, 0, 0]], SRGB, "clip")
-    assert found.outside.tolist() == [False, True, True]
+    found = map_to_gamut([[[0.2, 0.3, 0.4]], [[-0.25, 0.5, 1.5]], [[1.125, 0, 0]]], SRGB, "clip")
+    assert found.outside.tolist() == [[False], [True], [True]]
     assert (found.count, found.max_change) == (2, 0.5)
-    np.testing.assert_array_equal(found.rgb, [[0.2, 0.3, 0.4], [0, 0.5, 1], [1, 0, 0]])
-    np.testing.assert_array_equal(found.requested[1], [-0.25, 0.5, 1.5])
+    np.testing.assert_array_equal(found.rgb[:, 0], [[0.2, 0.3, 0.4], [0, 0.5, 1], [1, 0, 0]])
+    np.testing.assert_array_equal(found.requested[1], [[-0.25, 0.5, 1.5]])
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_rounding_errors_are_in_gamut(method):
     found = map_to_gamut([1 + 1e-12, -1e-12, 0.5], SRGB, method)
-    assert found.rgb.tolist() == [1, 0, 0.5]
-    assert found.count == 0
+    assert (found.rgb.tolist(), found.count) == ([1, 0, 0.5], 0)
+    assert map_to_gamut(np.zeros((0, 3)), SRGB, method).max_change == 0
 
 
 @pytest.mark.parametrize("method", MOVERS)
-def test_float32_stays_float32_and_gives_the_same_colours(method):
-    rgb = np.random.default_rng(0).normal(0.5, 0.6, (50, 3)).astype(np.float32)
-    found = map_to_gamut(rgb, SRGB, method).rgb
+def test_answers_do_not_depend_on_precision_or_blocks(method):
+    rgb = np.random.default_rng(0).normal(0.5, 1, (BLOCK + 10, 3)).astype(np.float32)
+    found, expected = (map_to_gamut(each, SRGB, method).rgb for each in (rgb, rgb.astype(float)))
     assert found.dtype == np.float32
-    expected = map_to_gamut(rgb.astype(float), SRGB, method).rgb
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-7)
-    inside = ((rgb >= 0) & (rgb <= 1)).all(axis=1)
-    np.testing.assert_array_equal(found[inside], rgb[inside])
-
-
-@pytest.mark.parametrize("method", MOVERS)
-def test_result_does_not_depend_on_blocks(method):
-    rgb = np.random.default_rng(0).normal(0.5, 1, (BLOCK + 10, 3))
-    found = map_to_gamut(rgb, SRGB, method).rgb
-    np.testing.assert_array_equal(found[-20:], map_to_gamut(rgb[-20:], SRGB, method).rgb)
+    np.testing.assert_array_equal(expected[-20:], map_to_gamut(rgb[-20:].astype(float), SRGB, method).rgb)
 
 
 @pytest.mark.parametrize("method", MOVERS)
@@ -102,38 +81,28 @@ def test_result_does_not_depend_on_blocks(method):
 def test_extreme_magnitudes_are_mapped_inside(method, value):
     signs = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3), axis=-1).reshape(-1, 3)
     found = map_to_gamut(value * signs - (value < 1) * np.array([0, 0, 1e-3]), SRGB, method).rgb
-    assert np.isfinite(found).all()
-    assert found.min() >= 0
-    assert found.max() <= 1
+    assert ((found >= 0) & (found <= 1)).all()
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-def test_non_finite_colours_raise(method, bad):
-    code = "rgb-out-of-gamut" if method == "error" else "rgb-not-finite"
-    with raises(ColourError, code) as caught:
-        map_to_gamut([[0.1, 0.2, 0.3], [0.5, 0.5, bad], [2, 0, 0]], SRGB, method)
-    assert f"(0.5, 0.5, {bad})" in caught.value.problem
+BAD = [[0.1, 0.2, 0.3], [0.5, 0.5, np.nan], [2, 0, 0]]
 
 
 @pytest.mark.parametrize(
-    ("rgb", "code"),
+    ("rgb", "method", "error", "code"),
     [
-        (0.5, "rgb-wrong-shape"),
-        ([0.1, 0.2], "rgb-wrong-shape"),
-        ("red", "rgb-not-numeric"),
-        ([["a", "b", "c"]], "rgb-not-numeric"),
-        ([[0.1, 0.2, 0.3], [0.1]], "rgb-not-numeric"),
+        (BAD, "error", ColourError, "rgb-out-of-gamut"),
+        *((BAD, method, ColourError, "rgb-not-finite") for method in MOVERS),
+        ([np.inf, 0, 0], "clip", ColourError, "rgb-not-finite"),
+        (0.5, "clip", ColourError, "rgb-wrong-shape"),
+        ([0.1, 0.2], "clip", ColourError, "rgb-wrong-shape"),
+        ("red", "clip", ColourError, "rgb-not-numeric"),
+        ([[0.1, 0.2, 0.3], [0.1]], "clip", ColourError, "rgb-not-numeric"),
+        ([0.1, 0.2, 0.3], "squash", OptionError, "unknown-gamut-mapping"),
     ],
 )
-def test_values_that_are_not_colours_raise(rgb, code):
-    with raises(ColourError, code):
-        map_to_gamut(rgb, SRGB, "clip")
-
-
-def test_unknown_method_raises():
-    with raises(OptionError, "unknown-gamut-mapping"):
-        map_to_gamut([0.1, 0.2, 0.3], SRGB, "squash")
+def test_bad_input_raises(rgb, method, error, code):
+    with raises(error, code):
+        map_to_gamut(rgb, SRGB, method)
 
 
 CIE_RGB = Primaries((0.73467, 0.26533), (0.27376, 0.71741), (0.16658, 0.00886), (1 / 3, 1 / 3))
@@ -165,35 +134,26 @@ def test_conversions_keep_white_and_are_invertible():
     there, back = conversion(ACESCG, P3), conversion(P3, ACESCG)
     np.testing.assert_allclose(there @ [1, 1, 1], 1, rtol=0, atol=1e-15)
     np.testing.assert_allclose(back @ there, np.eye(3), rtol=0, atol=1e-12)
-    np.testing.assert_allclose(conversion(SRGB, SRGB), np.eye(3), rtol=0, atol=1e-15)
-
-
-def test_sensor_of_a_cube_is_a_gamut_under_any_light():
+    # The sensor of a cube is a gamut under any light.
     np.testing.assert_allclose(conversion(observer.sensor("sRGB", "A"), SRGB), np.eye(3), rtol=0, atol=3e-4)
 
 
 @pytest.mark.parametrize(
-    "pairs",
+    "numbers",
     [
-        ((0.6, 0.3), (0.3, 0.6), (0.15, 0.06), (0.7, 0.3)),
-        ((0.6, 0.3), (0.3, 0.3), (0.1, 0.3), D65),
-        ((0.6, 0.3), (0.6, 0.3), (0.15, 0.06), D65),
-        ((0.6, 0.3), (0.3, 0.6), (0.15, 0.06), (0.3, 0)),
-        ((float("nan"), 0.3), (0.3, 0.6), (0.15, 0.06), D65),
-        ((0.6, 0.3), (0.3, float("inf")), (0.15, 0.06), D65),
-        ((0.6, 0.3), (0.3, 0.6), (0.15, 0.06), (1e308, 0.3)),
-        ((0.6, 0.3), (0.3, 0.6), (0.15, 0.06), (0.3, 1e308)),
+        (0.6, 0.3, 0.3, 0.6, 0.15, 0.06, 0.7, 0.3),
+        (0.6, 0.3, 0.3, 0.3, 0.1, 0.3, *D65),
+        (0.6, 0.3, 0.6, 0.3, 0.15, 0.06, *D65),
+        (0.6, 0.3, 0.3, 0.6, 0.15, 0.06, 0.3, 0),
+        (np.nan, 0.3, 0.3, 0.6, 0.15, 0.06, *D65),
+        (0.6, 0.3, 0.3, np.inf, 0.15, 0.06, *D65),
+        (0.6, 0.3, 0.3, 0.6, 0.15, 0.06, 1e308, 0.3),
+        (0.64, 0.33, 0.3, 0.6, 0.15, 0.06),
     ],
 )
-def test_invalid_primaries_raise(pairs):
+def test_invalid_primaries_raise(numbers):
     with raises(OptionError, "invalid-primaries"):
-        Primaries(*pairs)
-
-
-def test_primaries_are_eight_numbers():
-    assert Primaries.of([0.64, 0.33, 0.3, 0.6, 0.15, 0.06, *D65]) == SRGB
-    with raises(OptionError, "invalid-primaries"):
-        Primaries.of([0.64, 0.33, 0.3, 0.6, 0.15, 0.06])
+        Primaries.of(numbers)
 
 
 def test_oklab_agrees_with_colour_science(outside):
@@ -207,11 +167,6 @@ def test_grey_has_zero_a_and_b_in_every_gamut(gamut):
     found = oklab(grey, gamut)
     np.testing.assert_allclose(found[:, 0], np.cbrt(grey[:, 0]), rtol=0, atol=1e-7)
     np.testing.assert_allclose(found[:, 1:], 0, rtol=0, atol=1e-7)
-
-
-def test_cube_roots_invert_oklab(outside):
-    back = cube_roots(oklab(outside, ACESCG)) ** 3 @ np.linalg.inv(cone_responses(ACESCG)).T
-    np.testing.assert_allclose(back, outside, rtol=0, atol=1e-10)
 
 
 def luminance(rgb, gamut):
@@ -240,19 +195,12 @@ def chromatic(rgb, gamut):
 
 
 @pytest.mark.parametrize("method", MOVERS)
-def test_mapped_colours_are_inside_and_stay_there(method, gamut, outside):
+def test_mapped_colours_are_inside_and_colours_inside_are_unchanged(method, gamut, outside):
     found = map_to_gamut(outside, gamut, method).rgb
-    assert found.min() >= 0
-    assert found.max() <= 1
-    assert np.isfinite(found).all()
-    np.testing.assert_array_equal(map_to_gamut(found, gamut, method).rgb, found)
-
-
-@pytest.mark.parametrize("method", MOVERS)
-def test_in_gamut_colours_are_unchanged(method, gamut):
-    rgb = np.random.default_rng(1).random((500, 3))
-    rgb[:8] = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1]), axis=-1).reshape(8, 3)
-    np.testing.assert_array_equal(map_to_gamut(rgb, gamut, method).rgb, rgb)
+    assert ((found >= 0) & (found <= 1)).all()
+    corners = np.stack(np.meshgrid([0.0, 1], [0.0, 1], [0.0, 1]), axis=-1).reshape(8, 3)
+    for inside in (found, corners, np.random.default_rng(1).random((500, 3))):
+        np.testing.assert_array_equal(map_to_gamut(inside, gamut, method).rgb, inside)
 
 
 @pytest.mark.parametrize("method", ["desaturate", "scale"])
@@ -263,13 +211,10 @@ def test_dominant_wavelength_is_kept(method, gamut, outside):
     assert nearer.all()
 
 
-def test_desaturating_keeps_luminance(gamut, outside):
-    found = luminance(map_to_gamut(outside, gamut, "desaturate").rgb, gamut)
-    np.testing.assert_allclose(found, np.clip(luminance(outside, gamut), 0, 1), rtol=0, atol=1e-12)
-
-
-def test_desaturated_colours_touch_the_boundary(gamut, outside):
+def test_desaturated_colours_keep_luminance_and_touch_the_boundary(gamut, outside):
     found = map_to_gamut(outside, gamut, "desaturate").rgb
+    expected = np.clip(luminance(outside, gamut), 0, 1)
+    np.testing.assert_allclose(luminance(found, gamut), expected, rtol=0, atol=1e-12)
     assert np.minimum(found.min(axis=1), 1 - found.max(axis=1)).max() < 1e-12
 
 
@@ -280,14 +225,6 @@ def test_scaling_keeps_the_chromaticity_of_bright_colours(gamut):
     np.testing.assert_allclose(found, bright / bright.max(axis=1, keepdims=True), rtol=1e-14)
     apart = chromaticity(map_to_gamut(bright, gamut, "clip").rgb, gamut) - chromaticity(bright, gamut)
     assert np.abs(apart).max() > 0.05
-
-
-def test_scaling_keeps_the_luminance_of_saturated_colours(gamut):
-    rng = np.random.default_rng(3)
-    rgb = 0.3 * rng.random((200, 3)) + [0.1, 0.1, -0.4]
-    np.testing.assert_allclose(
-        luminance(map_to_gamut(rgb, gamut, "scale").rgb, gamut), np.maximum(luminance(rgb, gamut), 0), atol=1e-12
-    )
 
 
 def test_oklab_keeps_hue_and_lightness(gamut, outside):
@@ -407,11 +344,3 @@ def test_vectorised_code_agrees_with_scalar_code(method, gamut, outside):
     np.testing.assert_allclose(
         map_to_gamut(some, gamut, method).rgb, [scalar_mapping(rgb, gamut, method) for rgb in some], rtol=0, atol=1e-6
     )
-
-
-def test_dominant_wavelength_agrees_with_colour_science(outside):
-    before = chromatic(outside, SRGB)[:12]
-    after = map_to_gamut(before, SRGB, "desaturate").rgb
-    white = chromaticity(np.ones(3), SRGB)
-    theirs = [colour.dominant_wavelength(chromaticity(rgb, SRGB), white)[0] for rgb in (before, after)]
-    np.testing.assert_allclose(*theirs, rtol=0, atol=1e-6)

@@ -1,57 +1,111 @@
-"""Mismatch volumes: laws, measured metamers and the convex hull of an independent solver."""
+"""Extreme reflectances, mismatch volumes and largest differences: laws, measured metamers and linear programs."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.path import Path
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 
 from tests.helpers import raises
-from uplift.atlas import read_atlas, resample
-from uplift.atlas.sources import shipped_atlases
+from uplift.atlas import read_atlas, resample, shipped_atlases
+from uplift.colorimetry import extreme_spectra as extremes
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import lab, lab_to_xyz
-from uplift.colorimetry.mismatch import mismatch_volumes
+from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry.extreme_spectra import extreme_spectra
+from uplift.colorimetry.mismatch import COUNTS, largest_difference, mesh_volume, mismatch_volumes, outline, sphere
 from uplift.common.errors import ColourError
 
 LIGHTS = ("A", "FL11", "HP1", "LED-B3")
 ROUNDING = 1e-9
 
 
-def measured(sensor, count):
-    """Up to ``count`` reflectances in (0, 1) of each shipped atlas."""
-    for shipped in shipped_atlases():
-        values = resample(read_atlas(shipped.path), sensor.wavelengths).values
-        inside = values[((values >= 0) & (values <= 1)).all(axis=1)]
-        yield inside[:: max(len(inside) // count, 1)]
+def problems(sensor, name, count):
+    """RGB of random smooth reflectances, and responses in random directions of XYZ under a light."""
+    rng = np.random.default_rng(7)
+    smooth = np.cumsum(rng.normal(scale=0.3, size=(count, len(sensor.wavelengths))), axis=1)
+    rgb = sensor.rgb(1 / (1 + np.exp(-smooth)))
+    return rgb, rng.normal(size=(count, 3)) @ observer.light(name).xyz
+
+
+def linear_program(sensor, rgb, response):
+    return linprog(-response, A_eq=sensor.matrix, b_eq=rgb, bounds=(0, 1), method="highs")
+
+
+@pytest.mark.parametrize("name", ["A", "FL11", "HP1", "D65"])
+def test_extremes_are_those_of_a_linear_program(sensor, name):
+    """They have the colour, and at most three values other than 0 and 1."""
+    rgb, response = problems(sensor, name, 12)
+    found = extreme_spectra(sensor.matrix, rgb, response)
+    assert found.solved.all()
+    np.testing.assert_allclose(sensor.rgb(found.reflectance), rgb, atol=1e-9)
+    assert ((found.reflectance >= 0) & (found.reflectance <= 1)).all()
+    assert (((found.reflectance > 0) & (found.reflectance < 1)).sum(axis=1) <= 3).all()
+    best = [-linear_program(sensor, *each).fun for each in zip(rgb, response, strict=True)]
+    np.testing.assert_allclose((response * found.reflectance).sum(axis=1), best, rtol=0, atol=1e-9)
+
+
+def test_extremes_do_not_depend_on_the_start_or_the_neighbours(sensor, monkeypatch):
+    rgb, response = problems(sensor, "A", 40)
+    found = extreme_spectra(sensor.matrix, rgb, response)
+    monkeypatch.setattr(extremes, "BLOCK_NUMBERS", 81 * 7)
+    warm = extreme_spectra(sensor.matrix, rgb, response, np.roll(found.basis, 1, axis=0))
+    expected = (found.reflectance * response).sum(axis=1)
+    np.testing.assert_allclose((warm.reflectance * response).sum(axis=1), expected, atol=1e-9)
+
+
+def test_colours_without_reflectance_are_not_solved(sensor):
+    rgb = np.array([[0.5, 0.5, 0.5], [1.5, 0, 0], [-0.4, 1, -0.4]])
+    response = np.tile(observer.light("A").xyz[1], (3, 1))
+    assert extreme_spectra(sensor.matrix, rgb, response).solved.tolist() == [True, False, False]
+    for bad in (rgb[1], rgb[2], [0.2, 0.2, np.nan]):
+        with raises(ColourError, "colour-unrealisable"):
+            mismatch_volumes(sensor, observer.light("A"), np.array([rgb[0], bad]))
+
+
+@pytest.mark.parametrize("divisions", range(4))
+def test_directions_are_unit_vectors_of_a_closed_mesh(divisions):
+    found = sphere(divisions)
+    assert found.directions.shape == (COUNTS[divisions], 3)
+    np.testing.assert_allclose(np.linalg.norm(found.directions, axis=1), 1)
+    edges = np.sort(found.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+    volume = mesh_volume(found.directions[None], found.faces)[0]
+    assert 4 * np.pi / 3 * (1 - 0.6 / 4**divisions) < volume < 4 * np.pi / 3
+    children = np.arange(12, len(found.directions))
+    assert (found.parents[children] < children).all()
+
+
+def test_the_outline_of_a_mesh_is_that_of_its_projection():
+    found = sphere(3)
+    moved = found.directions[:, :2] + np.array([3.0, -2.0])
+    radius = np.hypot(*(outline(moved, found.faces) - np.array([3.0, -2.0])).T)
+    assert 0.99 < radius.min() <= radius.max() <= 1 + 1e-12
+    skew = found.directions[:, :2] * [2.0, 1.0] + 0.2 * found.directions[:, 2:]
+    limits, centre = outline(skew, found.faces, angles=360), skew.mean(axis=0)
+    assert Path(centre + 1.01 * (limits - centre)).contains_points(skew).all()
+    assert not Path(centre + 0.95 * (limits - centre)).contains_points(skew).all()
 
 
 @pytest.mark.parametrize("name", LIGHTS)
 def test_measured_metamers_lie_inside(sensor, name):
-    """Every measured reflectance is a metamer of the colour that it has."""
+    """Every measured reflectance is a metamer of the colour that it has; white is none of grey."""
     light = observer.light(name)
-    spectra = np.concatenate(list(measured(sensor, 25)))
-    assert len(spectra) > 80
+    parts = [resample(read_atlas(each.path), sensor.wavelengths).values for each in shipped_atlases()]
+    spectra = np.concatenate([part[:: max(len(part) // 25, 1)] for part in parts])
     volumes = mismatch_volumes(sensor, light, sensor.rgb(spectra), divisions=1)
     assert volumes.excess(spectra @ light.xyz.T).max() <= ROUNDING
+    grey = mismatch_volumes(sensor, light, np.full((1, 3), 0.5), divisions=1)
+    assert grey.excess(light.white[None])[0] > 0.05
 
 
-def test_other_colours_lie_outside(sensor):
-    """The test above can fail: white and grey are not metamers."""
-    light = observer.light("A")
-    volumes = mismatch_volumes(sensor, light, np.full((1, 3), 0.5), divisions=1)
-    assert volumes.excess(light.white[None])[0] > 0.1
-
-
-def test_the_volume_under_the_build_light_is_a_point(sensor):
+def test_volumes_that_are_points(sensor):
+    """Those under the build light, and those of black and white."""
     rgb = np.random.default_rng(2).uniform(size=(20, 3))
     volumes = mismatch_volumes(sensor, sensor.light, rgb, divisions=1)
     np.testing.assert_allclose(volumes.xyz, np.repeat(sensor.xyz(rgb)[:, None], 42, axis=1), atol=1e-9)
     assert np.abs(volumes.volume).max() < 1e-20
-
-
-def test_black_and_white_have_one_reflectance(sensor):
     light = observer.light("FL11")
     volumes = mismatch_volumes(sensor, light, np.array([[0.0, 0, 0], [1, 1, 1]]), divisions=1)
     np.testing.assert_allclose(volumes.xyz[0], 0, atol=1e-7)
@@ -62,23 +116,19 @@ def test_the_volume_of_grey_is_symmetric(sensor):
     """1 − g is a metamer of grey ½ if g is one."""
     light = observer.light("HP1")
     volumes = mismatch_volumes(sensor, light, np.full((1, 3), 0.5), divisions=2)
-    opposite = [
-        np.abs(volumes.directions.directions + each).sum(axis=1).argmin() for each in volumes.directions.directions
-    ]
+    directions = volumes.directions.directions
+    opposite = [np.abs(directions + each).sum(axis=1).argmin() for each in directions]
     np.testing.assert_allclose(volumes.xyz[0, opposite], light.white - volumes.xyz[0], atol=1e-8)
 
 
 def test_the_volume_is_that_of_the_hull_of_linear_programs(sensor):
     """Directions, solver and volume are independent of the module."""
-    light = observer.light("FL11")
-    rgb = np.array([0.2, 0.4, 0.1])
+    light, rgb = observer.light("FL11"), np.array([0.2, 0.4, 0.1])
     directions = np.random.default_rng(3).normal(size=(250, 3))
-    found = [
-        linprog(-each @ light.xyz, A_eq=sensor.matrix, b_eq=rgb, bounds=(0, 1), method="highs").x for each in directions
-    ]
-    hull = ConvexHull(np.array(found) @ light.xyz.T)
-    volumes = mismatch_volumes(sensor, light, rgb[None], divisions=3)
+    hull = ConvexHull(np.array([linear_program(sensor, rgb, each @ light.xyz).x for each in directions]) @ light.xyz.T)
+    coarse, volumes = (mismatch_volumes(sensor, light, rgb[None], divisions) for divisions in (2, 3))
     assert volumes.volume[0] == pytest.approx(hull.volume, rel=0.06)
+    assert coarse.volume[0] < volumes.volume[0] < 1.05 * coarse.volume[0]
     slack = hull.equations[:, :3] @ volumes.xyz[0].T + hull.equations[:, 3:]
     assert slack.max() < 0.1 * np.cbrt(hull.volume)
     # The planes of the boundary points bound the points of the other solver, and so do the corners.
@@ -87,20 +137,28 @@ def test_the_volume_is_that_of_the_hull_of_linear_programs(sensor):
     assert volumes.volume[0] < outer.volume < 2 * hull.volume
 
 
-def test_more_directions_give_more_volume(sensor):
-    light, rgb = observer.light("FL11"), np.array([[0.7, 0.5, 0.3]])
-    found = [mismatch_volumes(sensor, light, rgb, divisions).volume[0] for divisions in range(4)]
-    assert found == sorted(found)
-    assert found[3] < 1.03 * found[2]
+@pytest.mark.parametrize("name", ["A", "FL11"])
+def test_no_metamer_differs_more(plain_cube, name):
+    """Against extremes in random directions, and mixtures of pairs of them."""
+    light, sensor, rng = observer.light(name), plain_cube.data.sensor, np.random.default_rng(6)
+    rgb = rng.uniform(0.05, 0.95, size=(6, 3))
+    answers = plain_cube.reflectance(rgb) @ light.xyz.T
+    volumes = mismatch_volumes(sensor, light, rgb, divisions=3)
+    found = largest_difference(volumes, answers)
+    assert (found.outer >= found.delta_e_2000).all()
+    assert volumes.excess(found.xyz).max() <= ROUNDING
+    reference = lab(answers, light.white)
+    np.testing.assert_allclose(found.delta_e_2000, delta_e_2000(lab(found.xyz, light.white), reference))
+    for row, each in enumerate(rgb):
+        response = rng.normal(size=(300, 3)) @ light.xyz
+        spectra = extreme_spectra(sensor.matrix, np.tile(each, (300, 1)), response).reflectance
+        weights = rng.uniform(size=(300, 1))
+        metamers = np.concatenate([spectra, weights * spectra + (1 - weights) * spectra[::-1]]) @ light.xyz.T
+        differences = delta_e_2000(lab(metamers, light.white), reference[row])
+        assert 0.8 * found.delta_e_2000[row] < differences.max() <= found.delta_e_2000[row] + 0.05
 
 
-@pytest.mark.parametrize("rgb", [(1.5, 0.0, 0.0), (-0.5, 0.5, 0.5), (0.2, 0.2, np.nan)])
-def test_colours_without_reflectance_are_refused(sensor, rgb):
-    with raises(ColourError, "colour-unrealisable"):
-        mismatch_volumes(sensor, observer.light("A"), np.array([[0.5, 0.5, 0.5], rgb]))
-
-
-def test_lab_to_xyz_inverts_lab():
-    white = np.array([1.1, 1, 0.4])
-    xyz = np.random.default_rng(4).uniform(size=(50, 3)) ** 6 * white
-    np.testing.assert_allclose(lab_to_xyz(lab(xyz, white), white), xyz, atol=1e-14)
+def test_under_the_build_light_nothing_differs(plain_cube):
+    sensor, rgb = plain_cube.data.sensor, np.random.default_rng(7).uniform(size=(5, 3))
+    found = largest_difference(mismatch_volumes(sensor, sensor.light, rgb), sensor.xyz(rgb))
+    assert found.delta_e_2000.max() < 1e-3

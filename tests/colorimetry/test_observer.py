@@ -1,17 +1,31 @@
-"""Sensors, lights and tables by name, compared with colour-science."""
+"""Sensors, lights, RGB spaces and codes by name, compared with colour-science."""
 
 from __future__ import annotations
 
 import colour
 import numpy as np
+import PyOpenColorIO
 import pytest
 
 import uplift
 from tests.helpers import raises
+from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
-from uplift.common.errors import UnknownNameError
+from uplift.colorimetry.gamut import SRGB, conversion, map_to_gamut
+from uplift.colorimetry.observer import COMMON_SPACES, smallest_space
+from uplift.colorimetry.spaces import BUILT_IN, find_space, look_up_space
+from uplift.colorimetry.srgb import decode, encode, to_display_codes
+from uplift.common.errors import OptionError, UnknownNameError
 
 SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
+NAMES = {
+    "AP1": "ACEScg", "ACES - ACEScg": "ACEScg", "lin_ap1_scene": "ACEScg", "rec2020": "ITU-R BT.2020",
+    "Rec.2020": "ITU-R BT.2020", "lin_rec2020": "ITU-R BT.2020", "rec709": "ITU-R BT.709", "lin_rec709": "sRGB",
+    "sRGB - Texture": "sRGB", "srgb_texture": "sRGB", "lin_p3d65": "Display P3", "AP0": "ACES2065-1",
+    "adobergb": "Adobe RGB (1998)",
+}  # fmt: skip
+ENCODED = {"sRGB - Texture": colour.models.eotf_sRGB, "srgb_texture": colour.models.eotf_sRGB}
+ENCODED["adobergb"] = lambda codes: codes ** (563 / 256)
 
 
 @pytest.mark.parametrize("space", SPACES)
@@ -31,16 +45,8 @@ def test_colours_agree_with_colour_science(sensor):
         samples = patch.copy().align(shape)
         xyz = colour.sd_to_XYZ(samples, cmfs, d65, method="Integration") / 100
         np.testing.assert_allclose(sensor.rgb(samples.values), colour.XYZ_to_RGB(xyz, "sRGB"), atol=5e-4)
-
-
-def test_xyz_of_rgb_equals_xyz_of_reflectance(sensor):
-    reflectance = np.random.default_rng(1).random((10, 81))
-    np.testing.assert_allclose(sensor.xyz(sensor.rgb(reflectance)), reflectance @ sensor.light.xyz.T, atol=1e-14)
-
-
-def test_decoding_agrees_with_colour_science(sensor):
-    expected = colour.RGB_COLOURSPACES["sRGB"].cctf_decoding(np.arange(256) / 255)
-    np.testing.assert_array_equal(sensor.decoding, expected)
+        np.testing.assert_allclose(sensor.xyz(sensor.rgb(samples.values)), xyz, rtol=1e-9)
+    np.testing.assert_array_equal(sensor.decoding, colour.RGB_COLOURSPACES["sRGB"].cctf_decoding(np.arange(256) / 255))
 
 
 @pytest.mark.parametrize("dim", [2, 3, 8, 16, 33, 128])
@@ -60,12 +66,10 @@ def test_stored_nodes_are_reproduced_exactly(name, repository):
     [
         (lambda: observer.sensor("sRBG"), "unknown-rgb-space", "'sRGB'"),
         (lambda: observer.light("D66"), "unknown-illuminant", "'D65'"),
-        (
-            lambda: observer.light("D65", "CIE 1931 2 Degree"),
-            "unknown-observer",
-            "'CIE 1931 2 Degree Standard Observer'",
-        ),
+        (lambda: observer.light("D65", "CIE 1931 2 Degree"), "unknown-observer", "'CIE 1931 2 Degree Standard"),
         (lambda: observer.axis_nodes("srgbb", 4), "unknown-axis-spacing", "'srgb'"),
+        (lambda: observer.lamps().without(("A", "D66")), "unknown-lamp", "'D65'"),
+        *((lambda name=name: find_space(name), "unknown-rgb-space", "") for name in ("raw", "", "a\0b", "a\n")),
     ],
 )
 def test_unknown_names_raise_with_near_names(call, code, near):
@@ -74,19 +78,88 @@ def test_unknown_names_raise_with_near_names(call, code, near):
     assert near in caught.value.hint
 
 
+def test_lamps_are_left_out_by_name():
+    lamps = observer.lamps()
+    kept = lamps.without(("FL2",))
+    assert set(lamps.names) - set(kept.names) == {"FL2"}
+    row = lamps.names.index("FL2")
+    np.testing.assert_array_equal(kept.power, np.delete(lamps.power, row, axis=0))
+
+
 @pytest.mark.parametrize("limits", [(360, 830, 1), (360, 1000, 5), (380, 780, 10)])
 def test_other_ranges_agree_with_colour_science(limits, sensor):
     found = observer.on_range(sensor, *limits)
     assert found.range == limits
     np.testing.assert_allclose(found.rgb(np.ones(len(found.wavelengths))), 1, rtol=0, atol=1e-14)
-    shape = colour.SpectralShape(*limits)
     steep = colour.SpectralDistribution(np.linspace(0.1, 0.9, len(found.wavelengths)), found.wavelengths)
-    cmfs, light = (
-        colour.MSDS_CMFS[sensor.observer].copy().align(shape),
-        colour.SDS_ILLUMINANTS["D65"].copy().align(shape),
-    )
-    expected = colour.sd_to_XYZ(steep, cmfs, light, method="Integration") / 100
+    expected = colour.sd_to_XYZ(steep, *observer.aligned(sensor, *limits), method="Integration") / 100
     np.testing.assert_allclose(found.xyz(found.rgb(steep.values)), expected, rtol=1e-9)
-    displays = observer.display_sensors(["D65", "A"], sensor.observer, *limits)
+    displays = observer.display_sensors(["D65", "A", "D65"], sensor.observer, *limits)
     assert [each.range for each in displays] == [limits] * 2
     np.testing.assert_array_equal(observer.light("D65", sensor.observer, *limits).xyz, found.light.xyz)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_spaces_convert_as_colour_science_does(name):
+    found, sensor = find_space(name), observer.sensor("sRGB")
+    assert look_up_space(name).name == observer.sensor(name).space == NAMES[name]
+    codes = np.array([[0.2, 0.5, 0.8], [1, 1, 1]])
+    linear, decoded = (found.decode(codes), ENCODED[name](codes)) if name in ENCODED else (codes, codes)
+    expected = decoded @ conversion(observer.primaries(NAMES[name]), SRGB).T
+    np.testing.assert_allclose(linear @ conversion(found.gamut, SRGB).T, expected, rtol=0, atol=1e-3)
+    assert found.floats_are_codes == (name in ENCODED)
+    agrees = NAMES[name] in ("sRGB", "ITU-R BT.709") and name not in ENCODED
+    assert found.agrees_with(sensor, encoded=False) == agrees
+
+
+def test_the_configuration_of_the_environment_comes_first(tmp_path, monkeypatch):
+    path = tmp_path / "config.ocio"
+    config = PyOpenColorIO.Config.CreateFromFile(BUILT_IN)
+    path.write_text(config.serialize().replace("Linear Rec.2020", "house"))
+    with raises(UnknownNameError, "unknown-rgb-space"):
+        find_space("house")
+    monkeypatch.setenv("OCIO", str(path))
+    assert find_space("house").name == "house"
+    assert observer.sensor("house").space == "ITU-R BT.2020"
+    path.with_name("bad.ocio").write_text("ocio_profile_version: 99")
+    monkeypatch.setenv("OCIO", str(path.with_name("bad.ocio")))
+    with raises(OptionError, "option"):
+        find_space("house")
+
+
+def test_smallest_space():
+    spectra = on_grid(read_atlas("macbeth"), observer.grid())
+    assert smallest_space(spectra) == "Display P3"
+    assert smallest_space(spectra[:17]) == "sRGB"
+    assert smallest_space(np.eye(81)[28:29]) is None
+    u, v = np.moveaxis([colour.xy_to_Luv_uv(colour.RGB_COLOURSPACES[name].primaries) for name in COMMON_SPACES], -1, 0)
+    areas = np.abs((u[:, 1] - u[:, 0]) * (v[:, 2] - v[:, 0]) - (v[:, 1] - v[:, 0]) * (u[:, 2] - u[:, 0]))
+    assert (np.diff(areas) > 0).all()
+
+
+def test_transfer_curve_agrees_with_the_standard_and_is_invertible():
+    linear = np.linspace(0, 1, 300)
+    np.testing.assert_allclose(encode(linear), colour.models.eotf_inverse_sRGB(linear), rtol=0, atol=1e-6)
+    np.testing.assert_allclose(decode(encode(linear)), linear, rtol=0, atol=1e-6)
+    codes = np.random.default_rng(0).integers(0, 256, (500, 3))
+    np.testing.assert_array_equal(to_display_codes(decode(codes / 255), SRGB), codes)
+
+
+@pytest.mark.parametrize(("space", "illuminant"), [("P3-D65", "D65"), ("ProPhoto RGB", "D50"), ("sRGB", "A")])
+def test_other_spaces_keep_their_appearance(space, illuminant):
+    """An sRGB sensor under the illuminant of the cube adapts by Bradford's transform too."""
+    own, screen = (observer.sensor(name, illuminant) for name in (space, "sRGB"))
+    rgb = 0.3 + 0.3 * np.random.default_rng(1).random((200, 3))  # pale enough for sRGB
+    expected = 255 * encode(own.xyz(rgb) @ screen.xyz_to_rgb.T)
+    assert np.abs(to_display_codes(rgb, own) - expected).max() < 0.6
+    np.testing.assert_array_equal(to_display_codes([1, 1, 1], own), [255, 255, 255])
+
+
+def test_colours_outside_srgb_keep_their_luminance():
+    wide = observer.sensor("P3-D65")
+    red = np.array([0.6, 0, 0])
+    linear = wide.xyz(red) @ np.linalg.inv(SRGB.rgb_to_xyz).T
+    assert linear.min() < -0.01
+    codes = to_display_codes(red, wide)
+    assert decode(codes / 255) @ SRGB.rgb_to_xyz[1] == pytest.approx(wide.xyz(red)[1], abs=2e-3)
+    np.testing.assert_array_equal(codes, np.rint(255 * encode(map_to_gamut(linear, SRGB, "desaturate").rgb)))

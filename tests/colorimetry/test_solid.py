@@ -31,10 +31,6 @@ def test_solid_contains_the_colours_that_a_solver_reaches(space):
     np.testing.assert_array_equal(limits.contains(colours), best_residual(sensor, colours) <= 1e-8)
 
 
-def test_all_of_srgb_is_realisable(sensor):
-    assert solid(sensor.matrix).contains(Lattice(np.linspace(0, 1, 9)).points).all()
-
-
 def test_spectra_of_two_steps_lie_on_the_boundary(sensor):
     """MacAdam 1935: the purest colours have a reflectance of 0 or 1 with at most two steps.
 
@@ -48,18 +44,6 @@ def test_spectra_of_two_steps_lie_on_the_boundary(sensor):
         for spectrum in (box, 1 - box):
             outside = limits.signed_distance((sensor.matrix @ spectrum)[None])[0]
             assert -1e-5 < outside < 1e-12
-
-
-def test_ray_fraction_ends_on_the_boundary():
-    wide = observer.sensor("ProPhoto RGB")
-    limits = solid(wide.matrix)
-    target = np.array([[0.0, 1, 0], [0, 0, 1], [0.5, 0.5, 0.5]])
-    origin = np.full((3, 3), 0.4)
-    share = limits.ray_fraction(origin, target)
-    assert share[2] == 1
-    assert (share[:2] < 1).all()
-    ends = origin + share[:, None] * (target - origin)
-    np.testing.assert_allclose(limits.signed_distance(ends)[:2], 0, atol=1e-12)
 
 
 def test_solid_volume_is_that_of_the_convex_hull(sensor):
