@@ -15,17 +15,13 @@ HEADER_1_1 = (
     "ART measurement archive version 1.1\n\nArchive content: greys\n"
     "Archive copyright: (c) A. Person: 2020\nArchive license: CC0\n\n"
 )
+REGULAR = "Start                 :  400.0 nm\nIncrement             :  100.0 nm\n"
 BISPECTRAL = """\
 Reflectance start     :  400.0 nm
 Reflectance increment :  100.0 nm
 Illumination start    :  300.0 nm
 Illumination increment:  100.0 nm
 """
-
-
-def values(path):
-    (entry,) = read_atlas(path).entries
-    return entry.values.tolist()
 
 
 def test_printed_entry_with_complete_samples(save):
@@ -37,12 +33,9 @@ def test_printed_entry_with_complete_samples(save):
 
 
 def test_printed_entry_stops_at_the_ellipsis(save):
-    path = save(THESIS)
     with raises(AtlasError, "atlas") as caught:
-        read_atlas(path)
-    assert str(caught.value) == (
-        f"{path}:19: entry 'orange': sample '...' is not a number; write a plain number such as 0.125"
-    )
+        read_atlas(save(THESIS))
+    assert (caught.value.line, caught.value.entry) == (19, "orange")
 
 
 @pytest.mark.parametrize("header", ["", HEADER_1_0, HEADER_1_1, HEADER_1_1.replace("1.1", "1.2")])
@@ -73,17 +66,16 @@ def test_headers(save, header):
     ],
 )
 def test_equivalent_notations(save, change):
-    assert values(save(change(PLAIN))) == [0.5, 0.25, 0.125, 0.0625]
+    (entry,) = read_atlas(save(change(PLAIN)))
+    assert entry.values.tolist() == [0.5, 0.25, 0.125, 0.0625]
 
 
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
         ('"a grey card"', "a grey card"),
-        ("a grey card", "a grey card"),
         ('"grey" and "card"', '"grey" and "card"'),
         ('""grey""', '"grey"'),
-        ('"', '"'),
     ],
 )
 def test_descriptions(save, text, expected):
@@ -100,36 +92,35 @@ def test_latin_1_is_the_fallback_of_utf_8(save):
 def test_point_samples(save, samples):
     text = PLAIN.replace("regular", "point sampled").replace("value  :  1.0", "value  :  100.0")
     text = text.replace("{0.5, 0.25, 0.125, 0.0625}", samples)
-    text = text.replace("Start                 :  400.0 nm\nIncrement             :  100.0 nm\n", "")
+    text = text.replace(REGULAR, "")
     (entry,) = read_atlas(save(text)).entries
     assert entry.wavelengths.tolist() == [400, 555.5, 700]
     assert entry.values.tolist() == [0.5, 0.25, 0.125]
     assert entry.step is None
 
 
-@pytest.mark.parametrize("kind", ["emission spectrum", "colourimetric matching function", "colour matching function"])
-def test_other_types_are_skipped_with_a_warning(save, kind):
-    other = PLAIN.replace("grey", "lamp").replace("reflectance spectrum", kind)
-    other = other.replace("Fluorescence data     :  no\n", "").replace("Maximum sample value  :  1.0\n", "")
+OTHER = PLAIN.replace("grey", "other")
+EMISSION = OTHER.replace("reflectance spectrum", "emission spectrum").replace("Maximum sample value  :  1.0\n", "")
+FLUORESCENT = OTHER.replace("data     :  no", "data     :  yes").replace("{0.5,", "{{-0.01, 0},{0.5,")
+FLUORESCENT = FLUORESCENT.replace("0.0625}", "0.0625}}").replace(REGULAR, BISPECTRAL)
+
+
+@pytest.mark.parametrize(
+    ("other", "reason"),
+    [
+        (EMISSION.replace("Fluorescence data     :  no\n", ""), "'emission spectrum'"),
+        (EMISSION.replace("emission spectrum", "colour matching function"), "'colour matching function'"),
+        (FLUORESCENT, "fluorescent"),
+        (FLUORESCENT.replace("Fluorescence data     :  yes\n", ""), "fluorescent"),
+    ],
+)
+def test_entries_that_are_no_reflectances_are_skipped(save, other, reason):
     path = save(PLAIN + other)
     with warns("entry-skipped") as caught:
         spectra = read_atlas(path)
-    assert caught[0].where == f"{path}:19: entry 'lamp'"
-    assert f"'{kind}'" in caught[0].problem
-    assert spectra.names == ("grey",)
-    assert [(item.name, item.line) for item in spectra.skipped] == [("lamp", 19)]
-
-
-def test_fluorescent_entries_are_skipped_with_a_warning(save):
-    text = PLAIN.replace("data     :  no", "data     :  yes").replace("{0.5,", "{{-0.01, 0},{0.5,")
-    text = text.replace("0.0625}", "0.0625}}")
-    text = text.replace("Start                 :  400.0 nm\nIncrement             :  100.0 nm\n", BISPECTRAL)
-    for written in (text, text.replace("Fluorescence data     :  yes\n", "")):
-        with warns("entry-skipped") as caught:
-            spectra = read_atlas(save(written + PLAIN.replace("grey", "plain")))
-        assert spectra.names == ("plain",)
-        assert spectra.skipped[0].name == caught[0].entry == "grey"
-        assert "fluorescent" in caught[0].problem
+    assert caught[0].where == f"{path}:19: entry 'other'"
+    assert reason in caught[0].problem
+    assert (spectra.names, [each.name for each in spectra.skipped]) == (("grey",), ["other"])
 
 
 def without(key):
@@ -169,8 +160,6 @@ def test_faults_report_file_line_entry_and_hint(save, damage, line):
     with raises(AtlasError, "atlas") as caught:
         read_atlas(path)
     assert caught.value.where == f"{path}:{line}: entry 'grey'"
-    assert caught.value.hint
-    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -195,7 +184,7 @@ def test_faults_outside_entries(save, text, line):
 )
 def test_samples_that_are_not_pairs_raise(save, samples):
     text = PLAIN.replace("regular", "point sampled").replace("{0.5, 0.25, 0.125, 0.0625}", samples)
-    text = text.replace("Start                 :  400.0 nm\nIncrement             :  100.0 nm\n", "")
+    text = text.replace(REGULAR, "")
     with raises(AtlasError, "atlas") as caught:
         read_atlas(save(text))
     assert caught.value.where.endswith("atlas.txt:15: entry 'grey'")
@@ -204,20 +193,12 @@ def test_samples_that_are_not_pairs_raise(save, samples):
 def test_truncated_files_raise(save):
     text = PLAIN.rstrip()
     for end in range(1, len(text)):
-        with pytest.raises(AtlasError, match=r"^[^\n]*atlas\.txt[^\n]*$"):
+        with raises(AtlasError):
             read_atlas(save(text[:end]))
-
-
-def test_long_lines_and_many_entries_are_read(save):
-    long = PLAIN.replace("Increment             :  100.0", "Increment             :  0.1")
-    long = long.replace("{0.5,", "{" + "0.123456, " * 3000)
-    text = "".join(long.replace("grey", f"grey{i}") for i in range(30))
-    assert len(read_atlas(save(text))) == 30
 
 
 def test_unbalanced_braces_raise(save):
     """A reader of quadratic cost would not finish."""
-    with raises(AtlasError, "atlas"):
-        read_atlas(save(PLAIN.replace("}", "{" * 300_000)))
-    with raises(AtlasError, "atlas"):
-        read_atlas(save(PLAIN.replace("}", "{" * 300_000 + "}" * 300_001)))
+    for braces in ("{" * 300_000, "{" * 300_000 + "}" * 300_001):
+        with raises(AtlasError, "atlas"):
+            read_atlas(save(PLAIN.replace("}", braces)))

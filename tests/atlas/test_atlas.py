@@ -1,68 +1,141 @@
-"""`Atlas` as a sequence with names, and its representations."""
+"""`Atlas` as a sequence with names, entries from Python, distributions of other libraries, and resampling."""
 
 from __future__ import annotations
 
+import warnings
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
+import colour
+import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from tests.atlas.atlas_texts import ATLASES
-from tests.helpers import raises
-from uplift.atlas import Atlas, Entry, SkippedEntry, Source, read_atlas
-from uplift.common.errors import UnknownNameError
+from tests.helpers import raises, warns
+from uplift.atlas import (
+    Atlas,
+    Entry,
+    SkippedEntry,
+    Source,
+    from_distributions,
+    on_grid,
+    read_atlas,
+    resample,
+    write_atlas,
+)
+from uplift.common.errors import AtlasError, UnknownNameError
 
 RED = Entry("red", [400, 550, 700], [0.0, 0.0, 1.0])
 GREY = Entry("grey", [380, 780], [0.5, 0.5])
 ATLAS = Atlas((RED, GREY), (SkippedEntry("lamp", "emits"),), (Source("a.txt", "00"),))
+GRID = np.arange(380.0, 785.0, 5.0)
+NM = np.array([400.0, 550.0, 700.0])
+DISTRIBUTION = SimpleNamespace(name="red", wavelengths=NM, values=np.array([0.1, 0.2, 0.9]))
 
 
-def test_iteration_length_and_membership():
-    assert list(ATLAS) == [RED, GREY]
-    assert len(ATLAS) == 2
+def test_an_atlas_is_a_sequence_with_names():
+    assert (list(ATLAS), len(ATLAS)) == ([RED, GREY], 2)
     assert "red" in ATLAS
     assert RED in ATLAS
     assert "blue" not in ATLAS
     assert Entry("red", RED.wavelengths, RED.values) not in ATLAS
-
-
-def test_index_is_a_name_a_position_or_a_slice():
-    assert ATLAS["grey"] is GREY
-    assert ATLAS[0] is RED
-    assert ATLAS[-1] is GREY
-    part = ATLAS[1:]
-    assert isinstance(part, Atlas)
-    assert part.names == ("grey",)
-    assert part.sources == ATLAS.sources
-
-
-def test_unknown_name_raises_with_near_names():
-    with raises(UnknownNameError, "unknown-atlas-entry") as caught:
-        ATLAS["gray"]
-    assert "'grey'" in caught.value.hint
-    with pytest.raises(KeyError):
+    assert (ATLAS["grey"], ATLAS[0], ATLAS[-1]) == (GREY, RED, GREY)
+    assert (ATLAS[1:].names, ATLAS[1:].sources) == (("grey",), ATLAS.sources)
+    assert repr(ATLAS) == "Atlas(2 entries, 380–780 nm, 1 skipped, from a.txt)"
+    with raises(UnknownNameError, "unknown-atlas-entry"):
         ATLAS["gray"]
     with pytest.raises(IndexError):
         ATLAS[2]
 
 
-def test_repr_is_one_short_line():
-    assert repr(ATLAS) == "Atlas(2 entries, 380–780 nm, 1 skipped, from a.txt)"
-    assert repr(Atlas()) == "Atlas(0 entries)"
-    assert repr(ATLAS[:1]).startswith("Atlas(1 entry, 400–700 nm")
-    assert repr(RED) == "Entry('red', 3 samples, 400–700 nm)"
-
-
 def test_html_has_a_row_with_swatch_name_and_plot_per_entry():
-    table = ElementTree.fromstring(read_atlas(ATLASES / "macbeth.txt")._repr_html_())
+    table = ElementTree.fromstring(Atlas((Entry("<b>&", GREY.wavelengths, GREY.values), RED))._repr_html_())
     rows = table.findall("tr")
-    assert len(rows) == 24
-    names = [row.findall("td")[1].text for row in rows]
-    assert "orange" in names
-    points = rows[0].find(".//polyline").get("points").split()
-    assert len(points) == 81
+    assert [row.findall("td")[1].text for row in rows] == ["<b>&", "red"]
+    assert len(rows[1].find(".//polyline").get("points").split()) == 81
 
 
-def test_html_escapes_names():
-    html = Entry("<script>&", GREY.wavelengths, GREY.values)._repr_html_()
-    assert "<script>" not in html
-    assert "&lt;script&gt;&amp;" in html
+@pytest.mark.parametrize(
+    ("name", "wavelengths", "values"),
+    [
+        ("a", [400, 700], [0.5]),
+        ("a", [400, 700], ["x", "y"]),
+        ("a", [400, None, 700], [1, 1, 1]),
+        ("a\nb", [400, 700], [1, 1]),
+        (" a", [400, 700], [1, 1]),
+        ("a" * 1001, [400, 700], [1, 1]),
+        ("a\ud800", [400, 700], [1, 1]),
+    ],
+)
+def test_entries_from_python_are_validated(name, wavelengths, values):
+    with raises(AtlasError, "atlas"):
+        Entry(name, wavelengths, values)
+
+
+def test_entries_are_read_only():
+    with pytest.raises(ValueError, match="read-only"):
+        RED.values[0] = 1
+
+
+def test_distributions_of_colour_science(tmp_path):
+    checker = colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"]
+    spectra = from_distributions(checker)
+    assert spectra.names == tuple(checker)
+    np.testing.assert_array_equal(spectra["orange"].values, checker["orange"].values)
+    write_atlas(spectra, tmp_path / "out.txt")
+    assert read_atlas(tmp_path / "out.txt").sources[0].digest == spectra.sources[0].digest
+    values = np.array([[0.1, 0.8], [0.2, 0.3], [0.9, 0.05]])
+    several = from_distributions(colour.MultiSpectralDistributions(values, NM, labels=["red", "blue"]))
+    assert several.names == ("red", "blue")
+    assert several["blue"].values.tolist() == [0.8, 0.3, 0.05]
+
+
+def test_any_class_with_the_attributes_of_a_distribution():
+    assert from_distributions({"a": DISTRIBUTION, 2: DISTRIBUTION}).names == ("a", "2")
+    assert from_distributions(DISTRIBUTION).names == ("red",)
+    assert from_distributions({}).names == ()
+
+
+@pytest.mark.parametrize(
+    ("distributions", "entry"),
+    [
+        (3, "int"),
+        ({"a": [1, 2]}, "a"),
+        (SimpleNamespace(labels=["a"], wavelengths=NM, values=NM), None),
+        ({"a": SimpleNamespace(wavelengths=NM, values=NM)}, "a"),
+    ],
+)
+def test_invalid_distributions_raise(distributions, entry):
+    with raises(AtlasError, "atlas") as caught:
+        from_distributions(distributions)
+    assert caught.value.entry == entry
+
+
+def spectra(*rows):
+    return Atlas(tuple(Entry(f"e{i}", np.linspace(400, 700, len(row)), np.array(row)) for i, row in enumerate(rows)))
+
+
+@settings(max_examples=50)
+@given(st.lists(st.floats(0.0, 1.0), min_size=7, max_size=7))
+def test_resampling_keeps_samples_and_does_not_overshoot(row):
+    found = on_grid(spectra(row), GRID)[0]
+    assert (found[GRID <= 400] == row[0]).all()
+    assert (found[GRID >= 700] == found[GRID == 700]).all()
+    for i in range(6):
+        between = found[(400 + 50 * i <= GRID) & (450 + 50 * i >= GRID)]
+        np.testing.assert_allclose(between[[0, -1]], row[i : i + 2], rtol=0, atol=1e-15)
+        assert min(row[i : i + 2]) - 1e-12 <= between.min() <= between.max() <= max(row[i : i + 2]) + 1e-12
+
+
+def test_one_warning_for_all_clipped_entries():
+    rows = ([0.5] * 6 + [1.25], [0.5] * 7, [1.5, 1.0, 0.5, -0.04, 0.5, 0.5, 0.5])
+    with warns("entry-clipped") as caught:
+        found = on_grid(spectra(*rows), GRID)
+    assert "'e2' has 1.5 at 380 nm" in str(caught[0])
+    assert (found.min(), found.max()) == (0.0, 1.0)
+    assert [clip.name for clip in resample(spectra(*rows), GRID).clips] == ["e0", "e2"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = on_grid(spectra([-2e-16, 0.5, 1 + 2e-16, 0.5, -9e-7, 0.5, 0.5]), GRID)  # noise
+    assert (found.min(), found.max()) == (0.0, 1.0)

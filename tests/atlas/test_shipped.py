@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-import uplift
 from tests.atlas.atlas_texts import ATLASES
 from tests.helpers import raises, warns
 from uplift.atlas import read_atlas, shipped_atlases
@@ -32,51 +31,34 @@ def empty_folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("file", SHIPPED)
-def test_entries_range_step_and_licence(file):
-    count, start, end, step = SHIPPED[file]
-    spectra = read_atlas(ATLASES / file)
-    assert len(spectra) == count
-    assert not spectra.skipped
-    for entry in spectra.entries:
+@pytest.mark.parametrize("shipped", shipped_atlases(), ids=lambda shipped: shipped.name)
+def test_entries_header_and_readme(shipped):
+    count, start, end, step = SHIPPED[shipped.path.name]
+    spectra = read_atlas(ATLASES / shipped.path.name)
+    assert (shipped.name, shipped.entries, len(spectra), spectra.skipped) == (shipped.path.stem, count, count, ())
+    for entry in spectra:
         assert (entry.wavelengths[0], entry.wavelengths[-1], entry.step) == (start, end, step)
     header = spectra.sources[0].header
     assert "colour-science" in header.copyright
     assert "BSD-3-Clause" in header.licence
-
-
-def test_readme_lists_every_file():
-    table = (ATLASES / "README.md").read_text(encoding="utf-8")
-    assert sorted(SHIPPED) == sorted(path.name for path in ATLASES.glob("*.txt"))
-    for file, (count, start, end, step) in SHIPPED.items():
-        assert f"| `{file}` | {count} | {start}–{end}, {step} |" in table
+    assert (shipped.content, shipped.source, shipped.licence) == (header.content, header.copyright, header.licence)
+    readme = (ATLASES / "README.md").read_text(encoding="utf-8")
+    assert f"| `{shipped.path.name}` | {count} | {start}–{end}, {step} |" in readme
 
 
 def test_tool_writes_the_same_bytes(tmp_path):
     tool = runpy.run_path(str(ATLASES.parent / "tools" / "ship_atlases.py"))
     tool["main"](tmp_path)
+    assert sorted(SHIPPED) == sorted(path.name for path in ATLASES.glob("*.txt"))
     for file in SHIPPED:
         assert (tmp_path / file).read_bytes() == (ATLASES / file).read_bytes()
 
 
-def test_list_states_name_content_source_licence_and_entries():
-    atlases = shipped_atlases()
-    assert [atlas.path.name for atlas in atlases] == sorted(SHIPPED)
-    for atlas in atlases:
-        count = SHIPPED[atlas.path.name][0]
-        header = read_atlas(ATLASES / atlas.path.name).sources[0].header
-        assert (atlas.name, atlas.entries) == (atlas.path.stem, count)
-        assert (atlas.content, atlas.source, atlas.licence) == (header.content, header.copyright, header.licence)
-
-
-def test_bare_name_reads_the_shipped_atlas_from_an_empty_folder(empty_folder):
-    assert read_atlas("macbeth").sources == read_atlas(ATLASES / "macbeth.txt").sources
-
-
-def test_name_of_a_missing_file_reads_the_shipped_atlas_with_a_warning(empty_folder):
+def test_names_of_missing_files_read_the_shipped_atlas(empty_folder):
     with warns("shipped-atlas") as caught:
         atlas = read_atlas("macbeth.txt", "pmc")
     assert caught[0].where == "macbeth.txt"
+    assert atlas.sources[0] == read_atlas(ATLASES / "macbeth.txt").sources[0]
     assert [source.name for source in atlas.sources] == ["macbeth.txt", "pmc.txt"]
 
 
@@ -92,13 +74,6 @@ def test_hint_names_the_nearest_shipped_atlas(empty_folder, path):
         read_atlas(path)
     assert caught.value.where == path
     assert "'macbeth'" in caught.value.hint
-
-
-def test_cube_records_the_file_of_a_shipped_atlas(empty_folder):
-    with pytest.warns(uplift.UpliftWarning):
-        cube = uplift.build("macbeth", dim=3, coefficients=4)
-    (source,) = read_atlas(ATLASES / "macbeth.txt").sources
-    assert cube.data.provenance["atlases"] == [{"name": source.name, "digest": source.digest}]
 
 
 def test_relative_paths_start_in_the_folder(empty_folder):

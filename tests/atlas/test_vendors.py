@@ -15,6 +15,7 @@ from uplift.atlas.formats import spreadsheet
 from uplift.common.errors import AtlasError, OptionError
 
 MACBETH = sample(read_atlas("macbeth"))
+LAYOUTS = {vendor.name: vendor for vendor in VENDORS}
 
 
 @pytest.mark.parametrize("vendor", VENDORS, ids=lambda vendor: vendor.name)
@@ -31,10 +32,6 @@ def test_spectra_are_those_that_were_written(tmp_path, vendor):
         np.testing.assert_allclose(entry.values, expected.values, rtol=0, atol=1e-6)
 
 
-def test_every_format_but_the_archive_has_a_layout():
-    assert {vendor.format for vendor in VENDORS} == {each.name for each in FORMATS} - {"ART measurement archive"}
-
-
 @pytest.mark.parametrize("label", ["nm{}", "R{}", "{}nm", "{} nm", "SPECTRAL_NM{}", "R_{}", "Refl ({} nm)", "λ{}"])
 def test_labels_of_wavelengths(save, label):
     heads = ",".join(label.format(nm) for nm in (400, 550, 700))
@@ -42,9 +39,8 @@ def test_labels_of_wavelengths(save, label):
     assert (entry.name, entry.wavelengths.tolist(), entry.values.tolist()) == ("grey", [400, 550, 700], [0.1, 0.2, 0.3])
 
 
-def test_what_was_understood_is_noted(tmp_path):
-    vendor = next(each for each in VENDORS if each.name == "babelcolor")
-    (source,) = read_atlas(vendor.save(MACBETH, tmp_path)).sources
+def test_the_content_is_described(tmp_path):
+    (source,) = read_atlas(LAYOUTS["babelcolor"].save(MACBETH, tmp_path)).sources
     assert source.notes[1] == "not used: No., L*, a*, b*"
     assert source.notes[2].startswith("6 of 6 spectra descended")
 
@@ -71,13 +67,11 @@ def test_mixed_scales_name_the_row(save, text, line, entry):
 
 def test_scale_given_by_the_caller(save):
     dark = save(ROW + "trap,0.4,0.5,0.5,0.4\ngrey,20,20,20,20\n")
-    assert read_atlas(dark, measured="percent")["trap"].values.tolist() == [0.004, 0.005, 0.005, 0.004]
-    (source,) = read_atlas(dark, measured="percent").sources
-    assert source.measured == "percent"
-    with raises(AtlasError, "atlas"):
-        read_atlas(dark, measured="fraction")
-    with raises(OptionError, "option"):
-        read_atlas(dark, measured="per mille")
+    found = read_atlas(dark, measured="percent")
+    assert (found["trap"].values.tolist(), found.sources[0].measured) == ([0.004, 0.005, 0.005, 0.004], "percent")
+    for scale, error, code in (("fraction", AtlasError, "atlas"), ("per mille", OptionError, "option")):
+        with raises(error, code):
+            read_atlas(dark, measured=scale)
 
 
 @pytest.mark.parametrize(
@@ -100,13 +94,12 @@ def test_other_quantities_are_refused(save, text):
         read_atlas(save(text))
 
 
-def test_reflectance_next_to_transmittance_is_read(save):
+def test_reflectance_beside_transmittance_is_read(save):
     assert len(read_atlas(save("# Reflectance and transmittance of leaves\n" + ROW + "a,0.2,0.3,0.4,0.5\n"))) == 1
 
 
 def test_transmittances_of_cxf_are_skipped(tmp_path):
-    vendor = next(each for each in VENDORS if each.name == "cxf3")
-    path = vendor.save(MACBETH, tmp_path)
+    path = LAYOUTS["cxf3"].save(MACBETH, tmp_path)
     text = path.read_text()
     first = text.index("<cc:ReflectanceSpectrum")
     last = text.index("</cc:ReflectanceSpectrum>") + len("</cc:ReflectanceSpectrum>")
@@ -115,9 +108,6 @@ def test_transmittances_of_cxf_are_skipped(tmp_path):
         atlas = read_atlas(path)
     assert [skipped.name for skipped in atlas.skipped] == ["dark skin"]
     assert len(atlas) == 5
-
-
-XLSX = next(each for each in VENDORS if each.name == "xlsx")
 
 
 @pytest.mark.parametrize("format", [each for each in FORMATS if each.extra], ids=lambda each: each.name)
@@ -158,14 +148,11 @@ def test_damaged_files_raise(save, text, code):
         read_atlas(save(text))
 
 
-def test_content_of_archives_is_limited(tmp_path, monkeypatch):
-    monkeypatch.setattr(spreadsheet, "MAX_CONTENT", 100)
+@pytest.mark.parametrize(("limit", "value"), [("MAX_CONTENT", 100), ("MAX_CELLS", 10)])
+def test_content_of_archives_is_limited(tmp_path, monkeypatch, limit, value):
+    monkeypatch.setattr(spreadsheet, limit, value)
     with raises(AtlasError, "atlas"):
-        read_atlas(XLSX.save(MACBETH, tmp_path))
-    monkeypatch.undo()
-    monkeypatch.setattr(spreadsheet, "MAX_CELLS", 10)
-    with raises(AtlasError, "atlas"):
-        read_atlas(XLSX.save(MACBETH, tmp_path))
+        read_atlas(LAYOUTS["xlsx"].save(MACBETH, tmp_path))
 
 
 @pytest.mark.parametrize(
@@ -181,8 +168,7 @@ def test_content_of_archives_is_limited(tmp_path, monkeypatch):
     ],
 )
 def test_damaged_libraries_raise(tmp_path, change, code):
-    vendor = next(each for each in VENDORS if each.name == "envi")
-    path = vendor.save(MACBETH, tmp_path)
+    path = LAYOUTS["envi"].save(MACBETH, tmp_path)
     header = path.with_suffix(".hdr")
     header.write_text(change(header.read_text()))
     with np.errstate(over="raise"), raises(AtlasError, code):
@@ -190,8 +176,7 @@ def test_damaged_libraries_raise(tmp_path, change, code):
 
 
 def test_a_library_without_its_other_file_raises(tmp_path):
-    vendor = next(each for each in VENDORS if each.name == "envi")
-    path = vendor.save(MACBETH, tmp_path)
+    path = LAYOUTS["envi"].save(MACBETH, tmp_path)
     assert read_atlas(path.with_suffix(".hdr")).names == MACBETH.names
     path.with_suffix(".hdr").unlink()
     with raises(AtlasError, "file-not-found"):

@@ -29,13 +29,9 @@ def _numbers(values: Sequence[float], separator: str, scale: float = 1.0, comma:
     return text.replace(".", ",") if comma else text
 
 
-def _rows(
-    atlas: Atlas, separator: str, label: str = "{:g}", scale: float = 1.0, comma: bool = False, reverse: bool = False
-) -> str:
-    step = -1 if reverse else 1
-    nm = atlas[0].wavelengths[::step]
-    lines = [separator.join(["Name", *(label.format(each) for each in nm)])]
-    lines += [f"{entry.name}{separator}" + _numbers(entry.values[::step], separator, scale, comma) for entry in atlas]
+def _rows(atlas: Atlas, separator: str, label: str = "{:g}", scale: float = 1.0, comma: bool = False) -> str:
+    lines = [separator.join(["Name", *(label.format(nm) for nm in atlas[0].wavelengths)])]
+    lines += [f"{entry.name}{separator}" + _numbers(entry.values, separator, scale, comma) for entry in atlas]
     return "\n".join(lines) + "\n"
 
 
