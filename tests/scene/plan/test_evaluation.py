@@ -15,7 +15,6 @@ from uplift.scene.plan.evaluation import (
     GroupError,
     Trial,
     decide,
-    make_previews,
 )
 
 LIGHTS = ("D65", "FL11")
@@ -62,20 +61,6 @@ def test_reference_spectra_have_no_error_and_nan_has_the_largest(tests):
     broken[3] = np.nan
     error = tests.error(broken)
     assert {part.largest for part in error.parts if part.group == "textures"} == {WORST_DELTA_E}
-
-
-def test_previews_have_the_errors_of_their_shares(tests):
-    xyz = [(0.9 * tests.reflectances) @ light.xyz.T for light in tests.lights]
-    previews = make_previews(tests, xyz, observer.DEFAULT_OBSERVER)
-    assert [(preview.light, preview.share) for preview in previews] == [
-        (light, share) for light in LIGHTS for share in (0.5, 0.8, 1.0)
-    ]
-    error = tests.error_of_xyz(xyz)
-    for preview in previews:
-        part = next(each for each in error.parts if (each.group, each.light) == ("textures", preview.light))
-        expected = {0.8: part.quantile, 1.0: part.largest}.get(preview.share, preview.delta_e)
-        assert preview.delta_e == pytest.approx(expected)
-        assert preview.reference != preview.planned
 
 
 @pytest.mark.parametrize(

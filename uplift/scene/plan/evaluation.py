@@ -9,15 +9,12 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000, lab
-from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Light
-from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 
 TEXTURES, MATERIALS = "textures", "materials"
 WORST_DELTA_E = 100.0
 """ΔE00 of colours that are not finite: the difference between black and white."""
-MEDIAN, ALL = 0.5, 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,51 +97,14 @@ class EvaluationSet:
         """Errors of XYZ (n, 3) under each light, where white has Y = 1."""
         ends = np.cumsum([len(group.rgb) for group in self.groups])[:-1]
         parts = []
-        for light, delta_e in zip(self.lights, self.delta_e(xyz), strict=True):
-            for group, values in zip(self.groups, np.split(delta_e, ends), strict=True):
-                quantile = np.quantile(values, self.quantile, weights=group.weights, method="inverted_cdf")
-                mean, largest = float(values @ group.weights), float(values.max())
+        for light, values in zip(self.lights, xyz, strict=True):
+            difference = delta_e_2000(lab(self.reflectances @ light.xyz.T, light.white), lab(values, light.white))
+            delta_e = np.where(np.isfinite(difference), difference, WORST_DELTA_E)
+            for group, errors in zip(self.groups, np.split(delta_e, ends), strict=True):
+                quantile = np.quantile(errors, self.quantile, weights=group.weights, method="inverted_cdf")
+                mean, largest = float(errors @ group.weights), float(errors.max())
                 parts.append(GroupError(group.name, light.name, mean, float(quantile), largest))
         return ErrorSummary(tuple(parts))
-
-    def delta_e(self, xyz: Sequence[Array] | Array) -> list[Array]:
-        """ΔE00 (n,) under each light to XYZ (n, 3)."""
-        found = []
-        for light, values in zip(self.lights, xyz, strict=True):
-            reference = self.reflectances @ light.xyz.T
-            difference = delta_e_2000(lab(reference, light.white), lab(values, light.white))
-            found.append(np.where(np.isfinite(difference), difference, WORST_DELTA_E))
-        return found
-
-
-@dataclass(frozen=True)
-class Preview:
-    """A colour of the textures under a light, by the reference cube and by the plan, with its ΔE00.
-
-    ``share`` of the pixels have at most this error. Colours are ``#rrggbb``, with the light's white as that of the
-    display.
-    """
-
-    light: str
-    share: float
-    delta_e: float
-    reference: str
-    planned: str
-
-
-def make_previews(tests: EvaluationSet, xyz: Sequence[Array] | Array, observer: str) -> tuple[Preview, ...]:
-    """Previews for half of the pixels, for the quantile of the scene, and for all; XYZ (n, 3) under each light."""
-    textures = tests.groups[0]
-    displays = display_sensors([light.name for light in tests.lights], observer)
-    previews = []
-    for light, display, planned, delta_e in zip(tests.lights, displays, xyz, tests.delta_e(xyz), strict=True):
-        order = np.argsort(delta_e[: len(textures.rgb)], kind="stable")
-        cumulative = np.cumsum(textures.weights[order])
-        for share in dict.fromkeys((MEDIAN, tests.quantile, ALL)):
-            row = order[min(int(np.searchsorted(cumulative, share - 1e-12)), len(order) - 1)]
-            pair = np.stack([light.xyz @ textures.reflectances[row], planned[row]]) @ display.xyz_to_rgb.T
-            previews.append(Preview(light.name, share, float(delta_e[row]), *hex_codes(pair)))
-    return tuple(previews)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,6 @@ TEMPLATE = "scene/plan/templates/page.html.j2"
 
 def page(plan: Plan, path: Path) -> str:
     """HTML of a plan; ``path`` is that of the plan file, which the commands refer to."""
-    lights = dict.fromkeys(preview.light for preview in plan.previews)
     return render(
         TEMPLATE,
         title=f"Plan for {plan.scene.path.stem}",
@@ -24,8 +23,6 @@ def page(plan: Plan, path: Path) -> str:
         definition=describe_error(plan),
         metamerism=describe_metamerism(plan),
         commands=commands(plan, path),
-        shares=[percent(share) for share in dict.fromkeys(each.share for each in plan.previews)],
-        previews=[(light, [each for each in plan.previews if each.light == light]) for light in lights],
         decisions=plan.decisions,
         quantile=percent(plan.scene.quantile),
         errors=list(zip(plan.predicted.parts, plan.confirmed.parts, strict=True)),

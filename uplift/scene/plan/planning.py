@@ -26,7 +26,7 @@ from uplift.scene.plan.decisions import (
     storage_trials,
     wavelength_trials,
 )
-from uplift.scene.plan.evaluation import Decision, ErrorSummary, Preview, Trial, decide, make_previews
+from uplift.scene.plan.evaluation import Decision, ErrorSummary, Trial, decide
 from uplift.scene.plan.scene_file import SceneFile
 from uplift.scene.wavelengths import Sampling
 from uplift.viz.format import format_error
@@ -96,8 +96,6 @@ class Plan:
     expected_error : float or None
         Mean standard error of the textures' colours, ΔE00 under A: the difference to expect between a measurement of
         such a colour and any answer. None if the cube does not store standard errors.
-    previews : tuple of Preview
-        Colours of the textures by the plan and by the reference cube.
     """
 
     scene: SceneFile
@@ -109,7 +107,6 @@ class Plan:
     predicted: ErrorSummary
     confirmed: ErrorSummary
     expected_error: float | None
-    previews: tuple[Preview, ...]
 
     @property
     def within_tolerance(self) -> bool:
@@ -194,7 +191,6 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         predicted=pixel.trial.error,
         confirmed=confirming.error_of_xyz(xyz),
         expected_error=None if expected_error is None else float(expected_error @ textures.weights),
-        previews=make_previews(confirming, xyz, scene.observer),
     )
 
 
