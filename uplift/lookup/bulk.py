@@ -36,7 +36,7 @@ from uplift.lookup.interpolate import inexact_rows, require_covered
 from uplift.lookup.interpolate import spectra as reflectances
 from uplift.lookup.node_table import NodeTable, tabulate, tabulate_coefficients
 
-__all__ = ["Sampler", "coefficients", "max_rgb_error", "spectra"]
+__all__ = ["Sampler", "coefficients", "spectra"]
 
 BINS = 4096
 """Even bins of [0, 1]. A bin contains at most one node, except in the finest lattices."""
@@ -182,7 +182,7 @@ def _trilinear(grid: Grid, rgb: jax.Array) -> jax.Array:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sampler:
-    """Interpolate values of the nodes of a cube. Made by `spectra`, `coefficients` or `max_rgb_error`.
+    """Interpolate values of the nodes of a cube. Made by `spectra` or `coefficients`.
 
     Parameters
     ----------
@@ -192,14 +192,14 @@ class Sampler:
         Arrays of the cube, on the device of JAX.
     threads : int
         Number of threads; each processes a chunk at a time.
-    exact : SlowSpectra, optional
-        Reflectances of the colours whose nodes have not all their own colours, if there are any.
+    exact : tuple of CubeData and ndarray, optional
+        The cube and wavelengths, if some nodes have not their own colours: numpy answers the colours around them.
     """
 
     sensor: Sensor
     grid: Grid
     threads: int
-    exact: SlowSpectra | None = None
+    exact: tuple[CubeData, Array] | None = None
 
     def __repr__(self) -> str:
         return f"Sampler({self.grid.lattice.shape[1]} values per colour, {self.nbytes / 1e6:.1f} MB)"
@@ -226,24 +226,13 @@ class Sampler:
         with jax.enable_x64(True):
             values = np.asarray(_interpolate(self.grid, padded))[: len(colours)]
         require_covered(~np.isnan(values[:, 0]), colours)  # absent points make NaN
-        return values if self.exact is None else self.exact.replace(values, colours)
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class SlowSpectra:
-    """Reflectances at wavelengths (N,) in nm by `uplift.lookup.interpolate`, where the kernel is not exact."""
-
-    data: CubeData
-    wavelengths: Array
-
-    def replace(self, values: Floats, rgb: Array) -> Floats:
-        """Replace the inexact rows of reflectances (n, N) of linear RGB (n, 3)."""
-        rows = inexact_rows(self.data, rgb)
-        if not rows.size:
-            return values
-        exact = values.copy()
-        exact[rows] = reflectances(self.data, rgb[rows], self.wavelengths)
-        return exact
+        if self.exact is not None:
+            data, wavelengths = self.exact
+            rows = inexact_rows(data, colours)
+            if rows.size:
+                values = values.copy()
+                values[rows] = reflectances(data, colours[rows], wavelengths)
+        return values
 
 
 def spectra(cube: Cube, wavelengths: ArrayLike | None = None, *, threads: int = 2) -> Sampler:
@@ -291,20 +280,7 @@ def coefficients(cube: Cube, count: int | None = None, *, threads: int = 2) -> S
 
 
 def max_rgb_error(cube: Cube, *, threads: int = 2) -> Sampler:
-    """Prepare a cube for upper bounds of the colour error, from the fitting distances of the nodes.
-
-    Parameters
-    ----------
-    cube : Cube
-        The cube.
-    threads : int, default 2
-        Number of threads.
-
-    Returns
-    -------
-    Sampler
-        From linear RGB (..., 3) to the largest ``|linear RGB|`` error (..., 1).
-    """
+    """Prepare a cube for upper bounds (..., 1) of the ``|linear RGB|`` error, from the fitting distances of nodes."""
     points = cube.data.points
     entries = np.zeros((len(cube.atlas_names), 1), np.float32)
     present = points.distance[points.present, None]
@@ -314,10 +290,10 @@ def max_rgb_error(cube: Cube, *, threads: int = 2) -> Sampler:
 def _sampler(table: NodeTable, threads: int) -> Sampler:
     exact = None
     if table.wavelengths is not None and table.data.inexact_cells is not None:
-        exact = SlowSpectra(table.data, table.wavelengths)
+        exact = (table.data, table.wavelengths)
     return _on_device(table.data.sensor, _make_grid(table), threads, exact)
 
 
-def _on_device(sensor: Sensor, grid: Grid, threads: int, exact: SlowSpectra | None) -> Sampler:
+def _on_device(sensor: Sensor, grid: Grid, threads: int, exact: tuple[CubeData, Array] | None) -> Sampler:
     with jax.enable_x64(True):
         return Sampler(sensor, jax.device_put(grid), threads, exact)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,7 +12,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.gamut import as_rgb, map_to_gamut
 from uplift.colorimetry.sensor import Light
 from uplift.colorimetry.solid import solid
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData
 from uplift.lattice import Status
@@ -83,11 +83,8 @@ def query(
 
     ``requested_rgb`` are the colours before gamut mapping, ``lights`` those of `QueryResult.standard_errors`.
     """
-    at = as_wavelengths(wavelengths, cube.wavelengths)
     requested = rgb if requested_rgb is None else requested_rgb
-    for start in range(0, len(rgb), BLOCK):
-        block = slice(start, start + BLOCK)
-        yield from _block(cube, rgb[block], requested[block], at, mode, lights)
+    yield from _results(cube, rgb, requested, np.zeros(len(rgb), dtype=bool), wavelengths, mode, lights)
 
 
 def query_xyz(
@@ -109,34 +106,9 @@ def query_xyz(
     if not np.isfinite(values).all():
         raise ColourError("XYZ must be finite", code="rgb-not-finite", hint="fix its source")
     rgb = np.asarray(values @ sensor.xyz_to_rgb.T)
-    at = as_wavelengths(wavelengths, cube.wavelengths)
     mapped = map_to_gamut(rgb, sensor, MAPPING)
-    for row, result in enumerate(query(cube, mapped.rgb, at, mode, lights=lights)):
-        yield _outside(cube, result, rgb[row], at, lights) if mapped.outside[row] else result
-
-
-def _outside(cube: Cube, nearest: QueryResult, rgb: Array, at: Array, lights: Sequence[Light]) -> QueryResult:
-    """Replace the answer to the nearest colour in the RGB space by that to linear RGB (3,) outside [0, 1]."""
-    sensor = cube.data.sensor
-    spectrum = reflectance_outside(cube.data, rgb[None], np.concatenate([sensor.wavelengths, at]))[0]
-    round_trip = sensor.rgb(spectrum[: len(sensor.wavelengths)])
-    return replace(
-        nearest,
-        rgb=rgb,
-        requested_rgb=rgb,
-        reflectance=spectrum[len(sensor.wavelengths) :],
-        round_trip=round_trip,
-        xyz=sensor.light.xyz @ spectrum[: len(sensor.wavelengths)],
-        delta_e_2000=float(delta_e_rgb(sensor, rgb, round_trip)),
-        entry=None,
-        standard_error=None,
-        error_bound=None,
-        standard_errors={},
-        error_bounds={},
-        light_xyz={light.name: light.xyz @ spectrum[: len(sensor.wavelengths)] for light in lights},
-        unlike_atlas=False,
-        realisable=True,
-    )
+    requested = np.where(mapped.outside[:, None], rgb, mapped.rgb)
+    yield from _results(cube, mapped.rgb, requested, mapped.outside, wavelengths, mode, lights)
 
 
 def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
@@ -170,16 +142,37 @@ def _format_xyz(data: CubeData, rgb: Array) -> str:
     return "(" + ", ".join(f"{value:.4g}" for value in data.sensor.xyz(rgb)) + ")"
 
 
+def _results(
+    cube: Cube,
+    rgb: Array,
+    requested: Array,
+    outside: Mask,
+    wavelengths: ArrayLike | None,
+    mode: str,
+    lights: Sequence[Light],
+) -> Iterator[QueryResult]:
+    """Answer ``requested`` colours (n, 3) where they are ``outside`` (n,), and elsewhere ``rgb`` in [0, 1]."""
+    at = as_wavelengths(wavelengths, cube.wavelengths)
+    for start in range(0, len(rgb), BLOCK):
+        block = slice(start, start + BLOCK)
+        yield from _block(cube, rgb[block], requested[block], outside[block], at, mode, lights)
+
+
 def _block(
-    cube: Cube, rgb: Array, requested: Array, at: Array, mode: str, lights: Sequence[Light]
+    cube: Cube, rgb: Array, requested: Array, outside: Mask, at: Array, mode: str, lights: Sequence[Light]
 ) -> Iterator[QueryResult]:
     data, sensor = cube.data, cube.data.sensor
     count = len(sensor.wavelengths)
-    spectra = cube.reflectance(rgb, np.concatenate([sensor.wavelengths, at]), mode)
+    grid = np.concatenate([sensor.wavelengths, at])
+    spectra = np.empty((len(rgb), len(grid)))
+    spectra[~outside] = cube.reflectance(rgb[~outside], grid, mode)
+    if outside.any():
+        spectra[outside] = reflectance_outside(data, requested[outside], grid)
+    answered = np.where(outside[:, None], requested, rgb)
     at_sensor = spectra[:, :count]
     round_trip = sensor.rgb(at_sensor)
     xyz = at_sensor @ sensor.light.xyz.T
-    delta_e = delta_e_rgb(sensor, rgb, round_trip)
+    delta_e = delta_e_rgb(sensor, answered, round_trip)
     relit = {light.name: at_sensor @ light.xyz.T for light in lights}
     # Standard errors and error bounds (n, 2), under the build illuminant and under each light.
     errors = expected_errors(cube, rgb)
@@ -190,14 +183,15 @@ def _block(
     low, fraction = data.lattice.cell(rgb)
     statuses = data.points.status[data.lattice.cell_corners(low, fraction)[0]]
     # Mixtures of realisable colours are realisable, so only cells with an unrealisable corner are tested.
-    realisable = ~(statuses == Status.UNREALISABLE).any(axis=1)
+    realisable = outside | ~(statuses == Status.UNREALISABLE).any(axis=1)
     if not realisable.all():
         realisable[~realisable] = solid(sensor.matrix).contains(rgb[~realisable])
     for row, cell in enumerate(low.tolist()):
+        own = (None, None) if errors is None or outside[row] else errors[row].tolist()
         difference = np.abs(entry_codes - codes[row]).max(axis=1)
-        entry = data.atlas.names[difference.argmin()] if difference.min(initial=np.inf) <= CODE_TOLERANCE else None
+        is_entry = difference.min(initial=np.inf) <= CODE_TOLERANCE and not outside[row]
         yield QueryResult(
-            rgb=rgb[row],
+            rgb=answered[row],
             requested_rgb=requested[row],
             wavelengths=at,
             reflectance=spectra[row, count:],
@@ -206,12 +200,12 @@ def _block(
             delta_e_2000=float(delta_e[row]),
             cell=tuple(cell),
             statuses=tuple(map(Status, sorted(set(statuses[row].tolist())))),
-            entry=entry,
-            standard_error=None if errors is None else float(errors[row, 0]),
-            error_bound=None if errors is None else float(errors[row, 1]),
-            standard_errors={name: float(each[row, 0]) for name, each in by_light.items()},
-            error_bounds={name: float(each[row, 1]) for name, each in by_light.items()},
+            entry=data.atlas.names[difference.argmin()] if is_entry else None,
+            standard_error=own[0],
+            error_bound=own[1],
+            standard_errors={name: float(each[row, 0]) for name, each in by_light.items() if not outside[row]},
+            error_bounds={name: float(each[row, 1]) for name, each in by_light.items() if not outside[row]},
             light_xyz={name: each[row] for name, each in relit.items()},
-            unlike_atlas=bool(unlike[row]),
+            unlike_atlas=bool(unlike[row] and not outside[row]),
             realisable=bool(realisable[row]),
         )
