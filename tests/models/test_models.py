@@ -101,7 +101,7 @@ def test_unknown_description_raises():
 
 @pytest.mark.parametrize("count", [-1, 0, 2, 18])
 def test_count_of_moments_out_of_range_raises(count):
-    with raises(OptionError, "coefficients-out-of-range"):
+    with raises(OptionError, "option-out-of-range"):
         Moments(count)
 
 
@@ -136,7 +136,7 @@ def test_vision_warp_expands_the_middle():
 def test_invalid_phases_raise():
     with raises(OptionError, "unknown-warp"):
         Phase(warp="eye")
-    with raises(OptionError, "invalid-phase-range"):
+    with raises(OptionError, "invalid-range"):
         Phase(780, 380)
 
 

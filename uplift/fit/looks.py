@@ -1,9 +1,9 @@
 """Looks: colours whose appearance under further lights is chosen, as entries of a cube (docs/look-cubes.md).
 
 A reflectance is designed first: of all within [0, 1] that have the colour of the build exactly, the one nearest to the
-wished colours, and among these the one that differs least from the expected spectrum. The problem is convex, so a wish
-that it misses is one that no reflectance meets. The entry fit then brings the reflectance into the spectrum model, like
-a measured one, with its colours weighted more.
+target colours, and among these the one that differs least from the expected spectrum. The problem is convex, so no
+reflectance meets a target that it misses. The entry fit then brings the reflectance into the spectrum model, like a
+measured one, with its colours weighted more.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from uplift.fit.entries import FittedEntries, fit_entries, join_entries
 from uplift.fit.problem import Problem
 
 MET = 0.1
-"""ΔE00 within which a wish is met."""
+"""ΔE00 within which a target is met."""
 LIGHTS_WEIGHT = 1.0
-"""Weight of the entry fit: the requested colours count as much as the spectrum allows."""
+"""Weight of the entry fit: the target colours count as much as the spectrum allows."""
 SHAPES = (0.3, 0.03)
 """ΔE00 that a root-mean-square change of the reflectance by 1 weighs. The second is used where the first misses."""
 ENOUGH = 0.02
@@ -38,7 +38,7 @@ MAX_TURNS = 3
 
 @dataclass(frozen=True, eq=False)
 class LookGoal:
-    """Linear RGB (3,) under the build illuminant, and wished XYZ (L, 3) under L lights, of reflectances (N,).
+    """Linear RGB (3,) under the build illuminant, and target XYZ (L, 3) under L lights, of reflectances (N,).
 
     The perfect reflector has the XYZ of `Light.white`.
     """
@@ -52,12 +52,12 @@ class LookGoal:
         return np.stack([light.xyz @ reflectance for light in self.lights])
 
     def delta_e(self, reflectance: Array) -> Array:
-        """ΔE00 (L,) between the colours of a reflectance (N,) and the wished ones."""
+        """ΔE00 (L,) between the colours of a reflectance (N,) and the targets."""
         pairs = zip(self.lights, self.colours(reflectance), self.xyz, strict=True)
-        return np.array([delta_e_2000(lab(xyz, light.white), lab(wish, light.white)) for light, xyz, wish in pairs])
+        return np.array([delta_e_2000(lab(xyz, light.white), lab(target, light.white)) for light, xyz, target in pairs])
 
     def softened(self, expected: Array, weight: float) -> LookGoal:
-        """Move the wish towards the colours of an expected reflectance (N,), on a straight line in XYZ."""
+        """Move the targets towards the colours of an expected reflectance (N,), on a straight line in XYZ."""
         return replace(self, xyz=weight * self.xyz + (1 - weight) * self.colours(expected))
 
 
@@ -89,12 +89,12 @@ def _linear_design(sensor: Sensor, goal: LookGoal, expected: Array, near: Array,
     """Reflectance (N,) of least squares, with L*a*b* linearised at the colours of the reflectance ``near``."""
     # |E (W g − rgb)|² + Σ_lights |ΔE00|² + |shape (g − expected)|² in the change of the reflectance g, 0 ≤ g ≤ 1
     rows, values = [EXACT * sensor.matrix], [EXACT * (goal.rgb - sensor.matrix @ expected)]
-    for light, wish, xyz in zip(goal.lights, goal.xyz, goal.colours(near), strict=True):
-        wished, current = lab(wish, light.white), lab(xyz, light.white)
-        weights = delta_e_2000_weights(wished)
-        slope = weights @ lab_jacobian(xyz, light.white) @ light.xyz
-        rows.append(slope)
-        values.append(weights @ (wished - current) + slope @ (near - expected))
+    for light, target, xyz in zip(goal.lights, goal.xyz, goal.colours(near), strict=True):
+        requested, current = lab(target, light.white), lab(xyz, light.white)
+        weights = delta_e_2000_weights(requested)
+        derivative = weights @ lab_jacobian(xyz, light.white) @ light.xyz
+        rows.append(derivative)
+        values.append(weights @ (requested - current) + derivative @ (near - expected))
     change = solve_bounded(
         BoundedProblem(
             np.concatenate([*rows, shape]),

@@ -71,7 +71,7 @@ class Phase:
         if not 0 < self.start < self.end < np.inf:
             raise OptionError(
                 f"a phase needs 0 < start < end < inf, got start {self.start} and end {self.end}",
-                code="invalid-phase-range",
+                code="invalid-range",
             )
 
     def __call__(self, wavelengths: ArrayLike) -> Array:
@@ -119,7 +119,7 @@ class Moments(Model):
             raise OptionError(
                 f"coefficients of the moments model must be in [{MIN_COUNT}, {MAX_COUNT}], "
                 f"got {format_value(self.count)}",
-                code="coefficients-out-of-range",
+                code="option-out-of-range",
                 hint="the count includes the zeroth moment",
             )
 

@@ -15,24 +15,25 @@ from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask, StrPath
+from uplift.common.errors import OptionError, unknown_name
 from uplift.common.progress import ProgressCallback, ignore_progress
+from uplift.common.text import format_value
 from uplift.common.threads import single_threaded_blas
 from uplift.common.version import VERSION
 from uplift.cube import CubeData
 from uplift.fit.base import learn_base
 from uplift.fit.growth import STEPS, THESIS_STEPS, grow_from_prior, improve, supporting_points
 from uplift.fit.growth_thesis import grow_from_neighbours
-from uplift.fit.prior import fit_prior
+from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem, nodes_of
-from uplift.fit.seeds import FULL_ENTRY, half_widths, initial_guess, learnt_blend, seed
+from uplift.fit.seeds import DIMS, FULL_ENTRY, Blend, choose_lattice, half_widths, initial_guess, learnt_blend, seed
 from uplift.fit.store import store
 from uplift.lattice import EntryBoxes, Lattice
 from uplift.lookup import Cube
 from uplift.models.moments import MAX_COUNT
 from uplift.pipeline import entries as spectra
 from uplift.pipeline.entries import AtlasLike
-from uplift.pipeline.options import AUTO, CUSTOM, ModelName, Options, PriorName, SolverName, check_memory
-from uplift.pipeline.problem import choose_dim, problem_of
+from uplift.pipeline.options import AUTO, CUSTOM, SOLVERS, ModelName, Options, PriorName, SolverName, check_memory
 
 if TYPE_CHECKING:
     from uplift.fit.optimistix_solvers import Solver
@@ -209,8 +210,49 @@ def build(
 
         scene = Images(tuple(map(Path, [scene] if isinstance(scene, str | os.PathLike) else scene)))
     check_memory(options)
-    options, problem = problem_of(options, observer, solver)
+    options, problem = _problem(options, observer, solver)
     return _build(atlas, options, problem, library, looks, scene, progress)
+
+
+def _problem(options: Options, observer: str | Camera, solver: str | Solver) -> tuple[Options, Problem]:
+    """Return the problem of a build, and options with the names of the space and of a camera, not aliases or files."""
+    sensor = observers.sensor(
+        options.space, options.illuminant, observer if isinstance(observer, Camera) else options.observer
+    )
+    sensor = observers.on_range(sensor, options.shortest, options.longest, options.step)
+    lights = tuple(observers.light(name, sensor.observer, *sensor.range) for name in options.lights)
+    error_light = observers.light(ERROR_ILLUMINANT, sensor.observer, *sensor.range)
+    problem = Problem(sensor, options.spectrum_model(), lights, error_light, options.threshold)
+    if solver != SOLVERS[0]:
+        from uplift.fit import optimistix_solvers
+
+        if solver == CUSTOM:
+            raise unknown_name(CUSTOM, SOLVERS, "solver")
+        if isinstance(solver, str):
+            solver = optimistix_solvers.stock_solver(solver, problem.tolerance)
+        if not isinstance(solver, optimistix_solvers.SOLVER_TYPES):
+            given = format_value(solver)
+            raise OptionError(f"solver must be a name or a least-squares solver of optimistix, got {given}")
+        problem = replace(problem, solver=solver)
+    if sensor.sensitivities is None:
+        return replace(options, space=sensor.space), problem
+    return replace(options, observer=sensor.space), problem
+
+
+def _choose_lattice(
+    options: Options, problem: Problem, constraints: spectra.Constraints, prior: Prior, blend: Blend
+) -> Options:
+    """Replace ``dim="auto"`` by the smallest lattice that keeps every entry, if it fits into memory."""
+    axis, dim, lost = choose_lattice(problem, prior, blend, constraints.at_nodes, options.auto_tolerance)
+    if lost:
+        spectra.warn(
+            f"no dim up to {DIMS[-1]} keeps every entry within ΔE00 {options.auto_tolerance:g}: "
+            f"{lost} of {len(constraints.names)} are too close to others; dim {dim} keeps the most",
+            "no-dim-keeps-all-entries",
+        )
+    options = replace(options, axis=axis, dim=dim)
+    check_memory(options)
+    return options
 
 
 @single_threaded_blas()
@@ -224,7 +266,7 @@ def _build(
     progress: ProgressCallback,
 ) -> Cube:
     """Build a cube from checked options and the problem that they describe."""
-    sensor, model, entry_model = problem.sensor, problem.model, options.entry_model()
+    sensor, model, entry_model = problem.sensor, problem.model, options.spectrum_model(options.entry_coefficients)
     neighbours = options.start == "neighbours"
 
     # The spectra: families of the library, entries of the atlas, and looks, which become further entries.
@@ -249,7 +291,7 @@ def _build(
     # The lattice, the boxes of the entries in it (8), and the nodes that start from entries: c = w c_i + (1 − w) c(x).
     blend = FULL_ENTRY if options.seed_corners or neighbours else learnt_blend(prior)
     if options.dim == AUTO:
-        options = choose_dim(options, problem, constraints, prior, blend)
+        options = _choose_lattice(options, problem, constraints, prior, blend)
     lattice, rgb = Lattice(observers.axis_nodes(options.axis, int(options.dim))), constraints.at_nodes.rgb
     boxes, seeds = EntryBoxes(lattice, rgb, half_widths(lattice, rgb)), seed(lattice, rgb)
     spectra.warn_of_crowding(constraints.names, boxes, seeds)

@@ -49,9 +49,9 @@ class Constraints:
     """The E entries of a cube, measured ones and then looks, in the spectrum models of the nodes and of entries."""
 
     names: tuple[str, ...]
+    entry_model: Model
     at_nodes: FittedEntries
     at_entries: FittedEntries
-    entry_model: Model
     looks: int = 0
 
     def truncated(self, model: Model) -> Array:
@@ -90,7 +90,7 @@ def as_atlas(atlas: AtlasLike) -> Atlas:
         return Atlas()
     if isinstance(atlas, Atlas):
         return atlas
-    return read_atlas(atlas) if isinstance(atlas, str | os.PathLike) else read_atlas(*atlas)
+    return read_atlas(*([atlas] if isinstance(atlas, str | os.PathLike) else atlas))
 
 
 def entries_in_gamut(atlas: Atlas, sensor: Sensor) -> MeasuredEntries:
@@ -118,7 +118,7 @@ def fit_constraints(problem: Problem, entry_model: Model, entries: MeasuredEntri
     at_nodes = at_entries = fit_entries(problem, entries.reflectances, entries.rgb)
     if entry_model != problem.model:
         at_entries = fit_entries(replace(problem, model=entry_model), entries.reflectances, entries.rgb)
-    return Constraints(entries.names, at_nodes, at_entries, entry_model)
+    return Constraints(entries.names, entry_model, at_nodes, at_entries)
 
 
 def warn_of_crowding(names: Sequence[str], boxes: EntryBoxes, seeds: Seeds) -> None:
@@ -171,16 +171,12 @@ def read_libraries(library: AtlasLike) -> tuple[Library, ...]:
     """Read libraries, a family per file."""
     if library is None:
         return ()
-    if isinstance(library, Atlas):
-        return (_library(library),)
-    paths = [library] if isinstance(library, str | os.PathLike) else library
-    return tuple(_library(read_atlas(path)) for path in paths)
-
-
-def _library(atlas: Atlas) -> Library:
-    if len(atlas.sources) != 1:
-        return Library("library", "", atlas)
-    return Library(atlas.sources[0].name, atlas.sources[0].digest, atlas)
+    libraries = []
+    for each in [library] if isinstance(library, Atlas | str | os.PathLike) else library:
+        atlas = each if isinstance(each, Atlas) else read_atlas(each)
+        source = atlas.sources[0] if len(atlas.sources) == 1 else None
+        libraries.append(Library(source.name if source else "library", source.digest if source else "", atlas))
+    return tuple(libraries)
 
 
 def families_of(options: Options, libraries: Sequence[Library], sensor: Sensor) -> tuple[Family, ...]:
@@ -203,19 +199,18 @@ def families_of(options: Options, libraries: Sequence[Library], sensor: Sensor) 
             replace(family, measured=np.array([np.interp(sensor.wavelengths, grid(), row) for row in family.measured]))
             for family in shipped
         )
-    return (*shipped, *(_family(each, sensor) for each in libraries))
-
-
-def _family(library: Library, sensor: Sensor) -> Family:
-    resampled = resample(library.atlas, sensor.wavelengths)
-    outside = int((~sensor.contains(sensor.rgb(resampled.values))).sum())
-    if resampled.clips:
-        problem = f"clipped to [0, 1]: {len(resampled.clips)} spectra, first '{resampled.clips[0].name}'"
-        warn(f"library '{library.name}': {problem}", "library-clipped")
-    if outside:
-        problem = f"{outside} of {len(resampled.values)} spectra not used: their colours lie outside {sensor.space}"
-        warn(f"library '{library.name}': {problem}", "library-out-of-gamut")
-    return Family(library.name, resampled.values, SPREAD, RELATED)
+    own = []
+    for library in libraries:
+        resampled = resample(library.atlas, sensor.wavelengths)
+        outside = int((~sensor.contains(sensor.rgb(resampled.values))).sum())
+        if resampled.clips:
+            problem = f"clipped to [0, 1]: {len(resampled.clips)} spectra, first '{resampled.clips[0].name}'"
+            warn(f"library '{library.name}': {problem}", "library-clipped")
+        if outside:
+            problem = f"{outside} of {len(resampled.values)} spectra not used: their colours lie outside {sensor.space}"
+            warn(f"library '{library.name}': {problem}", "library-out-of-gamut")
+        own.append(Family(library.name, resampled.values, SPREAD, RELATED))
+    return (*shipped, *own)
 
 
 def warn(problem: str, code: str, entry: str | None = None, hint: str = "") -> None:

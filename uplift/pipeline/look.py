@@ -18,8 +18,8 @@ from uplift.common.text import format_value, shorten
 if TYPE_CHECKING:
     from uplift.common.spec_file import SpecFile
 
-MAX_WISH = 2.0
-"""Limit of the linear sRGB of a wish: brighter colours are typing errors."""
+MAX_TARGET = 2.0
+"""Limit of the linear sRGB of a target: brighter colours are typing errors."""
 TABLE = "look"
 EXAMPLE = "write [[look]] tables such as rgb = '#8a2a20' and FL11 = '#70392a'"
 MAX_LOOKS = 10_000
@@ -37,10 +37,10 @@ class Look:
         The colour under the build illuminant, as ``"#rrggbb"`` in the encoding of the cube's RGB space, or as three
         linear numbers in [0, 1].
     lights : mapping of str to str or sequence of float
-        Wished colours by the names of illuminants, as ``"#rrggbb"`` in sRGB, or as linear sRGB. The white of the light
+        Target colours by the names of illuminants, as ``"#rrggbb"`` in sRGB, or as linear sRGB. The white of the light
         is the white of sRGB (Bradford), as in relit images.
     weight : float, default 1
-        Weight of the wish, above 0 and at most 1; the rest is the colour that is expected without the look.
+        Weight of the targets, above 0 and at most 1; the rest is the colour that is expected without the look.
     name : str, optional
         Name of the look, by default made of its colour.
     path, line : optional
@@ -71,8 +71,8 @@ class Look:
         if not is_number(self.weight) or not 0 < self.weight <= 1:
             problem = f"weight must be above 0 and at most 1, got {format_value(self.weight)}"
             raise look_error(self, problem, hint="leave it out for 1")
-        wishes = [(light, wish, -MAX_WISH, MAX_WISH) for light, wish in self.lights.items()]
-        for key, value, low, high in [("rgb", self.rgb, 0, 1), *wishes]:
+        targets = [(light, target, -MAX_TARGET, MAX_TARGET) for light, target in self.lights.items()]
+        for key, value, low, high in [("rgb", self.rgb, 0, 1), *targets]:
             try:
                 linear = parse_colour(value).linear
             except UpliftError as error:
@@ -157,19 +157,23 @@ def read_looks(path: StrPath) -> tuple[Look, ...]:
 
 def _look(file: SpecFile, number: int, table: dict[str, Any]) -> Look:
     place = (TABLE, number)
+
+    def fail(key: str, problem: str, code: str, hint: str) -> None:
+        file.fail((*place, key) if key else place, problem, code=code, hint=hint)
+
     if "rgb" not in table:
-        file.fail(place, "required key 'rgb' is missing", code="missing-key", hint="add rgb = '#8a2a20'")
+        fail("", "required key 'rgb' is missing", "missing-key", "add rgb = '#8a2a20'")
     if not isinstance(table.get("name", ""), str):
         problem = f"must be text in quotes, got {format_value(table['name'])}"
-        file.fail((*place, "name"), problem, code="invalid-value", hint="write name = 'brick'")
+        fail("name", problem, "invalid-value", "write name = 'brick'")
     options = {key: table[key] for key in ("weight", "name") if key in table}
     lights = {key: value for key, value in table.items() if key not in ("rgb", "weight", "name")}
-    for light, wish in lights.items():
-        if isinstance(wish, dict):
+    for light, target in lights.items():
+        if isinstance(target, dict):
             hint = f'quote names with a dot, such as "{light}.1"'
-            file.fail((*place, light), "must be a colour, got a table", code="invalid-value", hint=hint)
+            fail(light, "must be a colour, got a table", "invalid-value", hint)
         try:
             illuminant_spd(light)
         except UpliftError as error:
-            file.fail((*place, light), error.problem, code=error.code, hint=error.hint or EXAMPLE)
+            fail(light, error.problem, error.code, error.hint or EXAMPLE)
     return Look(table["rgb"], lights, **options, path=file.path, line=file.line(place))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -55,7 +55,7 @@ class LookTargets:
         """
         if not self.looks:
             return self, entries, prior
-        # The wish becomes w y + (1 − w) y₀ in XYZ, with the colours y₀ of the spectrum p₀ that is expected at x.
+        # The target becomes w y + (1 − w) y₀ in XYZ, with the colours y₀ of the spectrum p₀ that is expected at x.
         rgb = np.array([goal.rgb for goal in self.goals])
         expected = solve_singly(problem.forward, prior(rgb), rgb, problem.tolerance, MAX_STEPS)
         expected = evaluate(problem.model, expected, problem.sensor.wavelengths)
@@ -65,19 +65,14 @@ class LookTargets:
 
         errors = prior.standard_error(rgb)
         errors = np.zeros(len(rgb)) if errors is None else errors
-        at_nodes = at_entries = fit_designs(problem, goals, designs)
+        at_nodes = join_entries(entries.at_nodes, fit_designs(problem, goals, designs)._replace(error=errors))
+        at_entries = at_nodes
         if entries.entry_model != problem.model:
-            at_entries = fit_designs(replace(problem, model=entries.entry_model), goals, designs)
-        both = join_entries(entries.at_nodes, at_nodes._replace(error=errors))
-        same = entries.entry_model == problem.model
-        constraints = Constraints(
-            (*entries.names, *(look.name for look in self.looks)),
-            both,
-            both if same else join_entries(entries.at_entries, at_entries._replace(error=errors)),
-            entries.entry_model,
-            len(self.looks),
-        )
-        return replace(self, goals=goals, designs=designs), constraints, prior.with_entries(both)
+            fitted = fit_designs(replace(problem, model=entries.entry_model), goals, designs)
+            at_entries = join_entries(entries.at_entries, fitted._replace(error=errors))
+        names = (*entries.names, *(look.name for look in self.looks))
+        constraints = Constraints(names, entries.entry_model, at_nodes, at_entries, len(self.looks))
+        return replace(self, goals=goals, designs=designs), constraints, prior.with_entries(at_nodes)
 
     def describe(self, table: AtlasTable, model: Model, sensor: Sensor) -> dict[str, Any]:
         """Return what a cube records of its looks, in JSON values, and warn of those that its answers miss."""
@@ -85,16 +80,24 @@ class LookTargets:
             return {}
         stored = table.spectra or EntrySpectra(model, table.coefficients)
         answers = stored.reflectance(np.arange(table.measured_count, len(table.names)), sensor.wavelengths)
-        parts = zip(self.looks, self.screens, self.goals, self.designs, answers, strict=True)
-        records = [
-            {
-                "name": look.name,
-                "rgb": goal.rgb.tolist(),
-                "weight": float(look.weight),
-                "lights": list(_describe_lights(look, screens, goal, design, answer)),
-            }
-            for look, screens, goal, design, answer in parts
-        ]
+        records = []
+        for look, screens, goal, design, answer in zip(
+            self.looks, self.screens, self.goals, self.designs, answers, strict=True
+        ):
+            # Per light: target and answer in linear sRGB, ΔE00 of the answer, and the least that is possible
+            rows = zip(screens, look.lights.values(), goal.delta_e(answer), goal.delta_e(design), strict=True)
+            lights = [
+                {
+                    "light": screen.illuminant,
+                    "wish": parse_colour(target).rgb(screen).tolist(),
+                    "answer": screen.rgb(answer).round(DIGITS).tolist(),
+                    "delta_e": round(float(delta_e), DIGITS),
+                    "possible": round(float(possible), DIGITS),
+                }
+                for screen, target, delta_e, possible in rows
+            ]
+            weight = float(look.weight)
+            records.append({"name": look.name, "rgb": goal.rgb.tolist(), "weight": weight, "lights": lights})
         _warn_of_missed(self.looks, records)
         return {"looks": records}
 
@@ -117,25 +120,22 @@ def targets_of(
     screens = tuple(_screens(look, sensor) for look in looks)
     goals = tuple(_goal(look, sensor, each) for look, each in zip(looks, screens, strict=True))
     taken = dict.fromkeys(atlas_names, "an atlas entry")
-    known = list(zip(entries.names, (_codes(sensor, each) for each in entries.rgb), strict=True))
-    for look, goal in zip(looks, goals, strict=True):
+    codes = np.interp([*entries.rgb, *(goal.rgb for goal in goals)], sensor.decoding, np.arange(256.0))
+    known = list(entries.names)
+    for look in looks:
         if look.name in taken:
             raise look_error(look, f"its name is that of {taken[look.name]}", hint="rename the look")
-        codes = _codes(sensor, goal.rgb)
-        for name, others in known:
-            if np.abs(codes - others).max() <= SAME_CODE:
-                raise look_error(
-                    look,
-                    f"its colour {format_rgb(look.rgb)} is that of {taken[name]}, '{name}'",
-                    hint="a colour has one answer: change the look, or leave out the other",
-                )
+        same = np.abs(codes[: len(known)] - codes[len(known)]).max(axis=1, initial=0) <= SAME_CODE
+        if same.any():
+            other = known[int(same.argmax())]
+            raise look_error(
+                look,
+                f"its colour {format_rgb(look.rgb)} is that of {taken[other]}, '{other}'",
+                hint="a colour has one answer: change the look, or leave out the other",
+            )
         taken[look.name] = "another look"
-        known.append((look.name, codes))
+        known.append(look.name)
     return LookTargets(looks, screens, goals, np.zeros((0, len(sensor.wavelengths))))
-
-
-def _codes(sensor: Sensor, rgb: Array) -> Array:
-    return np.interp(rgb, sensor.decoding, np.arange(256.0))
 
 
 def _screens(look: Look, sensor: Sensor) -> tuple[Sensor, ...]:
@@ -159,66 +159,36 @@ def _goal(look: Look, sensor: Sensor, screens: Sequence[Sensor]) -> LookGoal:
     if not solid(sensor.matrix).contains(rgb[None])[0]:
         problem = f"no reflectance has the colour {format_rgb(look.rgb)} under {sensor.illuminant}"
         raise look_error(look, problem, hint="choose one of less chroma")
-    wishes = zip(look.lights.values(), screens, strict=True)
-    xyz = np.array([screen.xyz(parse_colour(wish).rgb(screen)) for wish, screen in wishes])
+    targets = zip(look.lights.values(), screens, strict=True)
+    xyz = np.array([screen.xyz(parse_colour(target).rgb(screen)) for target, screen in targets])
     return LookGoal(rgb, tuple(screen.light for screen in screens), xyz)
-
-
-def _describe_lights(
-    look: Look, screens: Sequence[Sensor], goal: LookGoal, design: Array, answer: Array
-) -> Iterator[dict[str, Any]]:
-    """Per light: the wish and the answer in linear sRGB, ΔE00 of the answer, and the least that is possible."""
-    rows = zip(screens, look.lights.values(), goal.delta_e(answer), goal.delta_e(design), strict=True)
-    for screen, wish, delta_e, possible in rows:
-        yield {
-            "light": screen.illuminant,
-            "wish": parse_colour(wish).rgb(screen).tolist(),
-            "answer": screen.rgb(answer).round(DIGITS).tolist(),
-            "delta_e": round(float(delta_e), DIGITS),
-            "possible": round(float(possible), DIGITS),
-        }
 
 
 def recorded_looks(provenance: Mapping[str, Any]) -> tuple[Look, ...] | None:
     """Return the looks that a cube recorded, for a rebuild. Raises `LookError` for values that do not fit."""
-    return (
-        tuple(
-            Look(
-                record["rgb"],
-                {each["light"]: each["wish"] for each in record["lights"]},
-                record["weight"],
-                record["name"],
-            )
-            for record in provenance.get("looks", ())
-        )
-        or None
-    )
+    looks = []
+    for record in provenance.get("looks", ()):
+        lights = {light["light"]: light["wish"] for light in record["lights"]}
+        looks.append(Look(record["rgb"], lights, record["weight"], record["name"]))
+    return tuple(looks) or None
 
 
 def _warn_of_missed(looks: Sequence[Look], records: Sequence[Mapping[str, Any]]) -> None:
-    """Warn of each look that is not met: impossible wishes, and those that the spectrum model does not reach."""
+    """Warn of each look that is not met: of impossible targets, and of those that the model does not reach."""
     for look, record in zip(looks, records, strict=True):
-        missed = [each for each in record["lights"] if each["delta_e"] > MET]
+        missed = [light for light in record["lights"] if light["delta_e"] > MET]
         if not missed:
             continue
-        impossible = any(each["possible"] > MET for each in record["lights"])
-        wishes = ", ".join(
-            f"under {each['light']} it is {_hex(each['answer'])}, ΔE00 {each['delta_e']:.2f} from {_hex(each['wish'])}"
-            + (f" (at least {each['possible']:.2f})" if impossible else "")
-            for each in missed
-        )
-        code, problem, hint = (
-            ("look-impossible", f"no reflectance meets it: {wishes}", "")
-            if impossible
-            else (
-                "look-not-reached",
-                f"the coefficients of its spectrum do not reach it: {wishes}",
-                "use more entry_coefficients",
-            )
-        )
-        warning = UpliftWarning(about(look, problem), code=code, hint=hint, path=look.path, line=look.line)
+        impossible = any(light["possible"] > MET for light in record["lights"])
+        shown = []
+        for light in missed:
+            answer, target = hex_codes(np.array([light["answer"], light["wish"]]))
+            least = f" (at least {light['possible']:.2f})" if impossible else ""
+            shown.append(f"under {light['light']} it is {answer}, ΔE00 {light['delta_e']:.2f} from {target}{least}")
+        code, problem, hint = "look-impossible", "no reflectance meets it", ""
+        if not impossible:
+            code, problem = "look-not-reached", "the coefficients of its spectrum do not reach it"
+            hint = "use more entry_coefficients"
+        text = about(look, f"{problem}: {', '.join(shown)}")
+        warning = UpliftWarning(text, code=code, hint=hint, path=look.path, line=look.line)
         warnings.warn(warning, stacklevel=STACK_LEVEL)
-
-
-def _hex(rgb: Sequence[float]) -> str:
-    return hex_codes(np.array([rgb]))[0]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, fields
 from numbers import Integral, Real
 from typing import Any, Literal
@@ -13,6 +12,7 @@ from uplift.colorimetry.camera import CAMERA
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.observer import AXES, DEFAULT_OBSERVER, END, START, STEP
 from uplift.common.errors import OptionError, unknown_name
+from uplift.common.memory import total_memory
 from uplift.common.text import format_value
 from uplift.cube.file import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
 from uplift.models import Moments, Phase, Sigmoid
@@ -38,6 +38,7 @@ STEPS = (1.0, 5.0, 10.0)
 PROCESS_BYTES = 500_000_000
 """Memory of a build without its lattice."""
 TYPES: dict[str, tuple[Any, type, str]] = {
+    "int | Literal['auto']": (Integral, int, "a whole number or 'auto'"),
     "int": (Integral, int, "a whole number"),
     "float": (Real, float, "a number"),
     "str": (str, str, "text"),
@@ -79,56 +80,7 @@ class Options:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = getattr(self, field.name)
-            plain = _dim(value) if field.name == "dim" else _plain(field.name, str(field.type), value)
-            object.__setattr__(self, field.name, plain)
-        self._check_range()
-        self.spectrum_model()
-        if self.model == Moments.name and not self.coefficients <= self.entry_coefficients <= MAX_COUNT:
-            raise OptionError(
-                f"entry_coefficients must be in [{self.coefficients}, {MAX_COUNT}], "
-                f"got {format_value(self.entry_coefficients)}",
-                code="entry-coefficients-out-of-range",
-                hint="entries have as many coefficients as the nodes, or more",
-            )
-        for name, names, kind in (
-            (self.axis, AXES, "axis spacing"),
-            (self.prior, PRIORS, "prior"),
-            (self.start, STARTS, "start"),
-            (self.solver, (*SOLVERS, CUSTOM), "solver"),
-        ):
-            if name not in names:
-                raise unknown_name(name, [each for each in names if each != CUSTOM], kind)
-        if not 1 <= len(self.lights) <= MAX_LIGHTS:
-            raise OptionError(f"lights must name 1 to {MAX_LIGHTS} illuminants, got {len(self.lights)}")
-        if not MIN_THRESHOLD <= self.threshold <= MAX_THRESHOLD:
-            raise OptionError(
-                f"threshold must be in [{MIN_THRESHOLD:g}, {MAX_THRESHOLD}], got {self.threshold:g}",
-                code="threshold-out-of-range",
-                hint="use 1e-6 to 0.1",
-            )
-        if not 0 <= self.auto_tolerance <= MAX_AUTO_TOLERANCE:
-            raise OptionError(
-                f"auto_tolerance must be a ΔE00 in [0, {MAX_AUTO_TOLERANCE:g}], got {self.auto_tolerance:g}",
-                code="auto-tolerance-out-of-range",
-            )
-
-    def spectrum_model(self) -> Model:
-        """Create the spectrum model of the nodes, from `shortest` to `longest` nm."""
-        return self._model(self.coefficients)
-
-    def entry_model(self) -> Model:
-        """Create the spectrum model of the atlas entries, with `entry_coefficients` coefficients for moments."""
-        return self._model(self.entry_coefficients)
-
-    def _model(self, coefficients: int) -> Model:
-        if self.model == Moments.name:
-            return Moments(coefficients, Phase(self.shortest, self.longest, self.warp))
-        if self.model == Sigmoid.name:
-            return Sigmoid(self.shortest, self.longest)
-        raise unknown_name(self.model, MODELS, "model")
-
-    def _check_range(self) -> None:
+            object.__setattr__(self, field.name, _plain(field.name, str(field.type), getattr(self, field.name)))
         low, high = MAX_RANGE
         if not low <= self.shortest <= START < END <= self.longest <= high:
             raise OptionError(
@@ -140,18 +92,47 @@ class Options:
         if self.step not in steps:
             *others, last = (f"{step:g}" for step in steps)
             cube = "of a camera's cube " if self.space == CAMERA else ""
-            raise OptionError(
-                f"step {cube}must be {', '.join(others)} or {last} nm, got {self.step:g}",
-                code="unsupported-step",
-                hint="use 5",
-            )
+            problem = f"step {cube}must be {', '.join(others)} or {last} nm, got {self.step:g}"
+            raise OptionError(problem, code="invalid-range", hint="use 5")
         if (self.longest - self.shortest) % self.step:
             raise OptionError(
                 f"the range must be a multiple of the step of {self.step:g} nm, "
                 f"got {self.shortest:g} to {self.longest:g}",
-                code="range-not-in-steps",
+                code="invalid-range",
                 hint="use a step of 1",
             )
+        self.spectrum_model()
+        for name, names, kind in (
+            (self.axis, AXES, "axis spacing"),
+            (self.prior, PRIORS, "prior"),
+            (self.start, STARTS, "start"),
+            (self.solver, (*SOLVERS, CUSTOM), "solver"),
+        ):
+            if name not in names:
+                raise unknown_name(name, [known for known in names if known != CUSTOM], kind)
+        if not 1 <= len(self.lights) <= MAX_LIGHTS:
+            raise OptionError(f"lights must name 1 to {MAX_LIGHTS} illuminants, got {len(self.lights)}")
+        entry_range = (self.coefficients, MAX_COUNT) if self.model == Moments.name else (-np.inf, np.inf)
+        for name, least, most, hint in (
+            ("dim", 2, np.inf, "use dim=2 or more"),
+            ("entry_coefficients", *entry_range, "entries have as many coefficients as the nodes, or more"),
+            ("threshold", MIN_THRESHOLD, MAX_THRESHOLD, "use 1e-6 to 0.1"),
+            ("auto_tolerance", 0, MAX_AUTO_TOLERANCE, "it is a ΔE00"),
+        ):
+            value = getattr(self, name)
+            if value != AUTO and not least <= value <= most:
+                limits = f"in [{least:g}, {most:g}]" if most < np.inf else f"at least {least:g}"
+                problem = f"{name} must be {limits}, got {format_value(value)}"
+                raise OptionError(problem, code="option-out-of-range", hint=hint)
+
+    def spectrum_model(self, coefficients: int | None = None) -> Model:
+        """Create the spectrum model, from `shortest` to `longest` nm, of the nodes or of other moments."""
+        if self.model == Moments.name:
+            phase = Phase(self.shortest, self.longest, self.warp)
+            return Moments(self.coefficients if coefficients is None else coefficients, phase)
+        if self.model == Sigmoid.name:
+            return Sigmoid(self.shortest, self.longest)
+        raise unknown_name(self.model, MODELS, "model")
 
 
 def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
@@ -163,26 +144,14 @@ def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
     return {name: tuple(value) if isinstance(value, list) else value for name, value in current.items()}
 
 
-def _dim(value: object) -> int | Literal["auto"]:
-    if isinstance(value, str) and value == AUTO:
-        return AUTO
-    if isinstance(value, bool) or not isinstance(value, Integral):
-        raise OptionError(f"dim must be a whole number or 'auto', got {format_value(value)}", code="dim-not-a-number")
-    if value < 2:
-        raise OptionError(
-            f"dim must be at least 2, got {format_value(int(value))}",
-            code="dim-too-small",
-            hint="use dim=2 or more",
-        )
-    return int(value)
-
-
 def _plain(name: str, kind: str, value: Any) -> Any:
     """Return the value of an option, by its annotation, as JSON can record it."""
     if kind.startswith("tuple"):
         if not isinstance(value, tuple | list):
             raise OptionError(f"{name} must be a sequence of names, got {format_value(value)}")
         return tuple(_plain(name, "str", each) for each in value)
+    if name == "dim" and isinstance(value, str) and value == AUTO:
+        return AUTO
     accepted, recorded, label = TYPES[kind]
     if not isinstance(value, accepted) or (isinstance(value, bool) and recorded is not bool):
         raise OptionError(f"{name} must be {label}, got {format_value(value)}")
@@ -198,23 +167,12 @@ def check_memory(options: Options) -> None:
         return
     # Peak memory of a node: multipliers, and coefficients in single precision, and the other arrays.
     node = 16 * options.spectrum_model().count + 60
-    need, have = PROCESS_BYTES + options.dim**3 * node, _memory()
-    if need > have:
+    need, have = PROCESS_BYTES + options.dim**3 * node, total_memory()
+    if have is not None and need > have:
         largest = int(max((have - PROCESS_BYTES) / node, 8) ** (1 / 3))
+        # A float overflows for absurd values of dim.
+        needed, memory = (f"{min(count, 10**300) / 1e9:.3g} GB" for count in (need, have))
         raise OptionError(
-            f"dim {format_value(options.dim)} needs about {_gigabytes(need)} of memory, "
-            f"this machine has {_gigabytes(have)}",
+            f"dim {format_value(options.dim)} needs about {needed} of memory, this machine has {memory}",
             hint=f"use dim={largest} or less",
         )
-
-
-def _gigabytes(count: int) -> str:
-    return f"{min(count, 10**300) / 1e9:.3g} GB"  # a float overflows for absurd values of dim
-
-
-def _memory() -> int:
-    """Bytes of memory in this machine; practically infinite where the system does not report it."""
-    try:
-        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    except (AttributeError, ValueError, OSError):
-        return 1 << 62
