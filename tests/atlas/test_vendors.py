@@ -94,7 +94,7 @@ def test_other_quantities_are_refused(save, text):
         read_atlas(save(text))
 
 
-def test_reflectance_beside_transmittance_is_read(save):
+def test_reflectance_with_transmittance_is_read(save):
     assert len(read_atlas(save("# Reflectance and transmittance of leaves\n" + ROW + "a,0.2,0.3,0.4,0.5\n"))) == 1
 
 
