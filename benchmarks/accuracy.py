@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from functools import partial
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -74,11 +75,8 @@ def main() -> None:
 def cubes() -> Iterator[tuple[str, Cube]]:
     """Build the cubes, with their names."""
     build = partial(uplift.build, debug=True)
-    for dim in DIMS:
-        yield f"moments, Macbeth, {dim}³", build(MACBETH, dim=dim)
-        yield f"moments, no atlas, {dim}³", build(dim=dim)
-        yield f"sigmoid, Macbeth, {dim}³", build(MACBETH, dim=dim, model="sigmoid")
-        yield f"sigmoid, no atlas, {dim}³", build(dim=dim, model="sigmoid")
+    for dim, model, atlas in product(DIMS, ("moments", "sigmoid"), (MACBETH, None)):
+        yield f"{model}, {'Macbeth' if atlas else 'no atlas'}, {dim}³", build(atlas, dim=dim, model=model)
     for count in (3, 17):
         yield f"{count} coefficients, Macbeth, 32³", build(MACBETH, dim=32, coefficients=count)
 

@@ -62,32 +62,23 @@ PATIENCE = 60.0
 Answer = dict[str, Any]
 
 
-def chromium() -> str | None:
-    """The browser's path, None where none is installed."""
-    return next(filter(None, map(shutil.which, NAMES)), None)
-
-
 class Browser:
     """One tab. ``errors`` are what its console complained of, and uncaught exceptions."""
 
     def __init__(self, write: int, read: int) -> None:
         self._write, self._read, self._rest = write, read, b""
-        self._numbers, self._session = itertools.count(1), ""
+        self._numbers, self._session = itertools.count(1), {}
         self.errors: list[str] = []
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
-        self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        attached = self.call("Target.attachToTarget", targetId=target, flatten=True)
+        self._session = {"sessionId": attached["sessionId"]}
         for domain in ("Page", "Runtime", "Log"):
             self.call(f"{domain}.enable")
 
     def call(self, method: str, **params: Any) -> Answer:
         """Call a method of the tab and wait for its answer. Raises `RuntimeError`, `TimeoutError`."""
-        return self._call(self._session, method, **params)
-
-    def _call(self, session: str, method: str, **params: Any) -> Answer:
         number = next(self._numbers)
-        message = {"id": number, "method": method, "params": params}
-        if session:
-            message["sessionId"] = session
+        message = {"id": number, "method": method, "params": params} | self._session
         os.write(self._write, json.dumps(message).encode() + b"\0")
         while (answer := self._next()).get("id") != number:
             self._note(answer)
@@ -132,11 +123,6 @@ class Browser:
             text = {"text": name} if kind == "keyDown" and len(name) == 1 else {}
             self.call("Input.dispatchKeyEvent", type=kind, key=name, modifiers=modifiers, **text)
 
-    def cpu(self) -> float:
-        """CPU seconds that all of the browser's processes have taken."""
-        processes = self._call("", "SystemInfo.getProcessInfo")["processInfo"]
-        return float(sum(process["cpuTime"] for process in processes))
-
     def screenshot(self, selector: str = "body", scale: float = 1.0) -> bytes:
         """An element, as far as the window shows it, as JPEG."""
         box = self.evaluate(f"document.querySelector('{selector}').getBoundingClientRect().toJSON()")
@@ -168,7 +154,7 @@ class Browser:
 @contextlib.contextmanager
 def browser() -> Iterator[Browser]:
     """A browser, which is ended with the block. Raises `RuntimeError` where there is none."""
-    path = chromium()
+    path = next(filter(None, map(shutil.which, NAMES)), None)
     if path is None:
         raise RuntimeError(f"none of {', '.join(NAMES)} is installed")
     reads, write = os.pipe()

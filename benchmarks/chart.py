@@ -16,7 +16,6 @@ from uplift.lab.chart.method import Effort, make_task
 from uplift.lab.chart.picture import render_chart, write_panel, write_picture
 from uplift.lab.chart.table import MEASURED, Chart, MethodResult, State, chart_csv, criteria, read_chart
 
-ERRORS = (*CHART_LIGHTS, "rms", "own_lights")
 UNSEEN = ("lights", "rms")
 """Errors of panels that are those of unseen materials."""
 PICTURES = {"unseen": 1, "set-up": 2}
@@ -49,6 +48,7 @@ def publish(chart: Chart) -> None:
         "chart",
         environment=dict(chart.facts),
         batches=chart.batches,
+        lights=CHART_LIGHTS,
         fronts=fronts(chart),
         methods=[method_record(row, chart.batches) for row in chart.measured],
         excluded=[
@@ -63,42 +63,35 @@ def fronts(chart: Chart) -> list[dict[str, Any]]:
     """Return the Pareto front of every panel, fastest first; the panel is named in its first row. Times in ns."""
     rows = []
     for criterion in (criterion for batch in chart.batches for criterion in criteria(batch)):
-        front = criterion.front(chart)
-        rows += [
-            {
-                "panel": criterion.title if row is front[0] else "",
-                "colours": criterion.batch,
-                "method": row.title,
-                "time": criterion.time(row),
-                "error": row.numbers[f"{criterion.error}_mean"],
-                "mark": optimistic_mark(row) if criterion.error in UNSEEN else "",
-            }
-            for row in front
-        ]
+        for number, row in enumerate(criterion.front(chart)):
+            rows.append(
+                {
+                    "panel": "" if number else criterion.title,
+                    "colours": criterion.batch,
+                    "method": row.title,
+                    "time": criterion.time(row),
+                    "error": row.numbers[f"{criterion.error}_mean"],
+                    "mark": optimistic_mark(row) if criterion.error in UNSEEN else "",
+                }
+            )
     return rows
 
 
 def method_record(row: MethodResult, batches: tuple[int, ...]) -> dict[str, Any]:
-    """Return the figures of a method: times in ns, sizes in bytes."""
+    """Return the figures of a method; ``mark_N`` marks calls with fewer than N colours, ``total_N`` has the set-up."""
     numbers = row.numbers
-    return {
+    record = {
         "name": row.method,
         "method": row.title,
         "mark": optimistic_mark(row),
         "dtype": row.dtype,
-        "times": {str(batch): _time(row, batch) for batch in batches},
-        "totals": {str(batch): 1e9 * numbers["setup_s"] + batch * numbers[f"ns_{batch}"] for batch in batches},
-        "spread": max((numbers[f"ns_{batch}_most"] / numbers[f"ns_{batch}_least"] - 1) for batch in batches),
-        "bytes": numbers["bytes"],
-        "build_s": numbers.get("build_s"),
-        "load_s": numbers["load_s"],
-        "round_trip": [numbers[f"round_trip_{kind}"] for kind in ("mean", "p99", "max")],
-        "coarse_round_trip": [numbers[f"coarse_round_trip_{kind}"] for kind in ("mean", "p99", "max")],
-        "errors": {name: numbers[f"{name}_mean"] for name in ERRORS},
-        "colours": int(numbers["round_trip_colours"]),
-        "materials": int(numbers["unseen_spectra"]),
         "note": row.note,
     }
+    record |= {"build_s": None, **numbers}
+    for batch in batches:
+        record[f"mark_{batch}"] = "≈ " if numbers[f"ns_{batch}_colours"] < batch else ""
+        record[f"total_{batch}"] = 1e9 * numbers["setup_s"] + batch * numbers[f"ns_{batch}"]
+    return record | {"spread": max(numbers[f"ns_{batch}_most"] / numbers[f"ns_{batch}_least"] - 1 for batch in batches)}
 
 
 def optimistic_mark(row: MethodResult) -> str:
@@ -109,17 +102,6 @@ def optimistic_mark(row: MethodResult) -> str:
     if not row.build or "--model" in row.build:
         return ""
     return mark(SHIPPED, OURS if "--atlas" in row.build else ALONE)
-
-
-def _time(row: MethodResult, batch: int) -> dict[str, Any]:
-    """Return the median, least and greatest time per RGB, and the mark of calls with fewer colours than the batch."""
-    key = f"ns_{batch}"
-    return {
-        "mark": "≈ " if row.numbers[f"{key}_colours"] < batch else "",
-        "median": row.numbers[key],
-        "least": row.numbers[f"{key}_least"],
-        "most": row.numbers[f"{key}_most"],
-    }
 
 
 if __name__ == "__main__":

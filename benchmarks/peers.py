@@ -10,11 +10,11 @@ import os
 import shutil
 import subprocess
 import tempfile
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from importlib.metadata import version
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -27,9 +27,10 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
 from uplift.common.processes import ChildError, call_in_child
-from uplift.lab.timing import ONE_THREAD, Spread, spread
+from uplift.lab.chart.method import stopwatch
+from uplift.lab.timing import Spread, spread
 from uplift.lattice import Lattice
-from uplift.models import Moments, Sigmoid, evaluate
+from uplift.models import Moments, Sigmoid, evaluate, reflectance
 from uplift.models.model import Model
 from uplift.models.sigmoid import evaluate_unscaled
 
@@ -61,21 +62,16 @@ class Peer:
 
 
 def time_peers(runs: int) -> list[Peer]:
-    """Time each tool in a process without the threads, compiled code or settings of the others."""
+    """Time each tool in a process without the compiled code or settings of the others."""
     return [row for tool in TOOLS for row in alone(tool, min(runs, MAX_RUNS))]
 
 
 def alone(tool: Callable[[int], list[Peer]], runs: int, seconds: float = LIMIT) -> list[Peer]:
     """Return the rows of ``tool``, timed ``runs`` times in a fresh process, or one that states how it failed."""
-    before = dict(os.environ)
-    os.environ.update(ONE_THREAD)
     try:
         return call_in_child(tool, runs, seconds=seconds)
     except ChildError as error:
         return [Peer(tool.__name__, "", 0, 0, notes=str(error))]
-    finally:
-        os.environ.clear()
-        os.environ.update(before)
 
 
 @cache
@@ -85,19 +81,14 @@ def sensor() -> Sensor:
 
 
 @cache
-def lattice(dim: int = DIM) -> Lattice:
-    """Return a lattice with nodes spaced as sRGB."""
-    return Lattice(observer.axis_nodes("srgb", dim))
+def lattice() -> Lattice:
+    """Return the lattice of the other tools, with nodes spaced as sRGB."""
+    return Lattice(observer.axis_nodes("srgb", DIM))
 
 
 def model_of(name: str, count: int) -> Model:
     """Return a spectrum model by name."""
     return Sigmoid() if name == "sigmoid" else Moments(count)
-
-
-def missing(tool: str, what: str, model: str, count: int) -> Peer:
-    """Return the row of a tool that needs ``what``."""
-    return Peer(tool, model, count, 0, notes=f"{what} is not installed")
 
 
 def judge(rgb: ArrayLike, target: ArrayLike, *, least: float, within: float = THRESHOLD) -> dict[str, float]:
@@ -121,12 +112,8 @@ def judge_multipliers(model: Model, multipliers: Array, target: Array, *, least:
 
 def measured(solve: Callable[[], Array], points: int, runs: int) -> tuple[Array, Spread]:
     """Return the result of ``solve``, and µs of CPU per node. Some tools are too slow for a separate first run."""
-    solution, seconds = np.empty(0), []
-    for _ in range(runs):
-        begin = time.process_time()
-        solution = solve()
-        seconds.append(time.process_time() - begin)
-    return solution, spread(seconds).scaled(1e6 / points)
+    results, seconds = zip(*(stopwatch(solve) for _ in range(runs)), strict=True)
+    return results[-1], spread(list(seconds)).scaled(1e6 / points)
 
 
 def ours(runs: int) -> list[Peer]:
@@ -134,23 +121,18 @@ def ours(runs: int) -> list[Peer]:
     import uplift
 
     rows = []
-    for dim in OUR_DIMS:
-        for name, count in OUR_MODELS:
-
-            def build(dim: int = dim, name: str = name, count: int = count) -> Array:
-                data = uplift.build(dim=dim, model=name, coefficients=count, prior="smooth").data
-                return np.asarray(data.points.coefficients, dtype=float)
-
-            build()  # compiles
-            stored, cpu = measured(build, dim**3, runs)
-            model = model_of(name, count)
-            answer = judge_multipliers(model, model.from_storage(stored), lattice(dim).points, least=1.0)
-            rows.append(Peer("uplift", name, count, dim**3, cpu, **answer, notes=f"{dim}³, compiled before"))
+    for dim, (name, count) in product(OUR_DIMS, OUR_MODELS):
+        build = partial(uplift.build, dim=dim, model=name, coefficients=count, prior="smooth")
+        build()  # compiles
+        cube, cpu = measured(build, dim**3, runs)
+        spectra = reflectance(cube.data.model, cube.data.points.coefficients, sensor().wavelengths)
+        answer = judge(sensor().rgb(spectra), cube.data.lattice.points, least=1.0)
+        rows.append(Peer("uplift", name, count, dim**3, cpu, **answer, notes=f"{dim}³, compiled before"))
     return rows
 
 
 CERES_SOURCE, CERES_BUILT = ROOT / "benchmarks" / "ceres", ROOT / "out" / "ceres"
-CERES_NEEDS = "Ceres with cmake and a C++ compiler (libceres-dev, cmake, g++)"
+CERES_NEEDS = "Ceres with cmake and a C++ compiler (libceres-dev, cmake, g++) is not installed"
 CERES_STEPS = 12
 """Iterations from each start. The default of Ceres, 50, doubles the time for moments and fits no more of them."""
 CERES_JOBS = (("sigmoid", 3, "sigmoid", 0.99), ("moments", 9, "moments", 0.5), ("moments", 9, "multipliers", 0.99))
@@ -165,22 +147,19 @@ def ceres(runs: int) -> list[Peer]:
     """
     program = _build_ceres()
     if program is None:
-        return [missing("Ceres", CERES_NEEDS, model, count) for model, count, *_ in CERES_JOBS]
+        return [Peer("Ceres", model, count, 0, notes=CERES_NEEDS) for model, count, *_ in CERES_JOBS]
     return [_ceres_row(program, *job, runs) for job in CERES_JOBS]
 
 
 def _build_ceres() -> Path | None:
     """Build the program; return None if cmake, a compiler or Ceres is missing."""
-    program = CERES_BUILT / "fit"
-    if shutil.which("cmake") is None or _cmake("-S", str(CERES_SOURCE), "-B", str(CERES_BUILT)).returncode:
+    cmake = partial(subprocess.run, capture_output=True, check=False)
+    if shutil.which("cmake") is None or cmake(["cmake", "-S", CERES_SOURCE, "-B", CERES_BUILT]).returncode:
         return None
-    program.unlink(missing_ok=True)  # of an earlier build
-    _cmake("--build", str(CERES_BUILT)).check_returncode()
+    (CERES_BUILT / "fit").unlink(missing_ok=True)  # of an earlier build
+    cmake(["cmake", "--build", CERES_BUILT]).check_returncode()
+    program = CERES_BUILT / "fit"
     return program if program.exists() else None
-
-
-def _cmake(*words: str) -> subprocess.CompletedProcess[bytes]:
-    return subprocess.run(["cmake", *words], capture_output=True, check=False)
 
 
 def _ceres_row(program: Path, name: str, count: int, unknowns: str, least: float, runs: int) -> Peer:
@@ -207,38 +186,6 @@ def _run_ceres(program: Path, unknowns: str, count: int) -> tuple[Array, dict[st
         quiet = os.environ | {"GLOG_minloglevel": "3"}
         done = subprocess.run(command, env=quiet, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
         return np.fromfile(solution).reshape(-1, count), json.loads(done.stdout)
-
-
-def mitsuba_table(runs: int) -> list[Peer]:
-    """Time lookups in Mitsuba's table of sigmoids for sRGB, one colour per call; nothing is fitted."""
-    try:
-        import mitsuba
-    except ImportError:
-        return [missing("Mitsuba 3", "Mitsuba", "sigmoid", 3)]
-    mitsuba.set_variant("scalar_spectral")  # needs no LLVM
-    target, wavelengths = lattice().points, np.linspace(400, 700, 4)
-    colours = target.tolist()
-
-    def fetch() -> Array:
-        return np.array([mitsuba.srgb_model_fetch(rgb) for rgb in colours], dtype=float)
-
-    coefficients, cpu = measured(fetch, len(target), runs)
-    # The table is interpolated in single precision.
-    rgb = sensor().rgb(evaluate_unscaled(coefficients, sensor().wavelengths))
-    answer = judge(rgb, target, least=0.95, within=2e-3)
-    rows = coefficients.tolist()
-
-    def evaluate_rows() -> Array:
-        return np.array([mitsuba.srgb_model_eval(row, wavelengths.tolist()) for row in rows])
-
-    values, evaluation = measured(evaluate_rows, len(target), runs)
-    if not np.allclose(values, evaluate_unscaled(coefficients, wavelengths), atol=1e-3):
-        raise RuntimeError("Mitsuba's coefficients mean something else")
-    notes = (
-        "no fit: its table, looked up from Python a colour a call (what fitted it is not exposed); "
-        f"evaluation at {len(wavelengths)} wavelengths {evaluation.median:.1f} µs more"
-    )
-    return [Peer(f"Mitsuba {mitsuba.__version__}", "sigmoid", 3, len(target), cpu, **answer, notes=notes)]
 
 
 def colour_science(runs: int) -> list[Peer]:
@@ -308,4 +255,4 @@ def scipy_least_squares(runs: int) -> list[Peer]:
     return rows
 
 
-TOOLS = (ours, ceres, mitsuba_table, colour_science, scipy_least_squares)
+TOOLS = (ours, ceres, colour_science, scipy_least_squares)

@@ -13,13 +13,14 @@ import time
 import warnings
 from collections.abc import Callable
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from benchmarks import MACBETH, ROOT, record
-from uplift.lab.timing import Spread, spread, time_calls, time_process
+from uplift.lab.timing import spread, time_calls, time_process
 
 UPLIFT = str(Path(sys.executable).parent / "uplift")
 RUNS, FEW_RUNS = 5, 3
@@ -34,8 +35,8 @@ MAX_ERRORS = {"coefficients": 1e-6, "spectra": 1e-5, "moments": 2e-2, "refined":
 BULK, CHECKED = 1_000_000, 5000
 FLAGS = ("-O3", "-march=x86-64-v3", "-fno-math-errno", "-fno-trapping-math")
 MODES = ("spectra", "moments")
-PROGRAM_COLOURS, PYTHON_COLOURS, MAX_DIFFERENCE = 400_000, 100_000, 1e-3
-"""Colours of the C header, those of Python in the same run, and the largest permitted difference of reflectance."""
+PROGRAM_COLOURS, MAX_DIFFERENCE = 400_000, 1e-3
+"""Colours of the C header, and the largest permitted difference of reflectance."""
 Row = dict[str, Any]
 
 
@@ -60,6 +61,7 @@ def main() -> None:
     if compiler := shutil.which("cc"):
         version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True).stdout
         colours = np.random.default_rng(1).random((PROGRAM_COLOURS, 3)).astype(np.float32)
+        cubes = (cube, _build(dim=32, model="sigmoid"))
         record(
             "performance",
             "programs",
@@ -67,10 +69,7 @@ def main() -> None:
             colours=len(colours),
             compiler=version.splitlines()[0],
             flags=" ".join(FLAGS),
-            rows=[
-                time_header(each, mode, colours) for mode in MODES for each in (cube, _build(dim=32, model="sigmoid"))
-            ],
-            python=[time_python(cube, mode, colours[:PYTHON_COLOURS].astype(float)) for mode in ("bulk", *MODES)],
+            rows=[time_header(each, mode, colours) for mode in MODES for each in cubes],
         )
 
 
@@ -109,41 +108,35 @@ def time_build(model: str, count: int, dim: int, runs: int) -> Row:
 
 def time_processes() -> list[Row]:
     """Time commands as a user starts them: wall seconds and peak memory in MB."""
-
-    def row(what: str, wall: Spread, megabytes: float) -> Row:
-        return {"what": what, "wall": wall, "megabytes": megabytes}
-
+    rows = []
     with tempfile.TemporaryDirectory() as folder:
-
-        def build(dim: int) -> list[str]:
-            options = ["--dim", str(dim), "-o", f"{folder}/{dim}.uplift", "--force", "-q"]
-            return [UPLIFT, "build", "--atlas", str(MACBETH), *options]
-
-        uncached = {"JAX_ENABLE_COMPILATION_CACHE": "false"}
-        rows = [row("uplift build --dim 32, compilation cache disabled", *time_process(build(32), RUNS, uncached))]
         for dim in DIMS:
+            command = [UPLIFT, "build", "--atlas", str(MACBETH), "--dim", str(dim), "-o", f"{folder}/{dim}.uplift"]
+            command += ["--force", "-q"]
+            if dim == 32:
+                uncached = {"JAX_ENABLE_COMPILATION_CACHE": "false"}
+                what = f"uplift build --dim {dim}, compilation cache disabled"
+                rows.insert(0, (what, *time_process(command, RUNS, uncached)))
             runs = RUNS if dim < max(DIMS) else 1
             caches = [{"JAX_COMPILATION_CACHE_DIR": f"{folder}/cache-{dim}-{run}"} for run in range(runs)]
-            walls, peaks = zip(*(time_process(build(dim), 1, cache) for cache in caches), strict=True)
-            rows.append(row(f"uplift build --dim {dim}, first run", spread([one.median for one in walls]), max(peaks)))
-            rows.append(row(f"uplift build --dim {dim}, compiled before", *time_process(build(dim), runs, caches[0])))
+            walls, peaks = zip(*(time_process(command, 1, cache) for cache in caches), strict=True)
+            rows.append((f"uplift build --dim {dim}, first run", spread([wall.median for wall in walls]), max(peaks)))
+            what = f"uplift build --dim {dim}, compiled before"
+            rows.append((what, *time_process(command, runs, caches[0])))
     starts = {
         "python -c 'import numpy'": [sys.executable, "-c", "import numpy"],
         "uplift query '#cc3319' --format json": [UPLIFT, "query", "#cc3319", "--format", "json"],
         "uplift --help": [UPLIFT, "--help"],
     }
-    return rows + [row(what, *time_process(command, 2 * RUNS)) for what, command in starts.items()]
+    rows += [(what, *time_process(command, 2 * RUNS)) for what, command in starts.items()]
+    return [{"what": what, "wall": wall, "megabytes": megabytes} for what, wall, megabytes in rows]
 
 
 def time_lookups(cube: Any) -> list[Row]:
     """Time every mode with numpy in both types, on one thread and on two, and for colours near those of the atlas."""
     rng = np.random.default_rng(1)
-    rows = [
-        _lookup(cube, what, rng.random((count, 3)), dtype, threads)
-        for what, count in COLOURS.items()
-        for dtype in ("float64", "float32")
-        for threads in (1, 2)
-    ]
+    random = product(COLOURS, ("float64", "float32"), (1, 2))
+    rows = [_lookup(cube, what, rng.random((COLOURS[what], 3)), dtype, threads) for what, dtype, threads in random]
     for what, count in COLOURS.items():
         row = _lookup(cube, what, near_entries(cube, count, rng), "float64", 1)
         rows.append(row | {"what": f"{what}, colours near entries"})
@@ -160,15 +153,12 @@ def _lookup(cube: Any, what: str, rgb: Any, dtype: str, threads: int) -> Row:
     options: Row = {"dtype": dtype, "threads": threads}
     if what == "coefficients":
         query = partial(cube.coefficients, rgb, **options)
-        error = float(np.abs(query() - cube.coefficients(rgb)).max())
+        error = np.abs(query() - cube.coefficients(rgb)).max()
     else:
         query = partial(cube.reflectance, rgb, WAVELENGTHS, what, **options)
         back = cube.data.sensor.rgb(cube.reflectance(rgb[:CHECKED], None, what, **options))
-        error = float(np.abs(back - rgb[:CHECKED]).max())
-    size, count = np.dtype(dtype).itemsize, cube.data.model.count
-    width = count if what == "coefficients" else len(WAVELENGTHS)
-    rows_read = size * width if what == "spectra" else 8 * count
-    return _timing(query, rgb, error, MAX_ERRORS[what], 24 + 8 * rows_read + size * width) | {"what": what, **options}
+        error = np.abs(back - rgb[:CHECKED]).max()
+    return {"what": what, **options, **_timing(query, rgb, float(error), MAX_ERRORS[what])}
 
 
 def time_bulk(cube: Any) -> list[Row]:
@@ -190,29 +180,28 @@ def _bulk(cube: Any, what: str, rgb: Any, threads: int) -> Row:
     from uplift.lookup import bulk
 
     jax.clear_caches()  # type: ignore[no-untyped-call]
-    spectra = what.startswith("spectra")
     begin = time.perf_counter()
-    sample = bulk.spectra(cube, WAVELENGTHS, threads=threads) if spectra else bulk.coefficients(cube, threads=threads)
+    if what == "coefficients":
+        sample, expected = bulk.coefficients(cube, threads=threads), cube.coefficients
+    else:
+        sample, expected = (
+            bulk.spectra(cube, WAVELENGTHS, threads=threads),
+            partial(cube.reflectance, wavelengths=WAVELENGTHS),
+        )
     prepared = time.perf_counter()
     result = sample(rgb)
     answered = time.perf_counter()
-    expected = cube.reflectance(rgb, WAVELENGTHS) if spectra else cube.coefficients(rgb)
-    width = len(WAVELENGTHS) if spectra else cube.data.model.count
-    error = float(np.abs(result - expected).max())
-    row = _timing(lambda: sample(rgb), rgb, error, 1e-6, rgb.itemsize * 3 + 9 * 4 * width)
-    compiling = max(answered - prepared - row["wall_s"].median, 0)
-    times = {"prepare_s": prepared - begin, "compile_s": compiling}
-    return row | {"what": what, "dtype": rgb.dtype.name, "threads": threads} | times
+    error = float(np.abs(result - expected(rgb)).max())
+    row = {"what": what, "dtype": rgb.dtype.name, "threads": threads} | _timing(lambda: sample(rgb), rgb, error, 1e-6)
+    return row | {"prepare_s": prepared - begin, "compile_s": max(answered - prepared - row["wall_s"].median, 0)}
 
 
-def _timing(query: Callable[[], object], rgb: Any, error: float, limit: float, bytes_each: int) -> Row:
-    """Bytes of a colour are those of the query, of the rows read and of the result."""
+def _timing(query: Callable[[], object], rgb: Any, error: float, limit: float) -> Row:
     if not error <= limit:
         raise RuntimeError(f"error {error} exceeds {limit}: nothing to time")
     wall, cpu = time_calls(query, RUNS)
     return {
         "colours": len(rgb),
-        "bytes": bytes_each,
         "wall_s": wall,
         "million_per_s": len(rgb) / wall.median / 1e6,
         "cpu_us": cpu.median / len(rgb) * 1e6,
@@ -250,19 +239,6 @@ def time_header(cube: Any, mode: str, colours: Any) -> Row:
         "mean_delta_e": float(errors.mean()),
         "max_delta_e": float(errors.max()),
     }
-
-
-def time_python(cube: Any, mode: str, colours: Any) -> Row:
-    """Return the rate of lookups in Python on the same colours: million per CPU second of all threads."""
-    from uplift.lookup import bulk
-
-    if mode == "bulk":
-        name, sample = "`uplift.bulk`, spectra", bulk.spectra(cube, WAVELENGTHS, threads=1)
-    else:
-        name, sample = f"numpy, {mode}", partial(cube.reflectance, wavelengths=WAVELENGTHS, mode=mode, dtype="float32")
-    sample(colours)
-    _, cpu = time_calls(lambda: sample(colours), RUNS)
-    return {"what": name, "lookup": len(colours) / cpu.min / 1e6}
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,6 @@ from uplift.common.arrays import Array
 from uplift.lab.comparison.compare import (
     NONE,
     Comparison,
-    RepresentationResult,
     Scene,
     TunedFilter,
     cheapest,
@@ -96,18 +96,14 @@ def printed_filters() -> dict[tuple[str, int, str], Printed]:
 def advice(comparison: Comparison) -> Iterator[Row]:
     """Yield the cheapest representation for each set of lights and target, with and without tables of lights."""
     without = tuple(row for row in comparison.results if row.light_floats < TABLE)
-    compact = replace(comparison, results=without)
-    for name, title in comparison.sets.items():
-        for target in TARGETS:
-            best = {
-                "cheapest": cheapest(comparison, name, target),
-                "without_light_table": cheapest(compact, name, target),
-            }
-            yield {"lights": title, "target": target, **{key: _named(row) for key, row in best.items()}}
-
-
-def _named(row: RepresentationResult | None) -> Row | None:
-    return {"name": row.name, "floats": row.floats, "light_floats": row.light_floats} if row else None
+    kinds = {"cheapest": comparison, "without_light_table": replace(comparison, results=without)}
+    for (name, title), target in product(comparison.sets.items(), TARGETS):
+        best = {key: cheapest(each, name, target) for key, each in kinds.items()}
+        named = {
+            key: row and {"name": row.name, "floats": row.floats, "light_floats": row.light_floats}
+            for key, row in best.items()
+        }
+        yield {"lights": title, "target": target, **named}
 
 
 def ranking(comparison: Comparison, thesis: Mapping[tuple[str, str], Printed]) -> Iterator[Row]:
@@ -133,7 +129,9 @@ def filter_rows(tuned: Sequence[TunedFilter], thesis: Mapping[tuple[str, int, st
     rows = []
     for one in tuned:
         printed, bare = thesis[one.lights, one.count, one.kind], thesis[one.lights, one.count, NONE]
-        mean, reference = one.statistics.mean, unfiltered[one.lights, one.count]
+        mean = one.statistics.mean
+        changes = (mean / unfiltered[one.lights, one.count] - 1, printed.mean / bare.mean - 1)
+        ours, theirs = (None, None) if one.kind == NONE else changes
         rows.append(
             {
                 "lights": one.lights,
@@ -141,13 +139,9 @@ def filter_rows(tuned: Sequence[TunedFilter], thesis: Mapping[tuple[str, int, st
                 "filter": one.kind,
                 "mean": mean,
                 "std": one.statistics.deviation,
-                "change": None if one.kind == NONE else mean / reference - 1,
+                "change": ours,
                 "parameters": one.parameters,
-                "thesis": {
-                    "mean": printed.mean,
-                    "change": None if one.kind == NONE else printed.mean / bare.mean - 1,
-                    "parameters": printed.parameters,
-                },
+                "thesis": {"mean": printed.mean, "change": theirs, "parameters": printed.parameters},
             }
         )
     return sorted(rows, key=lambda row: (row["lights"], row["samples"], row["mean"]))

@@ -119,7 +119,7 @@ def _recommend(
         f"{requirement.description}, {format_size(numbers['bytes'])}"
     )
     say(f"  {row.build}")
-    say(f"  {row.ask}")
+    say(f"  {row.call}")
 
 
 def _measure(files: tuple[str, ...], patterns: tuple[str, ...], colours: int, *, quick: bool) -> Chart:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import os
 import shutil
-import sys
 import time
 
 import numpy as np
 import pytest
 
-from benchmarks.peers import Peer, alone, ceres, judge, judge_multipliers, measured, missing, mitsuba_table
-from uplift.lab.timing import ONE_THREAD
+from benchmarks.peers import Peer, alone, ceres, judge, judge_multipliers
 from uplift.models import Sigmoid
 
 TARGET = np.full((10, 3), 0.5)
@@ -39,29 +37,10 @@ def test_spectra_of_another_colour_are_a_wrong_answer():
 
 
 def test_absent_tools_have_rows_without_figures(monkeypatch):
-    monkeypatch.setitem(sys.modules, "mitsuba", None)
     monkeypatch.setattr(shutil, "which", lambda name: None)
-    rows = [*mitsuba_table(1), *ceres(1)]
-    assert [(row.cpu_us, row.share, row.worst) for row in rows] == [(None, None, None)] * 4
+    rows = ceres(1)
+    assert [(row.cpu_us, row.share, row.worst) for row in rows] == [(None, None, None)] * 3
     assert all("not installed" in row.notes for row in rows)
-
-
-def test_measured_returns_the_result_and_the_time_per_node():
-    found, cpu = measured(lambda: TARGET, 10, runs=2)
-    assert found is TARGET
-    assert cpu.runs == 2
-
-
-def thread_limit(runs: int) -> list[Peer]:
-    """Return a row named after the number of threads allowed."""
-    return [missing(os.environ["OPENBLAS_NUM_THREADS"], "nothing", "sigmoid", runs)]
-
-
-def test_a_tool_runs_in_a_single_threaded_process_and_the_environment_is_restored(monkeypatch):
-    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
-    (row,) = alone(thread_limit, 3)
-    assert (row.tool, row.count) == (ONE_THREAD["OPENBLAS_NUM_THREADS"], 3)
-    assert os.environ["OPENBLAS_NUM_THREADS"] == "7"
 
 
 def abort(runs: int) -> list[Peer]:

@@ -206,7 +206,7 @@ def _python_method(options: CubeOptions, lookup: str) -> Method:
         family=f"uplift, {options.model}{' with atlas' if options.atlas else ''}",
         mode=mode,
         dtype=dtype,
-        ask="uplift.lookup.bulk.spectra(cube)(rgb)" if bulk else f'cube.reflectance(rgb, mode="{mode}"{of_dtype})',
+        call="uplift.lookup.bulk.spectra(cube)(rgb)" if bulk else f'cube.reflectance(rgb, mode="{mode}"{of_dtype})',
         prepare=partial(prepare, options=options),
         **_claim(options, mode),
     )
@@ -220,7 +220,7 @@ def _c_method(options: CubeOptions, mode: str) -> Method:
         family="uplift, C export",
         mode=mode,
         dtype="float32",
-        ask=f"uplift export CUBE -o cube.h --mode {mode}; cube_reflectances(rgb, wavelengths, count, out)",
+        call=f"uplift export CUBE -o cube.h --mode {mode}; cube_reflectances(rgb, wavelengths, count, out)",
         note=f"cc {' '.join(FLAGS[:5])}, called by ctypes",
         prepare=partial(prepare_c, options=options, mode=mode),
         needs=COMPILER,

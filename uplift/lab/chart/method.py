@@ -188,7 +188,7 @@ class Description:
     ``family``, ``source``: name in the legend, and publication.
     ``mode``: mode of lookup of a cube, which determines the shape of the marker.
     ``dtype``: data type of colours and reflectances.
-    ``build``, ``ask``: command and call that give a user of this package the same; empty for other methods.
+    ``build``, ``call``: command and call that give a user of this package the same; empty for other methods.
     ``note``: remark for the reader.
     """
 
@@ -200,7 +200,7 @@ class Description:
     mode: str = ""
     dtype: str = "float64"
     build: str = ""
-    ask: str = ""
+    call: str = ""
     note: str = ""
 
 

@@ -149,4 +149,4 @@ def _lines(result: MethodResult) -> list[tuple[str, str]]:
     ]
     count = f"{numbers['round_trip_colours']:g} colours, {numbers['unseen_spectra']:g} materials"
     lines.append(("test set", count))
-    return lines + [("", text) for text in (result.build, result.ask, result.note) if text]
+    return lines + [("", text) for text in (result.build, result.call, result.note) if text]
