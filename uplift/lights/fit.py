@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Indices
 from uplift.fit.solver import solve
-from uplift.lights.exponential import Exponential
 from uplift.lights.lattice import BEND, DENOMINATOR, ChromaticityLattice, chromaticity, unit_xyz
 from uplift.models.minimum_norm import forward_map
+from uplift.models.model import Model
 
 TOLERANCE = 1e-9
 """Distance in XYZ, of unit X + 15 Y + 3 Z, at which a node is solved."""
@@ -17,6 +21,35 @@ FAINTEST = 1e-6
 """Smallest power of a prior as a share of its mean: the model has positive powers only."""
 MIN_ANGLE = 1e-3
 """Smallest angle in radians between a wavelength inside the convex polygon and its neighbours on the rim."""
+
+
+@dataclass(frozen=True)
+class Exponential(Model):
+    """Positive spectra g(t) = exp(Σ p_j cos(j π t)) without an upper bound, t from 0 to 1 over the range.
+
+    With as many multipliers as there are evenly spaced wavelengths, every positive spectrum is one of the model.
+    """
+
+    count: int = 81
+    name = "exponential"
+
+    def basis(self, wavelengths: ArrayLike) -> Array:
+        return np.cos(np.pi * np.arange(self.count) * np.asarray(wavelengths)[..., None])
+
+    def to_reflectance(self, x: Any) -> Any:
+        return x.__array_namespace__().exp(x)
+
+    def derivative(self, x: Any) -> Any:
+        return self.to_reflectance(x)
+
+    def from_reflectance(self, reflectance: Array) -> Array:
+        return np.log(reflectance)
+
+    def constant(self) -> Array:
+        return np.eye(self.count)[0]
+
+    def metric_diagonal(self) -> Array:
+        return np.asarray(1.0 + np.arange(self.count) ** 2)
 
 
 def locus_lattice(radiometry: Array, white: Array, knots: int, rings: Array) -> tuple[ChromaticityLattice, Array]:
@@ -72,7 +105,7 @@ def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
     `radiometry` (N, 3) leads from power, at evenly spaced wavelengths, to XYZ. Returns power (n, N) of unit
     X + 15 Y + 3 Z. Chromaticities near the spectral locus may be missed; see `mix_with_rim`.
     """
-    model = Exponential(len(radiometry), 0.0, 1.0)
+    model = Exponential(len(radiometry))
     wavelengths = np.linspace(0.0, 1.0, len(radiometry))
     basis = model.basis(wavelengths)
     positive = np.maximum(prior, FAINTEST * prior.mean(axis=1, keepdims=True))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,10 +17,13 @@ from uplift.lattice import weighted_sum
 from uplift.lights.lattice import BEND, DENOMINATOR, Cells
 from uplift.lights.table import EmissionData, read_emission, write_emission
 from uplift.lookup.blocks import Function, as_float_type, as_thread_count, as_wavelengths, blockwise
+from uplift.lookup.cube import find_file
 from uplift.models.arithmetic import blocked_matmul
 
 EMISSION = Path(__file__).with_name("emission.uplift")
 """The packaged table of linear sRGB."""
+OUTSIDE = ("error", "clip")
+"""Treatments of colours that no light has: an error, or the nearest colour towards white."""
 MAX_VALUE = 1e30
 """Limit of the components of a colour."""
 FAR = 10.0
@@ -169,9 +171,9 @@ class EmissionTable:
         threads: int,
     ) -> NDArray[Any]:
         """Spectral power (..., N) of colours (..., 3), whose rows are converted to XYZ block by block."""
-        if outside not in TREATMENTS:
+        if outside not in OUTSIDE:
             raise OptionError(
-                f"unknown treatment of colours outside '{outside}'", hint=f"use one of {', '.join(TREATMENTS)}"
+                f"unknown treatment of colours outside '{outside}'", hint=f"use one of {', '.join(OUTSIDE)}"
             )
         at = as_wavelengths(wavelengths, self.wavelengths)
         kind, count = as_float_type(dtype), as_thread_count(threads)
@@ -181,7 +183,7 @@ class EmissionTable:
         )
 
         def power(rows: Array) -> NDArray[Any]:
-            return _power(self.data, nodes, entries, TREATMENTS[outside], convert(rows))
+            return _power(self.data, nodes, entries, convert(rows), clip=outside == "clip")
 
         return blockwise(power, as_rgb(colours), len(at), kind, count)
 
@@ -256,7 +258,8 @@ class EmissionTable:
             Values that are not finite.
         """
         xyz = self.xyz(rgb)
-        return _is_light(self.data, xyz.reshape(-1, 3)).reshape(xyz.shape[:-1])
+        flat = xyz.reshape(-1, 3)
+        return _is_light(flat, *_polar(self.data, flat)[1:]).reshape(xyz.shape[:-1])
 
     def expected_error(self, rgb: ArrayLike) -> Array:
         """Estimate how far surfaces lit by an answer are from those lit by a measured lamp of the same chromaticity.
@@ -280,7 +283,7 @@ class EmissionTable:
         """
 
         def errors(xyz: Array) -> Array:
-            cells, _ = _cells(self.data, _refuse, xyz, *_chromaticities(xyz))
+            cells, _ = _cells(self.data, xyz, *_chromaticities(xyz), clip=False)
             corners = self.data.lattice.corners(cells)
             return weighted_sum(self.data.error.reshape(-1, 1).astype(float), corners, cells.weights)
 
@@ -333,8 +336,7 @@ def load_emission(path: str | os.PathLike[str] | None = None) -> EmissionTable:
 
 def find_table(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
     """Return the packaged table for its name ``emission``, unless a file has it, or else the path."""
-    is_packaged = os.fsdecode(path).casefold() == EMISSION.stem and not os.path.lexists(path)
-    return EMISSION if is_packaged else path
+    return find_file(path, {EMISSION.stem: EMISSION})
 
 
 def _checked(colours: NDArray[Any]) -> Array:
@@ -355,16 +357,12 @@ def _resample(spectra: Values, grid: Array, wavelengths: Array) -> Values:
     return np.asarray(spectra[:, low] * (1 - share) + spectra[:, low + 1] * share)
 
 
-Treatment = Callable[[EmissionData, Array], tuple[Array, Array]]
-"""What is done with XYZ (m, 3) that no light has: return their u′v′ (m, 2) and X + 15 Y + 3 Z (m,)."""
-
-
-def _power(data: EmissionData, nodes: Values, entries: Values, treat: Treatment, xyz: Array) -> NDArray[Any]:
+def _power(data: EmissionData, nodes: Values, entries: Values, xyz: Array, *, clip: bool) -> NDArray[Any]:
     """Power (n, N) of lights of XYZ (n, 3), in the type of the spectra of the nodes (K · R, N) and lamps (E, N)."""
     uv, size = _chromaticities(xyz)
     discs = data.entries.locate(uv)
     uv[discs.rows] = discs.exit_uv
-    cells, size = _cells(data, treat, xyz, uv, size)
+    cells, size = _cells(data, xyz, uv, size, clip=clip)
     entry_size = size[discs.rows] * discs.share
     size[discs.rows] -= entry_size
     power = weighted_sum(nodes, data.lattice.corners(cells), cells.weights * size[:, None])
@@ -384,53 +382,48 @@ def _chromaticities(xyz: Array) -> tuple[Array, Array]:
     return np.clip(uv, -FAR, FAR, out=uv).T, size
 
 
-def _cells(data: EmissionData, treat: Treatment, xyz: Array, uv: Array, size: Array) -> tuple[Cells, Array]:
-    """Cells of chromaticities (n, 2), and X + 15 Y + 3 Z (n,), after the treatment of those that no light has."""
+def _cells(data: EmissionData, xyz: Array, uv: Array, size: Array, *, clip: bool) -> tuple[Cells, Array]:
+    """Cells of chromaticities (n, 2), and X + 15 Y + 3 Z (n,); those that no light has are clipped or an error."""
     lattice = data.lattice
     sector, along, length = lattice.polar(uv - lattice.white)
     rows = np.flatnonzero((size <= 0) | (length > 1))
     if rows.size:
-        moved, size[rows] = treat(data, xyz[rows])
+        moved, size[rows] = _to_locus(data, xyz[rows], clip=clip)
         sector[rows], along[rows], length[rows] = lattice.polar(moved - lattice.white)
     return lattice.cells(sector, along, length), size
 
 
-def _homogeneous(data: EmissionData, xyz: Array) -> tuple[Array, Array]:
-    """u′v′ from white (n, 2), times X + 15 Y + 3 Z, and X + 15 Y + 3 Z (n,)."""
+def _polar(data: EmissionData, xyz: Array) -> tuple[Array, Array, Array]:
+    """u′v′ from white (n, 2), X + 15 Y + 3 Z (n,), and the length (n,) of `ChromaticityLattice.polar`.
+
+    All are homogeneous in XYZ: u′v′ and lengths are multiplied by X + 15 Y + 3 Z, which may be 0.
+    """
     size = xyz @ DENOMINATOR
-    return xyz[:, :2] * (4.0, 9.0) - size[:, None] * data.lattice.white, size
+    offset = xyz[:, :2] * (4.0, 9.0) - size[:, None] * data.lattice.white
+    return offset, size, data.lattice.polar(offset)[2]
 
 
-def _is_light(data: EmissionData, xyz: Array) -> Mask:
+def _is_light(xyz: Array, size: Array, length: Array) -> Mask:
     """Test whether XYZ (n, 3) are black or within the spectral locus, beyond which `BEND` is allowed."""
-    offset, size = _homogeneous(data, xyz)
-    length = data.lattice.polar(offset)[2]
     return np.asarray(((size > 0) & (length <= size * (1 + BEND))) | (xyz == 0).all(axis=1))
 
 
-def _refuse(data: EmissionData, xyz: Array) -> tuple[Array, Array]:
-    """Raise `ColourError` unless all excesses are within `BEND`, which `_clip` removes."""
-    wrong = ~_is_light(data, xyz)
-    if wrong.any():
+def _to_locus(data: EmissionData, xyz: Array, *, clip: bool) -> tuple[Array, Array]:
+    """Move XYZ (n, 3) towards white of the same luminance, white + f (colour − white), up to the spectral locus.
+
+    Returns u′v′ (n, 2) and X + 15 Y + 3 Z (n,). Unless ``clip``, `ColourError` for excesses beyond `BEND`.
+    """
+    offset, size, length = _polar(data, xyz)
+    wrong = ~_is_light(xyz, size, length)
+    if not clip and wrong.any():
         first = ", ".join(f"{value:.4g}" for value in xyz[wrong][0])
         raise ColourError(
             f"no light has the colour XYZ ({first})",
             code="colour-not-a-light",
             hint="use outside='clip' for the nearest colour towards white",
         )
-    return _clip(data, xyz)
-
-
-def _clip(data: EmissionData, xyz: Array) -> tuple[Array, Array]:
-    """Move colours towards white of the same luminance, white + f (colour − white), up to the spectral locus."""
-    offset, size = _homogeneous(data, xyz)
-    length = data.lattice.polar(offset)[2]
     white = np.maximum(xyz[:, 1], 0.0) * 9 / data.lattice.white[1]
     reach = length + white - size
     step = np.divide(white, reach, out=np.zeros_like(reach), where=reach > 0)
     rim = np.divide(offset, length[:, None], out=np.zeros_like(offset), where=length[:, None] > 0)
     return data.lattice.white + rim, step * length
-
-
-TREATMENTS: dict[str, Treatment] = {"error": _refuse, "clip": _clip}
-"""Treatments of colours that no light has, by name: an error, or the nearest colour towards white."""

@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -117,20 +118,9 @@ def emission_digest(data: EmissionData) -> str:
 
 
 def _tensors(data: EmissionData) -> Tensors:
-    found: Tensors = {
-        "white": data.lattice.white,
-        "knots": data.lattice.knots,
-        "rings": data.lattice.rings,
-        "spectra": data.spectra,
-        "error": data.error,
-        "wavelengths": data.wavelengths,
-        "cmfs": data.cmfs,
-        "rgb_to_xyz": data.rgb_to_xyz,
-        "entries.uv": data.entries.uv,
-        "entries.spectra": data.entries.spectra,
-        "entries.radius": data.entries.radius,
-    }
-    return {name: np.ascontiguousarray(found[name], dtype=stored.types[0]) for name, stored in ARRAYS.items()}
+    places = {name: f"lattice.{name}" for name in ("white", "knots", "rings")}
+    arrays = {name: attrgetter(places.get(name, name))(data) for name in ARRAYS}
+    return {name: np.ascontiguousarray(arrays[name], dtype=stored.types[0]) for name, stored in ARRAYS.items()}
 
 
 def _metadata(data: EmissionData) -> dict[str, Any]:
@@ -154,14 +144,10 @@ def _decode(tensors: Tensors, metadata: Mapping[str, Any]) -> EmissionData:
     data = EmissionData(
         space=metadata["space"],
         observer=metadata["observer"],
-        rgb_to_xyz=tensors["rgb_to_xyz"],
-        wavelengths=tensors["wavelengths"],
-        cmfs=tensors["cmfs"],
         lattice=ChromaticityLattice(tensors["white"], tensors["knots"], tensors["rings"]),
-        spectra=tensors["spectra"],
-        error=tensors["error"],
         entries=LampEntries(names, *(tensors[f"entries.{name}"] for name in ("uv", "spectra", "radius"))),
         provenance=metadata["provenance"],
+        **{name: tensors[name] for name in ("rgb_to_xyz", "wavelengths", "cmfs", "spectra", "error")},
     )
     _check(data)
     return data

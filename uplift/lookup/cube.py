@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
@@ -385,10 +385,10 @@ def expected_errors(cube: Cube, rgb: ArrayLike, light: str | Light | None = None
     return blockwise(function, as_colours(rgb, data.sensor), 2)
 
 
-def find_file(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
-    """Return the file that a path or a name of `PACKAGED`, in any case, stands for. A file takes precedence."""
-    packaged = PACKAGED.get(os.fsdecode(path).casefold())
-    return path if packaged is None or os.path.lexists(path) else packaged
+def find_file(path: str | os.PathLike[str], packaged: Mapping[str, Path] = PACKAGED) -> str | os.PathLike[str]:
+    """Return the packaged file that a name, in any case, stands for, or else the path. A file takes precedence."""
+    found = packaged.get(os.fsdecode(path).casefold())
+    return path if found is None or os.path.lexists(path) else found
 
 
 def common_sensor(cubes: Iterable[Cube]) -> Sensor:
