@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 import uplift
-from tests.helpers import warns
+from tests.helpers import raises, warns
 from uplift.atlas import Atlas, Entry
-from uplift.common.errors import OptionError
+from uplift.common.errors import AtlasError, OptionError
 from uplift.lights.build import build_emission
 from uplift.lights.lamps import read_lamps
-from uplift.lights.lattice import chromaticity
 
 AT = np.arange(380.0, 781.0, 5.0)
 SMALL = {"knots": 64, "rings": 4}
@@ -48,14 +47,6 @@ def test_lamps_come_first_and_keep_known_ones_away(table):
     assert apart.min() > 2e-3
 
 
-def test_colours_are_exact_and_powers_are_not_negative(table):
-    rng = np.random.default_rng(0)
-    xyz = rng.random((500, 81)) ** 30 @ radiometry(table)
-    power = table.spectrum_of_xyz(xyz)
-    assert power.min() >= 0
-    assert chromaticity(power @ radiometry(table)) == pytest.approx(chromaticity(xyz), abs=1e-6)
-
-
 def test_a_known_lamp_in_the_atlas_is_not_there_twice():
     known = uplift.load_emission().data.entries
     row = known.names.index("FL2")
@@ -70,15 +61,6 @@ def test_lamps_of_one_colour_are_left_out_with_a_warning():
     assert found[0].entry == "second"
     assert table.data.provenance["left_out"] == ["second"]
     assert "second" not in table.lamp_names
-
-
-def test_files_of_lamps_are_recorded(tmp_path):
-    path = tmp_path / "lamps.csv"
-    values = ",".join(f"{value:.6g}" for value in BANDS)
-    path.write_text(f"# spectral irradiance\nname,{','.join(f'{each:g}' for each in AT)}\nbands,{values}\n")
-    table = build_emission(path, **SMALL)
-    assert [source["name"] for source in table.data.provenance["atlases"]] == ["lamps.csv"]
-    assert table.lamp_names[0] == read_lamps(path).names[0] == "bands"
 
 
 def test_expected_errors_are_numbers_where_sodium_has_no_z():
@@ -100,3 +82,46 @@ def test_atlases_without_light_are_refused(problem, atlas):
 def test_bad_numbers_of_nodes_are_refused(options):
     with pytest.raises(OptionError, match="whole number from 3"):
         build_emission(**options)
+
+
+def write(path, values, comment="# spectral irradiance"):
+    path.write_text(f"{comment}\nname,400,500,600,700\nbulb,{','.join(map(str, values))}\n")
+    return path
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1, 1e6])
+def test_powers_have_no_scale(tmp_path, scale):
+    atlas = read_lamps(write(tmp_path / "lamps.csv", [scale * value for value in (1, 2, 3, 4)]))
+    assert atlas.names == ("bulb",)
+    assert atlas[0].values == pytest.approx([0.25, 0.5, 0.75, 1])
+
+
+def test_a_lamp_without_power_is_refused(tmp_path):
+    with raises(AtlasError, "lamp-without-power"):
+        read_lamps(write(tmp_path / "lamps.csv", [0, 0, 0, 0]))
+
+
+TM27 = (
+    '<IESTM2714 xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>{}</SpectralQuantity>'
+    '<SpectralData wavelength="400">0.1</SpectralData><SpectralData wavelength="700">0.4</SpectralData>'
+    "</SpectralDistribution></IESTM2714>"
+)
+JCAMP = "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS={}\n##XYPOINTS=(XY..XY)\n400, 0.1\n700, 0.4\n##END=\n"
+
+
+@pytest.mark.parametrize("quantity", ["flux", "irradiance", "Relative"])
+def test_lamps_of_the_lighting_standard_state_power(tmp_path, quantity):
+    path = tmp_path / "lamp.spdx"
+    path.write_text(TM27.format(quantity))
+    assert read_lamps(path)[0].values == pytest.approx([0.25, 1])
+
+
+@pytest.mark.parametrize(
+    ("layout", "quantity"),
+    [(TM27, "reflectance"), (TM27, "R-Factor"), (TM27, "transmittance"), (JCAMP, "REFLECTANCE")],
+)
+def test_stated_quantities_of_materials_are_refused(tmp_path, layout, quantity):
+    path = tmp_path / "material.txt"
+    path.write_text(layout.format(quantity))
+    with raises(AtlasError, "wrong-quantity"):
+        read_lamps(path)

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import uplift
 from tests.helpers import raises
 from uplift.common.errors import ColourError, CubeFileError, OptionError
+from uplift.lights.discs import LampEntries
 from uplift.lights.lattice import DENOMINATOR, chromaticity, unit_xyz
 from uplift.lights.lookup import EMISSION, find_table
 from uplift.lookup.blocks import BLOCK
@@ -73,19 +74,10 @@ def test_colours_are_exact_and_powers_are_not_negative():
     assert np.abs(power @ RADIOMETRY - xyz).max(axis=1) / size == pytest.approx(0, abs=2e-7)
 
 
-@pytest.mark.parametrize("scale", [1e-20, 1.0, 1e5, 1e20])
-def test_light_scales(scale):
+def test_light_scales():
     rgb = np.array([0.9, 0.5, 0.2])
-    np.testing.assert_allclose(TABLE.spectrum(scale * rgb), scale * TABLE.spectrum(rgb), rtol=1e-12)
-    assert not TABLE.spectrum(0 * rgb).any()
-
-
-def test_white_is_daylight_of_luminance_one():
-    power = TABLE.spectrum([1.0, 1.0, 1.0])
-    assert power @ RADIOMETRY[:, 1] == pytest.approx(1, abs=1e-6)
-    row = TABLE.lamp_names.index("D65")
-    daylight = TABLE.data.entries.spectra[row]
-    assert np.abs(power / power.sum() - daylight / daylight.sum()).max() < 2e-4
+    for scale in (0, 1e-20, 1e5, 1e20):
+        np.testing.assert_allclose(TABLE.spectrum(scale * rgb), scale * TABLE.spectrum(rgb), rtol=1e-12)
 
 
 def test_lamps_are_exact_at_their_colours():
@@ -94,13 +86,10 @@ def test_lamps_are_exact_at_their_colours():
     np.testing.assert_allclose(found, entries.spectra, rtol=1e-6, atol=1e-9)
 
 
-@pytest.mark.parametrize("wavelength", [470, 530, 590, 600])
-def test_single_wavelengths_are_themselves(wavelength):
+def test_single_wavelengths_are_themselves():
     """At 590 nm, near the lamps of low pressure sodium, a mixture of yellow and red has nearly the same colour."""
-    row = (wavelength - 380) // 5
-    power = TABLE.spectrum_of_xyz(RADIOMETRY[row])
-    assert power[row] == pytest.approx(1, rel=1e-5)
-    assert np.delete(power, row).sum() < 1e-5
+    rows = np.searchsorted(TABLE.wavelengths, [470, 530, 590, 600])
+    np.testing.assert_allclose(TABLE.spectrum_of_xyz(RADIOMETRY[rows]), np.eye(81)[rows], atol=1e-5)
 
 
 def test_colours_beyond_the_bend_of_the_locus_are_lights_and_hardly_move():
@@ -129,16 +118,10 @@ def test_clipped_colours_are_lights_of_the_same_luminance(rgb):
     assert power @ RADIOMETRY[:, 1] == pytest.approx(max(luminance, 0), abs=1e-6)
     if TABLE.contains(rgb):
         np.testing.assert_array_equal(power, TABLE.spectrum(rgb))
-
-
-def test_clipped_colours_lie_on_the_way_to_white():
-    rgb = np.array([-0.5, 1.0, -0.5])
-    assert not TABLE.contains(rgb)
-    clipped = TABLE.rgb(TABLE.spectrum(rgb, outside="clip"))
-    grey = TABLE.xyz(rgb)[1]
-    share = (clipped - grey) / (rgb - grey)
-    np.testing.assert_allclose(share, share[0], rtol=1e-5)
-    assert 0 < share[0] < 1
+    elif luminance > 0:  # on the way to white
+        moved, requested = TABLE.rgb(power) - luminance, np.array(rgb) - luminance
+        np.testing.assert_allclose(np.cross(moved, requested), 0, atol=1e-5)
+        assert 0 < moved @ requested < requested @ requested
 
 
 def test_colours_of_no_light_are_errors():
@@ -170,7 +153,7 @@ def test_wavelengths_are_interpolated_linearly():
     np.testing.assert_allclose(found, expected, rtol=1e-12)
 
 
-@pytest.mark.parametrize("shape", [(), (1,), (5,), (2, 3), (0,), (2, 0)])
+@pytest.mark.parametrize("shape", [(), (2, 3), (2, 0)])
 def test_results_keep_the_shape_of_the_input(shape):
     rgb = np.random.default_rng(0).random((*shape, 3))
     assert TABLE.spectrum(rgb).shape == (*shape, 81)
@@ -191,11 +174,6 @@ def test_single_precision_is_close():
     found = TABLE.spectrum(rgb.astype(np.float32), dtype=np.float32)
     assert found.dtype == np.float32
     np.testing.assert_allclose(found, TABLE.spectrum(rgb.astype(np.float32)), rtol=1e-6)
-
-
-def test_rgb_is_the_inverse():
-    rgb = np.random.default_rng(0).random((50, 3))
-    np.testing.assert_allclose(TABLE.rgb(TABLE.spectrum(rgb)), rgb, atol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -223,5 +201,23 @@ def test_packaged_table_has_a_name_which_files_take_over(tmp_path, monkeypatch):
     Path("emission").write_bytes(DEFAULT.read_bytes())
     with raises(CubeFileError, "not-an-emission-table"):
         uplift.load_emission("emission")
-    with raises(CubeFileError, "not-a-cube"):
-        uplift.load(EMISSION)
+
+
+def test_discs_are_those_of_a_comparison_with_all():
+    """Discs in and across bins: a row of small ones, which share a bin, a large one, and one at the edge."""
+    uv = np.array([[0.2 + 4e-4 * step, 0.5] for step in range(9)] + [[0.4, 0.3], [0.0, 0.4]])
+    lamps = LampEntries(tuple("abcdefghijk"), uv, np.ones((11, 3)), np.array([2e-4] * 9 + [0.05, 0.01]))
+    rng = np.random.default_rng(0)
+    near = uv[rng.integers(0, 11, 3000)] + rng.normal(size=(3000, 2)) * lamps.radius[rng.integers(0, 11, 3000), None]
+    queried = np.concatenate([uv, near, [[-10.0, 10.0], [10.0, -10.0], [0.9, 0.9]]])
+    hits = lamps.locate(queried)
+    distance = np.linalg.norm(queried[:, None] - uv, axis=-1)
+    rows, entry = np.nonzero(distance < lamps.radius)
+    assert 500 < len(rows) < 2500
+    np.testing.assert_array_equal(hits.rows, rows)
+    np.testing.assert_array_equal(hits.entry, entry)
+    np.testing.assert_allclose(hits.share, 1 - distance[rows, entry] / lamps.radius[entry], atol=1e-9)
+    np.testing.assert_array_equal(hits.share[:11], 1)
+    np.testing.assert_allclose(np.linalg.norm(hits.exit_uv - uv[entry], axis=1), lamps.radius[entry])
+    nobody = LampEntries((), np.empty((0, 2)), np.empty((0, 3)), np.empty(0))
+    assert not nobody.locate(np.full((4, 2), 0.3)).rows.size

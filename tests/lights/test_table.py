@@ -46,29 +46,14 @@ def test_an_existing_file_is_kept(tmp_path, data):
     assert path.read_text() == "mine"
 
 
-def test_a_cube_is_not_an_emission_table_and_the_reverse(tmp_path, data):
-    uplift.load().save(tmp_path / "cube.uplift")
-    with raises(CubeFileError, "not-an-emission-table"):
-        uplift.load_emission(tmp_path / "cube.uplift")
-    write_emission(data, tmp_path / "table.uplift")
-    with raises(CubeFileError, "not-a-cube"):
-        uplift.load(tmp_path / "table.uplift")
-
-
-@pytest.mark.parametrize("place", [0.3, 0.6, 0.95])
-def test_a_flipped_bit_is_detected(tmp_path, data, place):
+def test_a_flipped_bit_is_detected(tmp_path, data):
     path = tmp_path / "table.uplift"
     write_emission(data, path)
     content = bytearray(path.read_bytes())
-    content[int(place * len(content))] ^= 1
+    content[len(content) // 2] ^= 1
     path.write_bytes(content)
     with raises(CubeFileError, "cube-damaged"):
         read_emission(path)
-
-
-def test_a_missing_file(tmp_path):
-    with raises(CubeFileError, "cube-not-found"):
-        read_emission(tmp_path / "none.uplift")
 
 
 def spoil(name, value):
@@ -86,17 +71,13 @@ def spoil(name, value):
     [
         ("cube-invalid", spoil("spectra", np.nan)),
         ("cube-invalid", spoil("spectra", -1)),
-        ("cube-invalid", spoil("error", np.inf)),
-        ("cube-invalid", spoil("entries.radius", -0.1)),
         ("cube-invalid", spoil("entries.uv", 0.9)),
         ("cube-invalid", spoil("entries.radius", 0.05)),
         ("cube-invalid", spoil("wavelengths", 100)),
         ("cube-invalid", lambda tensors, _: tensors.update(rgb_to_xyz=np.ones((3, 3)))),
         ("cube-invalid", spoil("rings", 0.5)),
         ("cube-invalid", lambda tensors, _: tensors.pop("error")),
-        ("cube-invalid", lambda tensors, _: tensors.update(more=np.zeros(1))),
         ("cube-invalid", lambda tensors, _: tensors.update(white=np.zeros(2, dtype=np.float32))),
-        ("cube-invalid", lambda _, metadata: metadata.update(space=1)),
         ("cube-invalid", lambda _, metadata: metadata.update(entries=["A"] * 5)),
         ("cube-version", lambda _, metadata: metadata.update(version=2)),
     ],
