@@ -15,9 +15,9 @@ from tests.helpers import near_black, raises, with_absent_points
 from tests.io.texture.conftest import PHOTO, WAVELENGTHS, planes, write_exr
 from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import conversion
-from uplift.common.errors import ColourError, CubeFileError, OptionError, TextureError, UpliftWarning
+from uplift.common.errors import ColourError, OptionError, TextureError, UpliftWarning
 from uplift.cube import AtlasTable, digest
-from uplift.io.scene_colours import Images, cells_touched
+from uplift.io.scene_colours import Images
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube, bulk
 from uplift.lookup.interpolate import around
@@ -67,9 +67,8 @@ def test_points_are_those_of_the_complete_cube(scene_cube, macbeth_cube):
 
 ANSWERS = [
     *(lambda cube, rgb, mode=mode: cube.reflectance(rgb, WAVELENGTHS, mode) for mode in MODES),
-    lambda cube, rgb: cube.coefficients(rgb),
-    lambda cube, rgb: cube.standard_error(rgb),
-    lambda cube, rgb: cube.reflectance(rgb, WAVELENGTHS, threads=2),
+    Cube.coefficients,
+    Cube.standard_error,
     lambda cube, rgb: bulk.spectra(cube, WAVELENGTHS)(rgb),
     lambda cube, rgb: bulk.coefficients(cube)(rgb),
 ]
@@ -129,16 +128,6 @@ def test_required_points_allow_for_rounding_across_faces_on_nodes(plain_cube, no
     assert missing(data, data.entry_boxes.required_points) == 0
 
 
-def test_colours_near_a_face_touch_both_cells(small_cube):
-    lattice = small_cube.data.lattice
-    node = lattice.nodes[3]
-    touched = cells_touched(lattice, np.array([[node - 1e-8, 0.3, 0.3]]))
-    assert {tuple(position) for position in lattice.position(touched)} == {
-        (red, *lattice.cell(np.array([0.3, 0.3]))[0]) for red in (2, 3)
-    }
-    assert len(cells_touched(lattice, np.array([[node + 1e-3, 0.3, 0.3]]))) == 1
-
-
 def test_all_images_of_a_scene_are_read_and_decoded(plain_cube, tmp_path):
     strange = np.array([[[np.nan, 2, -1], [0, 1, 0]]], np.float32)  # clamped as in textures
     light = write_exr(tmp_path / "light.exr", planes(strange))
@@ -179,8 +168,3 @@ def test_rebuild_needs_no_images(scene_cube):
     assert digest(again.data) == digest(scene_cube.data)
     assert compare_rebuilt("photo.uplift", scene_cube.data, again.data).failures == ()
     assert again.data.provenance["scene"][0]["name"] == PHOTO.name
-
-
-def test_a_filled_cube_cannot_be_rebuilt(scene_cube):
-    with raises(CubeFileError, "cube-file"):
-        rebuild(scene_cube.fill_missing([1, 1, 0]), "photo.uplift", [ATLASES])

@@ -6,7 +6,6 @@ import dataclasses
 
 import numpy as np
 import pytest
-from scipy.optimize import lsq_linear
 
 from uplift.common.errors import PaletteError
 from uplift.design.palette import design, illuminant, matrix, read_palette, unmet_goals
@@ -68,22 +67,6 @@ def test_unbounded_solutions_are_those_of_the_pseudo_inverse():
     rows, values, wide = draw.random((4, 9)), draw.random(4), np.full(9, np.inf)
     x = solve_bounded(BoundedProblem(rows, values, -wide, wide))
     np.testing.assert_allclose(x, np.linalg.pinv(rows) @ values, atol=1e-12)
-
-
-def test_independent_blocks_are_solved_separately():
-    """The solution does not depend on the order of rows and columns."""
-    draw = np.random.default_rng(2)
-    first, second = draw.random((5, 4)), draw.random((6, 3))
-    matrix = np.zeros((11, 8))  # the last column has no equation
-    matrix[:5, :4], matrix[5:, 4:7] = first, second
-    rows, columns = draw.permutation(11), draw.permutation(8)
-    values, low, high = draw.random(11), np.full(8, 0.1), np.full(8, 0.6)
-    found = solve_bounded(BoundedProblem(matrix[np.ix_(rows, columns)], values[rows], low, high))
-    expected = [
-        lsq_linear(block, part, (0.1, 0.6), method="bvls").x
-        for block, part in ((first, values[:5]), (second, values[5:]))
-    ]
-    np.testing.assert_allclose(found, np.append(np.concatenate(expected), 0.1)[columns], atol=1e-9)
 
 
 def of_light(metamers, samples, rgb, **settings):

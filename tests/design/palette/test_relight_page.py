@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import base64
-import dataclasses
-import html
 import json
 import re
 import zlib
@@ -144,16 +142,6 @@ def test_the_page_is_self_contained_and_reproducible(view):
     text = page(view)
     assert not re.search(r"""(?:src|href)=["'](?!#)|url\(|@import|https?://(?!www\.w3\.org/2000/svg)""", text)
     assert page(arbitrary()) == text
-
-
-def test_names_cannot_break_the_page():
-    name = "</script><b>&\"'"
-    view = arbitrary(title=name)
-    view = dataclasses.replace(view, materials=(name, "a", "b", "c"), lights=(name, "d", "e"))
-    text = page(view)
-    assert text.count("</script>") == page(arbitrary()).count("</script>")
-    assert name not in text.replace(html.escape(name), "")
-    assert json.loads(script(text, "numbers"))["lights"][0] == name
 
 
 def test_the_picture_agrees_with_full_spectra(model, sensor, small_cube):

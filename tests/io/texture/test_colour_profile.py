@@ -12,7 +12,7 @@ from PIL import Image, ImageCms
 
 from tests.helpers import raises
 from tests.io.texture.conftest import WAVELENGTHS, planes, read_channels, write_exr
-from uplift.colorimetry import delta_e_2000, lab, observer
+from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.common.errors import OptionError
 from uplift.io import texture
@@ -172,7 +172,8 @@ def test_encoded_spaces_of_opencolorio_decode_floats(small_cube, tmp_path):
         convert(linear, tmp_path / "a.exr")
 
 
-def test_images_without_a_statement_are_srgb_codes_or_floats_of_the_cube(wide, tmp_path):
+def test_images_without_a_statement_are_srgb_codes_or_floats_of_the_cube(tmp_path):
+    wide = texture.prepare(build(dim=5, space="AP1"), texture.Spectrum(WAVELENGTHS), depth="float", threads=1)
     rgb, spaces, codes = convert(wide, save(tmp_path / "a.png", None, CODES))
     expected = conversion(SRGB, observer.primaries("ACEScg")) @ colour.models.eotf_sRGB(CODES / 255)
     assert (spaces, codes) == (("sRGB",), ("colour-space-assumed",))
@@ -180,32 +181,6 @@ def test_images_without_a_statement_are_srgb_codes_or_floats_of_the_cube(wide, t
     rgb, spaces, codes = convert(wide, exr(tmp_path / "b.exr", [0.3, 0.4, 0.2]))
     assert (spaces, codes) == ((), ("colour-space-assumed",))
     np.testing.assert_allclose(rgb, [0.3, 0.4, 0.2], rtol=0, atol=1e-7)
-
-
-@pytest.fixture(scope="module")
-def wide():
-    """Uplifter of an ACEScg cube."""
-    return texture.prepare(build(dim=5, space="AP1"), texture.Spectrum(WAVELENGTHS), depth="float", threads=1)
-
-
-def test_an_acescg_image_and_its_srgb_twin_give_the_same_spectra(wide, spectral, tmp_path):
-    codes = np.random.default_rng(0).integers(5, 251, (12, 10, 3), dtype=np.uint8)
-    linear = colour.models.eotf_sRGB(codes / 255)
-    Image.fromarray(codes).save(tmp_path / "srgb.png", icc_profile=SRGB_PROFILES["by lcms"])
-    to_ap1 = conversion(SRGB, observer.primaries("ACEScg"))
-    write_exr(tmp_path / "ap1.exr", planes((linear @ to_ap1.T).astype(np.float32)), chromaticities=AP1)
-    places = np.searchsorted(observer.grid(), WAVELENGTHS)
-    lights = [observer.light(name).xyz[:, places] for name in ("D65", "A", "FL11")]
-    for uplifter in (spectral, wide):
-        found = []
-        for name in ("srgb.png", "ap1.exr"):
-            done = texture.convert(uplifter, tmp_path / name, tmp_path / "out.exr", force=True)
-            assert {warning.code for warning in done.warnings} <= {"pixels-unrealisable"}
-            found.append(read_channels(done.target, uplifter.channels))
-        for light in lights:
-            white = light.sum(axis=1)
-            labs = (lab(each @ light.T, white) for each in found)
-            assert delta_e_2000(*labs).max() <= 0.05
 
 
 def test_corrupt_profiles_do_not_raise():

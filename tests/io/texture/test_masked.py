@@ -10,7 +10,7 @@ import uplift
 from tests.helpers import raises
 from uplift.common.errors import OptionError, TextureError
 from uplift.io import texture
-from uplift.models import evaluate, reflectance
+from uplift.models import evaluate
 
 from .conftest import WAVELENGTHS, read_channels, write_exr
 
@@ -91,31 +91,18 @@ def test_colours_are_weights_of_three_cubes(converted, cubes, colours, tmp_path)
     np.testing.assert_allclose(found, expected, atol=3e-6)
 
 
-def test_moments_mix_as_reflectances_do(converted, cubes, colours, tmp_path):
+def test_moments_and_multipliers_mix_as_reflectances_do(converted, cubes, colours, tmp_path, sensor):
     mask = png(tmp_path / "mask.png", np.tile(np.uint8([0, 128, 255]), (SHAPE[0], 10)))
-    found = converted(cubes[:2], mask, texture.Moments())
-    parts = [cube.coefficients(colours.reshape(-1, 3)).reshape(*SHAPE, -1) for cube in cubes[:2]]
+    found, model = converted(cubes[:2], mask, texture.Moments()), cubes[0].data.model
+    parts = [cube.coefficients(colours.reshape(-1, 3)).reshape(*SHAPE, -1)[:, 1::3] for cube in cubes[:2]]
     share = 128 / 255
-    np.testing.assert_allclose(found[:, 1::3], (1 - share) * parts[0][:, 1::3] + share * parts[1][:, 1::3], atol=1e-5)
-    values = reflectance(cubes[0].data.model, found[:, 1::3].reshape(-1, 9).astype(float), WAVELENGTHS)
-    assert values.min() >= 0
-    assert values.max() <= 1
-
-
-def test_multipliers_mix_as_moments_and_stay_exact(converted, cubes, colours, tmp_path, sensor):
-    mask = png(tmp_path / "mask.png", np.tile(np.uint8([0, 128, 255]), (SHAPE[0], 10)))
+    np.testing.assert_allclose(found[:, 1::3], (1 - share) * parts[0] + share * parts[1], atol=1e-5)
+    # Multipliers are exact in colour, and those of one cube where the mask is black.
     found = converted(cubes[:2], mask, texture.Multipliers()).astype(float)
-    model = cubes[0].data.model
-    got = evaluate(model, found.reshape(-1, 9), sensor.wavelengths)
-    np.testing.assert_allclose(sensor.rgb(got).reshape(*SHAPE, 3), colours, atol=2e-4)
-    alone = prepared(cubes[:2], mask, texture.Multipliers()).uplifters[0].sample(colours[:, ::3])
+    spectrum = evaluate(model, found.reshape(-1, 9), sensor.wavelengths)
+    np.testing.assert_allclose(sensor.rgb(spectrum).reshape(*SHAPE, 3), colours, atol=2e-4)
+    alone = texture.prepare(cubes[0], texture.Multipliers(), threads=1).sample(colours[:, ::3])
     np.testing.assert_array_equal(found[:, ::3], alone)
-
-
-def float_mask(value):
-    weights = np.full(SHAPE, 0.5, np.float32)
-    weights[3, 4] = value
-    return weights
 
 
 @pytest.mark.parametrize(
@@ -126,7 +113,7 @@ def float_mask(value):
         (np.full(SHAPE, 255, np.uint8), 3),
         (np.zeros((*SHAPE, 3), np.uint8) + np.uint8([1, 0, 0]), 2),
         (np.eye(20, 30, dtype=np.uint8)[..., None] * np.uint8([9, 0, 0]), 3),  # black pixels
-        *((float_mask(value), 2) for value in (np.nan, -0.1, 1.1, np.inf)),
+        *((np.full(SHAPE, value, np.float32), 2) for value in (np.nan, -0.1, 1.1, np.inf)),
     ],
 )
 def test_masks_that_do_not_fit_are_refused(image, cubes, tmp_path, values, count):

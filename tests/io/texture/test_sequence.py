@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 from concurrent.futures.process import BrokenProcessPool
@@ -16,52 +17,38 @@ from uplift.common.errors import OptionError, OutputError, TextureError
 from uplift.io import texture
 from uplift.io.texture.sequence import run
 
-CUBE = "moments-8-macbeth.uplift"
-
 
 @pytest.fixture
-def sequence_settings(repository):
-    return texture.TextureSettings((str(repository / "cubes" / CUBE),), texture.Moments(), threads=1)
-
-
-@pytest.fixture
-def jobs(sequence_settings, colours, tmp_path):
+def jobs(repository, colours, tmp_path):
     """Jobs for three frames, the second damaged."""
+    cube = str(repository / "cubes" / "moments-8-macbeth.uplift")
+    settings = texture.TextureSettings((cube,), texture.Moments(), threads=1)
     (tmp_path / "out").mkdir()
-    for frame in range(3):
-        write_exr(tmp_path / f"shot.{frame}.exr", planes(np.roll(colours, frame, axis=0)))
-    (tmp_path / "shot.1.exr").write_text("no image")
-    return [
-        texture.Job(sequence_settings, tmp_path / f"shot.{frame}.exr", tmp_path / "out" / f"shot.{frame}.exr")
-        for frame in range(3)
-    ]
+    names = [f"shot.{frame}.exr" for frame in range(3)]
+    for frame, name in enumerate(names):
+        write_exr(tmp_path / name, planes(np.roll(colours, frame, axis=0)))
+    (tmp_path / names[1]).write_text("no image")
+    return [texture.Job(settings, tmp_path / name, tmp_path / "out" / name) for name in names]
 
 
-def check(jobs, results, small_cube, colours):
-    by_name = {result.source.name: result for result in results}
-    assert set(by_name) == {job.source.name for job in jobs}
-    bad = by_name["shot.1.exr"]
-    assert isinstance(bad, texture.Failure)
-    assert bad.error.code == "unreadable-image"
-    assert bad.error.path == jobs[1].source
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("workers", [1, 2, "dask"])
+def test_processes_and_a_dask_cluster(workers, jobs, small_cube, colours):
+    with contextlib.ExitStack() as stack:
+        options = {"processes": workers}
+        if workers == "dask":
+            settings = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+            cluster = pytest.importorskip("distributed").LocalCluster(**settings)
+            options = {"scheduler": stack.enter_context(cluster).scheduler_address}
+        results = sorted(texture.convert_all(jobs, **options), key=lambda result: result.source)
+    assert [result.source for result in results] == [job.source for job in jobs]
+    assert isinstance(results[1], texture.Failure)
+    assert (results[1].error.code, results[1].error.path) == ("unreadable-image", jobs[1].source)
     assert not jobs[1].target.exists()
     names = [f"moment.{index:02}" for index in range(9)]
     for frame in (0, 2):
         expected = small_cube.coefficients(np.roll(colours, frame, axis=0))
         np.testing.assert_allclose(read_channels(jobs[frame].target, names), expected, rtol=0, atol=1e-6)
-
-
-@pytest.mark.parametrize("count", [1, 2])
-def test_processes(count, jobs, small_cube, colours):
-    check(jobs, texture.convert_all(jobs, processes=count), small_cube, colours)
-
-
-@pytest.mark.filterwarnings("ignore")
-def test_a_dask_cluster(jobs, small_cube, colours):
-    distributed = pytest.importorskip("distributed")
-    options = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
-    with distributed.LocalCluster(**options) as local:
-        check(jobs, texture.convert_all(jobs, scheduler=local.scheduler_address), small_cube, colours)
 
 
 @pytest.mark.filterwarnings("ignore")
