@@ -1,4 +1,4 @@
-"""Images as textures: position, filtering and decoding of texels, in scalar and JIT variants."""
+"""Images and spectral textures in Mitsuba: texels in scalar and JIT variants, and the spectra of models."""
 
 from __future__ import annotations
 
@@ -9,11 +9,15 @@ import sys
 import numpy as np
 import pytest
 
-from tests.helpers import warns
+from tests.helpers import raises, warns
 from tests.io.texture.conftest import planes, write_exr
 from tests.parts import LLVM, need
 from uplift.colorimetry.gamut import map_to_gamut
+from uplift.common.errors import TextureError
 from uplift.io import texture as textures
+from uplift.io.mitsuba.texture import blend
+from uplift.io.mitsuba.texture_file import multipliers_of_rounded, read_texels
+from uplift.models import Moments, Phase, Sigmoid, evaluate
 
 pytestmark = pytest.mark.filterwarnings("ignore:the texture calls Python:uplift.UpliftWarning")
 
@@ -177,3 +181,102 @@ def _textures(cube, folder):
         target = folder / f"{name}.exr"
         textures.convert(textures.prepare(cube, encoding), source, target)
         yield {"filename": str(target)}
+
+
+# Two of them lie beyond the samples, and none halfway between samples that differ much.
+WAVELENGTHS = np.array([362.5, 402.5, 555, 650, 823])
+
+
+def flat(value, *wavelengths):
+    return {f"T.{at},000000nm": np.full((2, 2), value, np.float32) for at in wavelengths}
+
+
+@pytest.mark.parametrize(
+    ("encoding", "mode", "within"),
+    [
+        (textures.Spectrum(), "spectra", 1e-3),
+        (textures.Moments(), "moments", 1e-4),
+        (textures.Multipliers(), "refined", 1e-5),
+    ],
+    ids=["spectrum", "moments", "multipliers"],
+)
+def test_a_texture_has_the_spectra_of_the_cube(mi, spectrum, small_cube, tmp_path, encoding, mode, within):
+    write_exr(tmp_path / "image.exr", planes(IMAGE))
+    uplifter = textures.prepare(small_cube, encoding, depth="float")
+    textures.convert(uplifter, tmp_path / "image.exr", tmp_path / "texture.exr")
+    found = mi.load_dict({"type": "uplift", "filename": str(tmp_path / "texture.exr"), "filter_type": "nearest"})
+    expected = small_cube.reflectance(IMAGE[2, 1], WAVELENGTHS, mode=mode)
+    np.testing.assert_allclose(spectrum(found, (0.4, 0.9), WAVELENGTHS), expected, rtol=0, atol=within)
+
+
+def test_a_cube_is_not_accepted_with_a_texture(mi, cube_path, tmp_path):
+    write_exr(tmp_path / "texture.exr", flat(1, 400, 500))
+    with pytest.raises(RuntimeError, match="unreferenced"):
+        mi.load_dict({"type": "uplift", "filename": str(tmp_path / "texture.exr"), "cube": cube_path})
+
+
+def test_images_of_colours_are_not_textures(tmp_path):
+    write_exr(tmp_path / "image.exr", planes(IMAGE))
+    (tmp_path / "image.png").write_bytes(b"\x89PNG")
+    for name in ("image.exr", "image.png", "missing.exr"):
+        assert read_texels(tmp_path / name) is None
+
+
+MODEL = {"uplift.model": json.dumps(Moments(9).describe())}
+GREY = {f"moment.{order:02}": np.full((2, 2), 0.5 * (order == 0), np.float32) for order in range(9)}
+
+
+@pytest.mark.parametrize(
+    ("channels", "header"),
+    [
+        (flat(1, 400, 500, 700), {}),
+        (flat(1, 400), {}),
+        (flat(np.nan, 400, 500), {}),
+        (GREY, {}),
+        (GREY, {"uplift.model": "{"}),
+        (GREY, {"uplift.model": json.dumps(Moments(8).describe())}),
+        ({**GREY, "moment.01": np.full((2, 2), 0.6, np.float32)}, MODEL),
+        (None, MODEL),
+    ],
+)
+def test_invalid_textures_raise(tmp_path, channels, header):
+    path = write_exr(tmp_path / "texture.exr", GREY if channels is None else channels, **header)
+    if channels is None:
+        path.write_bytes(path.read_bytes()[:-20])
+    with raises(TextureError):
+        read_texels(path)
+
+
+def test_moments_that_rounding_moved_outside_return():
+    """A box-shaped spectrum, rounded to half precision."""
+    model = Moments(9)
+    moments = model.to_storage([[0, 3e4, 0, -1e4, 0, 0, 0, 0, 0]])
+    rounded = moments.astype(np.float16).astype(float)
+    assert not model.try_from_storage(rounded)[1].all()
+    multipliers, valid = multipliers_of_rounded(model, rounded)
+    assert valid.all()
+    np.testing.assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=0.01)
+
+
+SAMPLED = [340.0, 401.5, 555.0, 820.0]
+MODELS = [Moments(9), Moments(3), Moments(17, Phase(400, 700, "vision")), Sigmoid(), Sigmoid(400, 700)]
+
+
+@pytest.mark.parametrize("model", MODELS, ids=str)
+def test_blend_is_the_weighted_sum(mi, model):
+    multipliers = np.random.default_rng(2).normal(size=(3, model.count))
+    weights = [0.5, 0.2, 0.3]
+    found = blend(model, multipliers.tolist(), weights, mi.Spectrum(*SAMPLED))
+    expected = weights @ evaluate(model, multipliers, SAMPLED)
+    np.testing.assert_allclose(np.array(found), expected, rtol=0, atol=1e-5)
+
+
+def test_the_arc_tangent_is_a_polynomial_of_its_cosine(mi):
+    """Reflectances stay in [0, 1] however large the linear part is."""
+    large = np.logspace(-6, 8, 500)
+    linear, model = np.concatenate([-large, large]), Moments(9)
+    flat = [[x, *[0.0] * 8] for x in linear.tolist()]
+    found = np.array([blend(model, [each], [1.0], mi.Spectrum(500.0))[0] for each in flat])
+    np.testing.assert_allclose(found, 0.5 + np.arctan(linear) / np.pi, rtol=0, atol=1e-6)
+    assert found.min() >= 0
+    assert found.max() <= 1
