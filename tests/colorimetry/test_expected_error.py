@@ -44,7 +44,7 @@ def test_errors_of_any_tail_are_covered(tail):
     expected = np.sqrt(learnt(queried)[:, 0])
     assert (unknown <= learnt.radii.standard * expected).mean() == pytest.approx(0.68, abs=0.04)
     assert (unknown <= learnt.radii.bound * expected).mean() == pytest.approx(0.95, abs=0.02)
-    assert (learnt.radii.ratio > 2.5) == (tail == 3)
+    assert (learnt.radii.bound > 2.5 * learnt.radii.standard) == (tail == 3)
 
 
 def test_what_remains_at_the_entries_is_not_counted_twice():
@@ -67,7 +67,7 @@ def test_errors_are_weighted_sums(monkeypatch):
     """Against plain sums at colours, in blocks, and for each entry without itself."""
     queried = np.random.default_rng(6).uniform(-20, 60, (40, 3))
     learnt = expected_error(PLACES, np.arange(1.0, 13), np.zeros(12))
-    squares = learnt.squares[:, 0]
+    squares = learnt.columns[:, 0]
 
     def plain(weights):
         spread = (weights @ squares + PRIOR_COUNT * squares.mean()) / (weights.sum(axis=1) + PRIOR_COUNT)
@@ -98,7 +98,7 @@ def test_radii_of_few_entries_are_nearly_those_of_normal_errors():
     few = expected_error(PLACES[:1], np.ones(1), np.zeros(1)).radii
     assert few == pytest.approx((1, 2), rel=0.1)
     assert expected_error(PLACES, np.zeros(12), np.zeros(12)).radii == (1, 2)
-    assert (few.ratio, few.scale) == (few.bound / few.standard, pytest.approx(1, rel=0.1))
+    assert few.scale == pytest.approx(1, rel=0.1)
 
 
 def test_nearly_all_entries_are_within_the_familiar_distance():

@@ -38,11 +38,6 @@ class Radii(NamedTuple):
     """Radius of the error bound: 95 % of materials."""
 
     @property
-    def ratio(self) -> float:
-        """Error bound in standard errors."""
-        return self.bound / self.standard
-
-    @property
     def scale(self) -> float:
         """Factor of the normal distribution that fits both radii."""
         return float(np.sqrt((self.standard**2 + (self.bound / COVERAGE[1][1]) ** 2) / 2))
@@ -54,8 +49,8 @@ class ExpectedError:
 
     locations: Array
     """(E, 3) CIE L*a*b* of the entries."""
-    squares: Array
-    """(E, K) Squares or products of the errors of each entry when left out, per unit of variance."""
+    columns: Array
+    """(E, K + 1) Squares or products of the errors of each entry when left out, per unit of variance, and 1."""
     floor: Array
     """(K,) Squares or products that remain at the entries themselves."""
     left_out: Array
@@ -63,25 +58,20 @@ class ExpectedError:
     radii: Radii
     """Radii in roots of the expected squares."""
 
-    @property
-    def columns(self) -> Array:
-        """(E, K + 1) numbers whose weighted sums around a colour `combine` needs."""
-        return np.concatenate([self.squares, np.ones((len(self.squares), 1))], axis=1)
-
     def combine(self, sums: Array, nearest: Array) -> Array:
         """Squares (n, K) less `floor` from weighted sums (n, K + 1) of `columns`, and the largest weights (n,)."""
         # v(x) (Σ k e² + n₀ mean e²) / (Σ k + n₀), with v = 1 − k² of the nearest entry
-        spread = (sums[:, :-1] + PRIOR_COUNT * self.squares.mean(axis=0)) / (sums[:, -1:] + PRIOR_COUNT)
+        spread = (sums[:, :-1] + PRIOR_COUNT * self.columns[:, :-1].mean(axis=0)) / (sums[:, -1:] + PRIOR_COUNT)
         return (1 - nearest[:, None] ** 2) * spread
 
     def __call__(self, lab: Array) -> Array:
         """Expected squares (n, K) less `floor` at L*a*b* (n, 3)."""
-        columns, found = self.columns, np.empty((len(lab), self.squares.shape[1]))
+        found = np.empty((len(lab), len(self.floor)))
         rows = max(BLOCK_NUMBERS // len(self.locations), 1)
         for first in range(0, len(lab), rows):
             part = slice(first, first + rows)
             weights = np.exp(_distances(lab[part], self.locations) / -LENGTH)
-            found[part] = self.combine(weights @ columns, weights.max(axis=1))
+            found[part] = self.combine(weights @ self.columns, weights.max(axis=1))
         return found
 
 
@@ -112,7 +102,8 @@ def expected_products(
 
     roots = np.sqrt(expected(left_out**2 * share, floor))
     radii = Radii(*learn_radii(left_out / np.maximum(roots, TINY), COVERAGE))
-    return ExpectedError(locations, products, product_floor, expected(products, product_floor), radii)
+    columns = np.concatenate([products, np.ones((len(products), 1))], axis=1)
+    return ExpectedError(locations, columns, product_floor, expected(products, product_floor), radii)
 
 
 def mahalanobis(covariance: Array, difference: Array) -> Array:

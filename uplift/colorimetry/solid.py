@@ -21,63 +21,26 @@ BLOCK = 1 << 6
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """Convex polyhedron of the colours x with ``normals @ x <= offsets``.
-
-    Parameters
-    ----------
-    normals : ndarray, shape (F, 3)
-        Outward unit normals of the facets.
-    offsets : ndarray, shape (F,)
-        Distances of the facets from the origin.
-    """
+    """Convex polyhedron of the colours x with ``normals @ x <= offsets``."""
 
     normals: Array
+    """(F, 3) Outward unit normals of the facets."""
     offsets: Array
+    """(F,) Distances of the facets from the origin."""
 
     def signed_distance(self, rgb: Array) -> Array:
-        """Compute the largest signed distance of colours from the facets.
-
-        Parameters
-        ----------
-        rgb : ndarray, shape (n, 3)
-            Linear RGB.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-            Positive outside the solid, not positive inside.
-        """
+        """Compute the largest signed distance (n,) of linear RGB (n, 3) from the facets: positive outside the solid."""
         blocks = [rgb[first : first + BLOCK] for first in range(0, len(rgb), BLOCK)]
         return np.concatenate([np.zeros(0), *((block @ self.normals.T - self.offsets).max(axis=1) for block in blocks)])
 
     def contains(self, rgb: Array) -> Mask:
-        """Test whether a reflectance with each colour exists.
-
-        Parameters
-        ----------
-        rgb : ndarray, shape (n, 3)
-            Linear RGB.
-
-        Returns
-        -------
-        ndarray of bool, shape (n,)
-        """
+        """Test whether (n,) a reflectance with each linear RGB (n, 3) exists."""
         return np.asarray(self.signed_distance(rgb) <= SLACK)
 
     def ray_fraction(self, origin: Array, target: Array) -> Array:
-        """Compute the fraction of each segment from ``origin`` to ``target`` that lies inside the solid.
+        """Compute the fraction (n,) of each segment from ``origin``, inside, to ``target`` that lies inside the solid.
 
-        Parameters
-        ----------
-        origin : ndarray, shape (n, 3)
-            Linear RGB inside the solid.
-        target : ndarray, shape (n, 3)
-            Linear RGB anywhere.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-            Fractions in [0, 1].
+        Shapes: ``origin``, ``target`` (n, 3).
         """
         fractions = [np.zeros(0)]
         for first in range(0, len(target), BLOCK):

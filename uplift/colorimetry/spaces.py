@@ -5,11 +5,10 @@ Names of OpenColorIO are those of the configuration in ``$OCIO``, and of the bui
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import os
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -171,15 +170,22 @@ def primaries_of(space: Any) -> Primaries:
 def find_ocio_space(name: str, *, built_in: bool = True) -> OcioSpace | None:
     """Find a colour space of OpenColorIO by name, alias or role."""
     for place in filter(None, (os.environ.get(VARIABLE), BUILT_IN if built_in else None)):
-        config = _configuration(place)
-        space = config.getColorSpace(name) if name.isprintable() else None
-        if space is not None and not space.isData():
-            import PyOpenColorIO
+        import PyOpenColorIO
 
-            with _usable(place):
-                processor = PyOpenColorIO.Config.GetProcessorToBuiltinColorSpace(config, space.getName(), REFERENCE)
-                cpu = processor.getOptimizedCPUProcessor(PyOpenColorIO.OPTIMIZATION_LOSSLESS)
-            return OcioSpace(space.getName(), space.getEncoding() == "scene-linear", cpu)
+        try:
+            config = _configuration(place)
+            space = config.getColorSpace(name) if name.isprintable() else None
+            if space is None or space.isData():
+                continue
+            processor = PyOpenColorIO.Config.GetProcessorToBuiltinColorSpace(config, space.getName(), REFERENCE)
+            cpu = processor.getOptimizedCPUProcessor(PyOpenColorIO.OPTIMIZATION_LOSSLESS)
+        except PyOpenColorIO.Exception as error:
+            raise OptionError(
+                f"the configuration of OpenColorIO cannot be used: {' '.join(str(error).split())}",
+                path=place,
+                hint="correct the environment variable OCIO, or unset it to use the built-in configuration",
+            ) from error
+        return OcioSpace(space.getName(), space.getEncoding() == "scene-linear", cpu)
     return None
 
 
@@ -187,21 +193,4 @@ def find_ocio_space(name: str, *, built_in: bool = True) -> OcioSpace | None:
 def _configuration(place: str) -> Any:
     import PyOpenColorIO
 
-    with _usable(place):
-        return PyOpenColorIO.Config.CreateFromFile(place)
-
-
-@contextlib.contextmanager
-def _usable(place: str) -> Iterator[None]:
-    """Translate the exceptions of OpenColorIO to `OptionError`."""
-    import PyOpenColorIO
-
-    try:
-        yield
-    except PyOpenColorIO.Exception as error:
-        reason = " ".join(str(error).split())
-        raise OptionError(
-            f"the configuration of OpenColorIO cannot be used: {reason}",
-            path=place,
-            hint="correct the environment variable OCIO, or unset it to use the built-in configuration",
-        ) from error
+    return PyOpenColorIO.Config.CreateFromFile(place)

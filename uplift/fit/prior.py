@@ -59,7 +59,7 @@ class Prior:
 
     def describe(self) -> dict[str, float]:
         """Return the learnt parameters of the kriging, for the provenance of cubes; empty without an atlas."""
-        bound = {} if self.errors is None else {"error_bound": self.errors.radii.ratio}
+        bound = {} if self.errors is None else {"error_bound": self.errors.radii.bound / self.errors.radii.standard}
         return {} if self.kriging is None else asdict(self.kriging.kernel) | bound
 
     def standard_error(self, rgb: Array) -> Array | None:
