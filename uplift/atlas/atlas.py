@@ -215,6 +215,7 @@ class Atlas:
     sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
+        # The first entry of each name; the second one is refused with the place of the first.
         named: dict[str, Entry] = {}
         for entry in self.entries:
             first = named.setdefault(entry.name, entry)

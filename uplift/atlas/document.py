@@ -77,6 +77,7 @@ class Document:
     def text(self) -> str:
         """The content as text with LF line ends: UTF-16, UTF-8, or else Latin-1. Raises `AtlasError` for others."""
         data, encoding, hint = self.data, _utf_16(self.data), "save the atlas as UTF-8 text"
+        # Every sequence of bytes is valid Latin-1, so this is the last encoding that is tried.
         try:
             text = data.decode(encoding or "utf-8-sig")
         except UnicodeDecodeError:
@@ -134,6 +135,7 @@ def _utf_16(data: bytes) -> str | None:
     """Return the name of the UTF-16 encoding of data with a byte-order mark, or whose first letters are ASCII."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return "utf-16"
+    # One byte of every ASCII character in UTF-16 is 0: the first one if the order of bytes is big-endian.
     even, odd = data[:UTF_16_START:2], data[1:UTF_16_START:2]
     if len(data) < UTF_16_START or len(data) % 2 or any(even) == any(odd) or not (all(even) or all(odd)):
         return None

@@ -74,6 +74,7 @@ def to_atlas(document: Document, measurements: Measurements, format_name: str, m
     """Validate the spectra of a file: turn descending ones round, and scale all of them by one number."""
     rows = [np.asarray(spectrum.values, dtype=float) for spectrum in measurements.spectra]
     scale, scale_note = _scale(document.location, measurements, rows, measured)
+    # One scale for all spectra: a dark one alone does not show whether it is in percent.
     entries, notes, descending = list[Entry](), list(measurements.notes), 0
     for spectrum, values in zip(measurements.spectra, rows, strict=True):
         nm, scaled = np.asarray(spectrum.wavelengths, dtype=float), values / scale
@@ -152,6 +153,7 @@ def _check_one_scale(
 ) -> None:
     """Raise `AtlasError` for a row in units of 1 among rows in percent, or the reverse, or within one row."""
     problem, odd = "", 0
+    # A row that never exceeds 1, where others are in percent, is in units of 1, or the reverse; the minority is named.
     dark = [row for row, top in enumerate(highest) if top <= DARKEST]
     if dark:
         light = [row for row, top in enumerate(highest) if top > HIGHEST]

@@ -121,9 +121,11 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
     grid = np.asarray(wavelengths, dtype=np.float64)
     raw, clips = np.empty((len(atlas), len(grid))), []
     for row, entry in zip(raw, atlas, strict=True):
+        # Slopes are harmonic means of those of the neighbouring intervals, 0 at extremes (Fritsch & Carlson 1980).
         with np.errstate(over="ignore"):  # harmonic means of slopes near 0
             curve = PchipInterpolator(entry.wavelengths, entry.values)
         row[:] = curve(np.clip(grid, entry.wavelengths[0], entry.wavelengths[-1]))
+        # Distance from [0, 1]: x − 1 above, −x below
         excess = np.maximum(row - 1.0, -row)
         if excess.max(initial=0) > NOISE:
             worst = int(excess.argmax())

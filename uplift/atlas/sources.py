@@ -157,6 +157,7 @@ def from_distributions(distributions: Any) -> Atlas:
         else:
             samples += [(str(label), nm, column) for label, column in zip(labels, np.transpose(values), strict=True)]
     entries = tuple(Entry(*each) for each in samples)
+    # The digest is that of the file that `write_atlas` writes.
     digest = hashlib.sha256(art.text(Atlas(entries), Header()).encode()).hexdigest()
     return Atlas(entries, sources=(Source("distributions", digest),))
 
@@ -236,6 +237,7 @@ def find_atlas_file(path: StrPath, folder: StrPath = "") -> StrPath:
     file = os.path.join(folder, path)
     if os.path.lexists(file) and not os.path.isdir(file):
         return file
+    # No file: the name of a shipped atlas, or else one that is spelt alike.
     stem = name.removesuffix(".txt")
     if stem in paths:
         if stem != name:

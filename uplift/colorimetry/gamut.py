@@ -13,8 +13,7 @@ nearly straight. L is 0 for black and 1 for white, a and b are 0 for grey.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
 from typing import NoReturn, Protocol
 
 import numpy as np
@@ -95,13 +94,23 @@ class Primaries:
     green: Chromaticity
     blue: Chromaticity
     white: Chromaticity
+    lengths: Array = field(init=False, repr=False, compare=False)
+    """X + Y + Z of each primary at full power: ρ, γ and β of equation 4.5; shape (3,)."""
+    rgb_to_xyz: Array = field(init=False, repr=False, compare=False)
+    """Matrix from linear RGB to XYZ; white has Y = 1; shape (3, 3)."""
 
     def __post_init__(self) -> None:
+        # Equation 4.4: the columns are the chromaticities (x, y, 1 − x − y) times their lengths, and add up to white.
+        *columns, white = np.array([[x, y, 1 - x - y] for x, y in (self.red, self.green, self.blue, self.white)])
         with np.errstate(all="ignore"):
-            regular = abs(np.linalg.det(self._columns)) > 1e-6  # False for NaN
-            if not (regular and (self.lengths > 0).all() and np.isfinite(self.lengths).all()):
+            matrix = np.array(columns).T
+            regular = abs(np.linalg.det(matrix)) > 1e-6  # False for NaN
+            lengths = np.linalg.solve(matrix, white / white[1]) if regular else np.zeros(3)
+            if not ((lengths > 0) & np.isfinite(lengths)).all():
                 problem = f"primaries must span a triangle with the white inside, got ({self})"
                 raise OptionError(problem, code="invalid-primaries", hint=PRIMARIES)
+        object.__setattr__(self, "lengths", lengths)
+        object.__setattr__(self, "rgb_to_xyz", matrix * lengths)
 
     @classmethod
     def of(cls, numbers: Sequence[float]) -> Primaries:
@@ -129,23 +138,6 @@ class Primaries:
 
     def __str__(self) -> str:
         return " ".join(f"{x:g},{y:g}" for x, y in (self.red, self.green, self.blue, self.white))
-
-    @cached_property
-    def rgb_to_xyz(self) -> Array:
-        """Matrix from linear RGB to XYZ; white has Y = 1; shape (3, 3)."""
-        # Equation 4.4: the columns are the chromaticities (x, y, 1 − x − y), times their lengths.
-        return self._columns * self.lengths
-
-    @cached_property
-    def lengths(self) -> Array:
-        """X + Y + Z of each primary at full power: ρ, γ and β of equation 4.5; shape (3,)."""
-        x, y = self.white
-        white = np.array([x, y, 1 - x - y]) / y if y else np.full(3, np.nan)
-        return np.asarray(np.linalg.solve(self._columns, white))
-
-    @property
-    def _columns(self) -> Array:
-        return np.array([[x, y, 1 - x - y] for x, y in (self.red, self.green, self.blue)]).T
 
 
 SRGB = Primaries((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), (0.3127, 0.3290))
@@ -353,9 +345,9 @@ def as_rgb(rgb: ArrayLike) -> Values:
     try:
         array: Values = np.asarray(rgb) if is_single else np.asarray(rgb, dtype=float)
     except (TypeError, ValueError) as error:
-        raise ColourError("a colour is three numbers", code="rgb-not-numeric") from error
+        raise ColourError("a colour is three numbers", code="invalid-colour") from error
     if array.ndim == 0 or array.shape[-1] != 3:
-        raise ColourError(f"a colour is three numbers, got an array of shape {array.shape}", code="rgb-wrong-shape")
+        raise ColourError(f"a colour is three numbers, got an array of shape {array.shape}", code="invalid-colour")
     return array
 
 

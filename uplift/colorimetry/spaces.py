@@ -29,15 +29,9 @@ REFERENCE = "ACES2065-1"
 AP0 = Primaries((0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.077), (0.32168, 0.33767))
 """Primaries of the reference (SMPTE ST 2065-1)."""
 SHORT_NAMES = {
-    "ap0": "ACES2065-1",
-    "ap1": "ACEScg",
-    "rec709": "ITU-R BT.709",
-    "bt709": "ITU-R BT.709",
-    "rec2020": "ITU-R BT.2020",
-    "bt2020": "ITU-R BT.2020",
-    "p3": "Display P3",
-    "prophoto": "ProPhoto RGB",
-}
+    "ap0": "ACES2065-1", "ap1": "ACEScg", "p3": "Display P3", "prophoto": "ProPhoto RGB",
+    "rec709": "ITU-R BT.709", "bt709": "ITU-R BT.709", "rec2020": "ITU-R BT.2020", "bt2020": "ITU-R BT.2020",
+}  # fmt: skip
 """Names of colour-science by usual short ones, in lower case and without punctuation."""
 FIRST_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "Adobe RGB (1998)")
 """Spaces of colour-science that stand for others with the same primaries."""

@@ -111,6 +111,7 @@ def read(document: Document) -> Atlas:
     if not starts:
         hint = "add entries, each beginning with a line 'Entry ID: …'"
         raise document.location.at(len(document.lines)).error("an archive needs at least one entry", hint)
+    # An entry ends where the next one begins.
     entries = [
         _read_entry(document, lines[start:end]) for start, end in zip(starts, [*starts[1:], len(lines)], strict=True)
     ]
@@ -168,6 +169,7 @@ def _read_entry(document: Document, lines: list[Line]) -> Entry | SkippedEntry:
     for title in TITLES:
         if title.lower() not in keys:
             raise location.at(lines[-1].number).error(f"the section '{title}' is missing", COMPLETE_ENTRY)
+    # Fields of the entry, fields of its sampling, samples
     middle, end = (keys.index(title.lower()) for title in TITLES)
     fields, sampling = _fields(lines[1:middle], location), _fields(lines[middle + 1 : end], location)
     samples, start = _sample_list(document, lines[end + 1 :], location)
@@ -207,6 +209,7 @@ def _sample_list(document: Document, lines: list[Line], location: SourceLocation
     first, last = lines[0].number, lines[-1].number
     start = location.at(first)
     text = "\n".join(document.lines[first - 1 : last]).strip()
+    # The list ends with the brace that closes the first one; only rules may follow it.
     depth = 0
     for brace in re.finditer(r"[{}]", text):
         depth += 1 if brace[0] == "{" else -1
@@ -297,6 +300,7 @@ def _entry_lines(entry: Entry) -> Iterator[str]:
         if value or name != "additional_description":
             yield field(key, value)
     yield from (TITLES[0], "-" * 20)
+    # Wavelengths that no start and step give exactly are written one by one.
     step, values = _exact_step(entry.wavelengths), entry.values.tolist()
     if step is None:
         yield field("Type", "point sampled")

@@ -91,6 +91,7 @@ def _with_exact_wavelengths(found: Measurements, keywords: dict[str, str]) -> Me
         )
     except ValueError:
         return found
+    # The labels must agree with the keywords, up to their rounding.
     labels = np.asarray(found.spectra[0].wavelengths)
     exact = np.linspace(start, end, len(labels))
     if len(labels) != bands or np.abs(exact - labels).max() > 1:

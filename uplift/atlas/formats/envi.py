@@ -29,6 +29,7 @@ def read(document: Document) -> Measurements:
         fields = envi.read_envi_header(os.fspath(header))
         if fields.get("file type") != FILE_TYPE:
             raise location.error("is an ENVI image, not a spectral library", HINT, code="not-an-atlas")
+        # The library allocates what the header states: samples are wavelengths, lines are spectra.
         count = int(fields["samples"]) * int(fields["lines"])
         if count <= 0 or count > data.stat().st_size or int(fields.get("header offset", 0)) != 0:
             problem = f"the header states {count:,} values, which the file {data.name} does not hold"

@@ -19,6 +19,7 @@ REFLECTANCES = ("", "%r", "r", "arbitrary units")
 
 def read(document: Document) -> Measurements:
     """Read the spectrum of a file, or those of the blocks of a compound file."""
+    # The library allocates what the file states.
     for count in POINTS.findall(document.text):
         if not re.fullmatch(r"\d{1,7}(\.0*)?", count) or float(count) > MAX_POINTS:
             problem = f"NPOINTS must be at most {MAX_POINTS:,}, got {truncate(count)}"
@@ -28,6 +29,7 @@ def read(document: Document) -> Measurements:
 
         content = jcamp.read(document.text.splitlines())
         blocks = content.get("children") or [content]
+    # It prints, and does not raise, that check values disagree with the data.
     if "failed" in printed.getvalue() or "Mismatch" in printed.getvalue():
         problem = f"the data contradict their check values: {truncate(printed.getvalue())}"
         raise document.location.error(problem, EXPORT)

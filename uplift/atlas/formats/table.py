@@ -147,6 +147,7 @@ def _split(document: Document, delimiter: str) -> Iterator[Row]:
     lines = list(io.StringIO(document.text, newline=""))
     reader = csv.reader(lines, delimiter=delimiter, skipinitialspace=delimiter == BLANKS)
     for cells in reader:
+        # A row of csv may span several lines; `line` is its first one.
         is_comment = lines[line - 1].lstrip().startswith("#")  # a quoted "#" is a name
         if cells and not is_comment and not (line == 1 and SEPARATOR.match(cells[0].lstrip())):
             texts = [plain_cell(cell.strip()) for cell in cells]
@@ -203,6 +204,7 @@ def _in_row(rows: Sequence[Row], location: SourceLocation, wanted: Callable[[Run
 
 def _in_column(rows: Sequence[Row], location: SourceLocation) -> Table | None:
     """Find a column of wavelengths in a block of rows of one width, and transpose the block."""
+    # Blocks of one width: the preamble often has another one.
     start = 0
     for width, group in itertools.groupby(rows, key=len):
         block = list(group)
@@ -250,6 +252,7 @@ def _runs(cells: Sequence[Cell]) -> Iterator[Run]:
 
 def _name_column(table: Table) -> int | None:
     """Return the column of the names: that of a usual label whose texts differ, or else the first one."""
+    # Labels that state a name come before those of numbers, unless they repeat a name.
     labels = {index: re.sub(r"[\s_.-]", "", table.rows[0][index].text.casefold()) for index in table.others}
     known = [index for wanted in NAME_LABELS for index, label in labels.items() if label == wanted]
     for index in known:
