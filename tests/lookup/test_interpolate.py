@@ -48,13 +48,9 @@ def test_refined_changes_the_spectrum_of_a_point_only_to_its_exact_colour(cube):
     assert (miss(cube, points, "refined") <= miss(cube, points, "moments") + 1e-12).all()
 
 
-def test_a_point_has_its_stored_coefficients(cube):
-    found = cube.coefficients(cube.data.lattice.points)
-    np.testing.assert_allclose(found, cube.data.points.coefficients, rtol=1e-15, atol=1e-15)
-
-
-def test_coefficients_are_trilinear_in_a_cell(cube):
+def test_coefficients_are_those_stored_at_a_point_and_trilinear_in_a_cell(cube):
     nodes, stored = cube.data.lattice.nodes, cube.data.points.coefficients
+    np.testing.assert_allclose(cube.coefficients(cube.data.lattice.points), stored, rtol=1e-15, atol=1e-15)
     low, high = nodes[[3, 5, 2]], nodes[[4, 6, 3]]
     fraction = np.array([0.25, 0.5, 0.9])
     expected = np.zeros(cube.data.model.count)
@@ -128,25 +124,6 @@ def test_nearest_is_the_entry_or_the_point_of_larger_weight(small_cube):
         np.abs(lattice - one).max(axis=1).min() < 1e-12
         for one in small_cube.reflectance(off, mode="nearest")[apart > 0]
     )
-
-
-def test_spectra_are_continuous_through_entry_boxes(macbeth_cube):
-    """They change at most as fast as the lattice from point to point."""
-    data, lattice = macbeth_cube.data, macbeth_cube.data.lattice
-    grid = stored_spectra(data, data.sensor.wavelengths).reshape(*(lattice.dim,) * 3, -1)
-    fastest = max(np.sqrt((np.diff(grid, axis=axis) ** 2).mean(axis=-1)).max() for axis in range(3))
-    ways = np.random.default_rng(0).uniform(-1, 1, (len(data.atlas.names), 3))
-    for middle, way in zip(lattice.to_steps(data.atlas.rgb), ways, strict=True):
-        path = middle + np.linspace(-1.5, 1.5, 301)[:, None] * way / np.abs(way).max()
-        path = path[((path >= 0) & (path < lattice.dim)).all(axis=1)]
-        found = macbeth_cube.reflectance(lattice.from_steps(path))
-        assert np.sqrt((np.diff(found, axis=0) ** 2).mean(axis=1)).max() / 0.01 <= fastest
-
-
-def test_the_standard_error_at_an_entry_is_its_error(small_cube):
-    data = small_cube.data
-    np.testing.assert_allclose(small_cube.standard_error(data.atlas.rgb), data.atlas.error, atol=1e-12)
-    assert small_cube.standard_error([[0.1, 0.9, 0.1]])[0] > data.atlas.error.mean()
 
 
 @given(rgb=arrays(float, (5, 3), elements=st.floats(0, 1)))

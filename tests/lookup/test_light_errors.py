@@ -124,6 +124,7 @@ def test_error_bounds_are_larger_than_standard_errors_except_at_entries(small_cu
 
 def test_an_entry_has_its_own_error(small_cube, sensor):
     data, light = small_cube.data, observer.light("FL11")
+    np.testing.assert_allclose(small_cube.standard_error(data.atlas.rgb), data.atlas.error, atol=1e-12)
     own = delta_e_spectra(light, small_cube.reflectance(data.atlas.rgb), data.atlas.left_out.measured)
     np.testing.assert_allclose(small_cube.standard_error(data.atlas.rgb, light), own, atol=1e-6)
 

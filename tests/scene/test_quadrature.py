@@ -16,8 +16,6 @@ from uplift.scene.quadrature import QuadratureRule, UndefinedRule, gauss_rule, i
 
 POINTS = np.arange(380.0, 771.0)
 BELL = np.exp(-(((POINTS - 560) / 40) ** 2))
-OPPONENT = (POINTS - 545) * BELL
-"""Masses of both signs."""
 
 
 def _rule(points, masses, order):
@@ -102,20 +100,11 @@ def test_interpolatory_rule_is_exact_below_its_number_of_nodes(nodes):
     assert _moment_error(rule, POINTS, BELL, len(nodes) - 1) < 1e-12
 
 
-def test_rule_is_equivariant_to_scale_and_shift():
-    rule, moved = _rule(POINTS, OPPONENT, 4), _rule(POINTS * 1e-9 - 1, OPPONENT * 1e6, 4)
-    np.testing.assert_allclose(moved.nodes, rule.nodes * 1e-9 - 1, rtol=1e-12)
-    np.testing.assert_allclose(moved.weights, rule.weights * 1e6, rtol=1e-6)
-
-
 @pytest.mark.parametrize(
     ("points", "masses", "order"),
     [
         ([1, 2, 3], [1, 1], 1),
-        ([1, 3, 2], [1, 1, 1], 1),
-        ([1, 2, 3], [0, 0, 0], 1),
         ([1, 2, 3], [1, np.nan, 1], 1),
-        ([], [], 1),
         ([1, 2, 3], [1, 1, 1], 0),
         ([1, 2, 3], [1, 0, 1], 3),
     ],

@@ -18,7 +18,7 @@ from uplift.lab.comparison.compare import make_scene
 from uplift.lab.study.moments import Technique
 from uplift.models import Sigmoid
 from uplift.models.model import evaluate
-from uplift.scene.representations import SIZES, all_representations
+from uplift.scene.representations import all_representations
 from uplift.scene.representations.composite import enhanced_riemann, fourier_coefficients, split_spikes, sun_composite
 from uplift.scene.representations.filters import Filter, resampling_matrix
 from uplift.scene.representations.models import fit_sigmoids, hero_wavelengths, linear_model, trigonometric_moments
@@ -91,18 +91,6 @@ def test_number_in_the_name_is_the_storage_of_a_smooth_spectrum(every, name):
     np.testing.assert_array_equal(stored, count**2 if name.startswith("LM") else count)
 
 
-@pytest.mark.parametrize("family", ["PS", "PF", "RS", "GQ"])
-def test_error_falls_with_size_under_smooth_light(every, checker, light_powers, family):
-    dense = (light_powers("A") * checker.surfaces) @ xyz_weights()
-    worst = []
-    for count in SIZES:
-        one = every[f"{family}{count}"]
-        actual = one.xyz(one.multiply(one.encode_light(light_powers("A")), one.encode_surface(checker.surfaces)))
-        worst.append(np.abs(actual - dense).max())
-    assert worst == sorted(worst, reverse=True)
-    assert worst[0] > 30 * worst[3]
-
-
 RANDOM = np.random.default_rng(5).random((3, 401))
 
 
@@ -152,21 +140,6 @@ def test_resampling_equals_the_listing_of_the_thesis(low_pass, count, up, down):
     spectrum = np.random.default_rng(8).random(81)
     expected = reference_conversion(low_pass.taps(up), up, down, count, spectrum)
     np.testing.assert_allclose(resampling_matrix(low_pass, count) @ spectrum, expected, atol=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("low_pass", "formula"),
-    [
-        (Filter("welch", 9), lambda x: 1 - x**2),
-        (Filter("gaussian", 9, (0.7,)), lambda x: np.exp(-0.7 * 4 * x**2) - np.exp(-0.7 * 4)),
-        (Filter("hann", 9), lambda x: 0.5 + 0.5 * np.cos(np.pi * x)),
-        (Filter("lanczos", 9, (2.0,)), lambda x: np.sinc(2 * x) * np.sinc(x)),
-    ],
-)
-def test_windows_equal_the_formulas_of_the_thesis(low_pass, formula):
-    taps = low_pass.taps(3)
-    x = np.linspace(-1, 1, len(taps) + 2)[1:-1]
-    np.testing.assert_allclose(taps, formula(x) / formula(x).sum(), atol=1e-12)
 
 
 @pytest.mark.parametrize(("b", "c"), [(1 / 3, 1 / 3), (1, 0), (0, 0.5), (-0.4, 1)])

@@ -51,22 +51,17 @@ def fill_missing(data: CubeData, points: Indices, other: CubeData, threads: int 
     if (np.abs(target - rgb) > data.threshold).any():  # single precision is not accurate enough
         kind, rgb = np.dtype(np.float64), _rgb(data, coefficients)
     distance = np.abs(target - rgb).max(axis=1)
-    arrays: dict[str, NDArray[Any]] = {
-        "coefficients": _put(table.coefficients.astype(kind), points, coefficients),
-        "rgb": _put(table.rgb, points, rgb),
-        "distance": _put(table.distance, points, distance),
-        "status": _put(table.status, points, np.where(distance > data.threshold, Status.UNFITTED, Status.REGULAR)),
-    }
+    status = np.where(distance > data.threshold, Status.UNFITTED, Status.REGULAR)
+    filled: dict[str, Any] = {"coefficients": coefficients, "rgb": rgb, "distance": distance, "status": status}
     if table.standard_error is not None:
-        arrays["standard_error"] = _put(table.standard_error, points, table.standard_error.max())
+        filled["standard_error"] = table.standard_error.max()
+    arrays: dict[str, NDArray[Any]] = {}
+    for name, values in filled.items():
+        column = getattr(table, name)
+        arrays[name] = column.astype(kind if name == "coefficients" else column.dtype)
+        arrays[name][points] = values
     provenance = {**data.provenance, "filled": {"points": len(points), "cube": digest(other)}}
     return replace(data, provenance=provenance, points=replace(table, **arrays))
-
-
-def _put(array: NDArray[Any], points: Indices, values: Any) -> NDArray[Any]:
-    changed = array.copy()
-    changed[points] = values
-    return changed
 
 
 def _rgb(data: CubeData, coefficients: Array) -> Array:
