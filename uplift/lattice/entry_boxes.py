@@ -38,6 +38,10 @@ class BoxHits(NamedTuple):
     """(k, 3) linear RGB of the point at which the lattice is evaluated."""
 
 
+NO_ROWS = np.zeros(0, dtype=np.int64)
+NO_HITS = BoxHits(NO_ROWS, NO_ROWS, np.zeros(0), np.zeros((0, 3)))
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class EntryBoxes:
     """Boxes in a lattice around entries of linear RGB (E, 3), of half widths (E,) in steps: 0 to 1, 0 for none."""
@@ -91,6 +95,8 @@ class EntryBoxes:
 
     def find(self, rgb: Array, cell: Indices | None = None) -> BoxHits:
         """Find which of the linear RGB (n, 3) lie in boxes. Their ``cell`` (n,) is computed if it is not known."""
+        if not len(self.rgb):
+            return NO_HITS
         numbers, entries = self.cells
         cell = self.lattice.index(self.lattice.cell(rgb)[0]) if cell is None else cell
         # Boxes that touch the cell of a colour are tested in turn.

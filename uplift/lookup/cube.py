@@ -190,7 +190,8 @@ class Cube:
         """
         if mode not in MODES:
             raise OptionError(f"unknown mode '{mode}'", code="unknown-mode", hint=f"use one of {', '.join(MODES)}")
-        at, kind, count = as_wavelengths(wavelengths, self.wavelengths), as_float_type(dtype), as_thread_count(threads)
+        at = as_wavelengths(wavelengths, self.data.sensor.wavelengths)
+        kind, count = as_float_type(dtype), as_thread_count(threads)
         colours = as_colours(rgb, self.data.sensor)
         function: Function = partial(MODES[mode], self.data, wavelengths=at)
         if mode in TABULATED and self._is_table_worthwhile(colours, len(at) * kind.itemsize):

@@ -78,13 +78,19 @@ def query(
     mode: str = "spectra",
     requested_rgb: Array | None = None,
     lights: Sequence[Light] = (),
+    outside: Mask | None = None,
 ) -> Iterator[QueryResult]:
     """Answer linear RGB (n, 3) in [0, 1] in full detail, block by block.
 
-    ``requested_rgb`` are the colours before gamut mapping, ``lights`` those of `QueryResult.standard_errors`.
+    ``requested_rgb`` are the colours before gamut mapping, ``lights`` those of `QueryResult.standard_errors`. Colours
+    ``outside`` (n,) are answered as requested.
     """
+    at = as_wavelengths(wavelengths, cube.data.sensor.wavelengths)
     requested = rgb if requested_rgb is None else requested_rgb
-    yield from _results(cube, rgb, requested, np.zeros(len(rgb), dtype=bool), wavelengths, mode, lights)
+    beyond = np.zeros(len(rgb), dtype=bool) if outside is None else outside
+    for start in range(0, len(rgb), BLOCK):
+        block = slice(start, start + BLOCK)
+        yield from _block(cube, rgb[block], requested[block], beyond[block], at, mode, lights)
 
 
 def query_xyz(
@@ -108,7 +114,7 @@ def query_xyz(
     rgb = np.asarray(values @ sensor.xyz_to_rgb.T)
     mapped = map_to_gamut(rgb, sensor, MAPPING)
     requested = np.where(mapped.outside[:, None], rgb, mapped.rgb)
-    yield from _results(cube, mapped.rgb, requested, mapped.outside, wavelengths, mode, lights)
+    yield from query(cube, mapped.rgb, wavelengths, mode, requested, lights, mapped.outside)
 
 
 def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
@@ -140,22 +146,6 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
 
 def _format_xyz(data: CubeData, rgb: Array) -> str:
     return "(" + ", ".join(f"{value:.4g}" for value in data.sensor.xyz(rgb)) + ")"
-
-
-def _results(
-    cube: Cube,
-    rgb: Array,
-    requested: Array,
-    outside: Mask,
-    wavelengths: ArrayLike | None,
-    mode: str,
-    lights: Sequence[Light],
-) -> Iterator[QueryResult]:
-    """Answer ``requested`` colours (n, 3) where they are ``outside`` (n,), and elsewhere ``rgb`` in [0, 1]."""
-    at = as_wavelengths(wavelengths, cube.wavelengths)
-    for start in range(0, len(rgb), BLOCK):
-        block = slice(start, start + BLOCK)
-        yield from _block(cube, rgb[block], requested[block], outside[block], at, mode, lights)
 
 
 def _block(
