@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
 
-HEX = re.compile(r"#?([0-9a-fA-F]{6})")
-SHORT_HEX = re.compile(r"#([0-9a-fA-F]{3})")
+HEX = re.compile(r"#?([0-9a-fA-F]{6})|#([0-9a-fA-F]{3})")
 SYNTAX = "write three numbers (R G B) or a hex colour such as '#cc3319'"
 TABLE = "give a CSV file of colours"
 CHUNK = 1 << 16
@@ -31,12 +30,8 @@ MAX_LINE = 1 << 16
 """Characters of a line."""
 
 
-@dataclass(frozen=True)
-class Colour:
-    """Three numbers, and whether they are encoded 8-bit codes."""
-
-    numbers: tuple[float, ...]
-    encoded: bool
+Colour = tuple[list[float], bool]
+"""Three numbers, and whether they are encoded 8-bit codes."""
 
 
 @dataclass(frozen=True)
@@ -82,9 +77,9 @@ class ColourReader:
         A first line without numbers is a header. Further columns are ignored.
         """
         empty = True
-        for lines in _line_blocks(file, name):
+        for rows in _row_blocks(file, name):
             colours = []
-            for line, row in _rows(lines, name):
+            for line, row in rows:
                 colour = _parse(row[:1] if row[0].startswith("#") else row)
                 if colour is None:
                     raise _not_a_colour(row, name, line)
@@ -100,9 +95,9 @@ class ColourReader:
         """Check the range as the cube does, but report the line."""
         from uplift.colorimetry.sensor import SLACK
 
-        numbers = colour.numbers
+        numbers, encoded = colour
         values = "(" + ", ".join(f"{number:g}" for number in numbers) + ")"
-        if self.encoded or colour.encoded:
+        if self.encoded or encoded:
             if not all(0 <= number <= 255 for number in numbers):
                 problem = f"8-bit codes must be in [0, 255], got {values}"
                 raise ColourError(problem, code="invalid-codes", path=name, line=line)
@@ -120,8 +115,8 @@ class ColourReader:
         from uplift.lookup.blocks import decode_codes
 
         space = self.space
-        values = np.array([colour.numbers for colour in colours], dtype=float)
-        mask = np.array([self.encoded or colour.encoded for colour in colours])
+        values = np.array([numbers for numbers, _ in colours], dtype=float)
+        mask = np.array([self.encoded or encoded for _, encoded in colours])
         if space is None or space.decode is None:
             values[mask] = decode_codes(self.sensor, values[mask])
         else:
@@ -155,54 +150,45 @@ def find_point(
     return xyz, xyz is not None or (bool(colour) and colour != ("-",))
 
 
-def _line_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, str]]]:
-    """Yield blocks of lines with their numbers, each as soon as it can be read: a stream may never end."""
+def _row_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, list[str]]]]:
+    """Yield line numbers and cells in blocks, each as soon as it can be read: a stream may never end."""
     decoder = io.IncrementalNewlineDecoder(codecs.getincrementaldecoder("utf-8-sig")(), translate=True)
     read = getattr(file, "read1", file.read)
-    first, rest = 1, ""
-    try:
-        while chunk := read(CHUNK):
-            *lines, rest = (rest + decoder.decode(chunk)).split("\n")
-            for line, text in enumerate([*lines, rest], first):
-                if len(text) > MAX_LINE:
-                    problem = f"lines must not exceed {MAX_LINE:,} characters"
-                    raise ColourError(problem, path=name, line=line, hint=TABLE)
-            if lines:
-                yield list(enumerate(lines, first))
-                first += len(lines)
-        if rest := rest + decoder.decode(b"", final=True):
-            yield list(enumerate(rest.split("\n"), first))
-    except UnicodeDecodeError as error:
-        raise ColourError("is not a text file", path=name, hint=TABLE) from error
-
-
-def _rows(lines: Iterable[tuple[int, str]], name: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield the line number and the cells that are not empty, of all rows but the header."""
-    for line, text in lines:
+    first, rest, at_end = 1, "", False
+    while not at_end:
+        chunk = read(CHUNK)
+        at_end = not chunk
         try:
-            cells = re.split(r"[;\t ]+", text.strip()) if "," not in text else next(csv.reader([text]))
-        except csv.Error as error:
-            raise ColourError(str(error), path=name, line=line, hint=TABLE) from error
-        row = [cell.strip() for cell in cells if cell.strip()]
-        is_header = line == 1 and row and _hex(row[0]) is None and all(_number(cell) is None for cell in row)
-        if row and not is_header:
-            yield line, row
+            *lines, rest = (rest + decoder.decode(chunk, final=at_end)).split("\n")
+        except UnicodeDecodeError as error:
+            raise ColourError("is not a text file", path=name, hint=TABLE) from error
+        numbered = list(enumerate([*lines, rest], first))
+        for line, text in numbered:
+            if len(text) > MAX_LINE:
+                raise ColourError(f"lines must not exceed {MAX_LINE:,} characters", path=name, line=line, hint=TABLE)
+        rows = ((line, _cells(text, name, line)) for line, text in numbered[: None if at_end else -1])
+        yield [(line, row) for line, row in rows if row]
+        first += len(lines)
+
+
+def _cells(text: str, name: str, line: int) -> list[str]:
+    """Return the cells of a line that are not empty; none of a header."""
+    try:
+        cells = re.split(r"[;\t ]+", text.strip()) if "," not in text else next(csv.reader([text]))
+    except csv.Error as error:
+        raise ColourError(str(error), path=name, line=line, hint=TABLE) from error
+    row = [cell.strip() for cell in cells if cell.strip()]
+    is_header = line == 1 and _parse(row[:1]) is None and all(_number(cell) is None for cell in row)
+    return [] if is_header else row
 
 
 def _parse(parts: Sequence[str]) -> Colour | None:
     """Parse one hex colour, or the first three of several numbers."""
-    digits = _hex(parts[0]) if len(parts) == 1 else None
-    if digits is not None:
-        return Colour(tuple(int(digits[i : i + 2], 16) for i in (0, 2, 4)), encoded=True)
+    if len(parts) == 1 and (match := HEX.fullmatch(parts[0])):
+        digits = match[1] or "".join(2 * digit for digit in match[2])
+        return [int(digits[i : i + 2], 16) for i in (0, 2, 4)], True
     numbers = [number for part in parts[:3] if (number := _number(part)) is not None]
-    return Colour(tuple(numbers), encoded=False) if len(numbers) == 3 else None
-
-
-def _hex(word: str) -> str | None:
-    if short := SHORT_HEX.fullmatch(word):
-        return "".join(2 * digit for digit in short[1])
-    match = HEX.fullmatch(word)
-    return match[1] if match else None
+    return (numbers, False) if len(numbers) == 3 else None
 
 
 def _number(word: str) -> float | None:

@@ -52,26 +52,17 @@ def test_all_options_are_passed_to_the_build(run, home):
     run("build", "--dim", "3", "--coefficients", "5", "--warp", "vision",
         "--axis", "linear", "--space", "Display P3", "--illuminant", "D50",
         "--observer", "CIE 1964 10 Degree Standard Observer", "--light", "A", "--light", "FL2",
-        "--start", "neighbours", "--solver", "dogleg", "--threshold", "1e-3", "--debug", "-o", "cube")  # fmt: skip
+        "--start", "neighbours", "--solver", "dogleg", "--threshold", "1e-3", "--debug",
+        "--range", "360:830", "--step", "10", "-o", "cube")  # fmt: skip
     data = uplift.load(home / "cube").data
-    assert data.model == uplift.models.Moments(5, uplift.models.Phase(warp="vision"))
+    assert data.model == uplift.models.Moments(5, uplift.models.Phase(360, 830, "vision"))
     np.testing.assert_array_equal(data.lattice.nodes, [0, 0.5, 1])
     assert (data.sensor.space, data.sensor.illuminant) == ("Display P3", "D50")
     assert data.sensor.observer == "CIE 1964 10 Degree Standard Observer"
-    assert data.threshold == 1e-3
+    assert (data.threshold, data.sensor.range) == (1e-3, (360, 830, 10))
     assert data.points.round is not None
     given = {"lights": ["A", "FL2"], "start": "neighbours", "solver": "dogleg"}
     assert given.items() <= data.provenance["options"].items()
-
-
-def test_range_step_and_model(run, home):
-    run("build", *SMALL, "--range", "360:830", "--step", "10", "-o", "cube")
-    data = uplift.load(home / "cube").data
-    assert data.sensor.range == (360, 830, 10)
-    assert (data.model.phase.start, data.model.phase.end) == (360, 830)
-    run("check", "cube")
-    run("build", "--dim", "3", "--model", "sigmoid", "-o", "sigmoid")
-    assert uplift.load(home / "sigmoid").data.model.name == "sigmoid"
 
 
 def test_the_same_input_gives_the_same_bytes_and_warnings(run, home, macbeth):

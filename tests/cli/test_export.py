@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 
 import numpy as np
@@ -19,19 +18,12 @@ def cube(home, cubes):
 
 
 @pytest.mark.parametrize(
-    ("style", "name", "count", "first"),
-    [
-        ("c", f"{STEM}.h", "512", b"/* A spectral"),
-        ("npz", f"{STEM}.npz", "24", b"PK"),
-        ("csv", f"{STEM}.csv", "512", b"r,g,b,lattice_r"),
-        ("html", f"{STEM}.html", "0", b"<!DOCTYPE html>"),
-    ],
+    ("style", "suffix", "first"),
+    [("c", "h", b"/* A spectral"), ("npz", "npz", b"PK"), ("csv", "csv", b"r,g,b"), ("html", "html", b"<!DOCTYPE")],
 )
-def test_formats_and_default_names(run, home, cube, style, name, count, first):
-    file, summary = run("export", cube, "--format", style).stdout.split(": ")
-    assert file == name
-    assert count in re.findall(r"\d+", summary)
-    assert (home / name).read_bytes().startswith(first)
+def test_formats_and_default_names(run, home, cube, style, suffix, first):
+    assert run("export", cube, "--format", style).stdout.startswith(f"{STEM}.{suffix}: ")
+    assert (home / f"{STEM}.{suffix}").read_bytes().startswith(first)
 
 
 @pytest.mark.parametrize("name", ["a.cuh", "a.glsl", "a.hlsl"])

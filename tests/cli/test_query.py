@@ -120,12 +120,6 @@ def test_colours_of_another_display(ask, name):
     assert green["rgb"] == [0, 1, 0]
 
 
-def test_range_is_checked_after_conversion_from_another_display(ask, table):
-    words = ("--input", table("-0.1,0.5,0.4"), "--input-space", "0.4,0.34 0.31,0.4 0.25,0.2 0.3127,0.329")
-    (answer,) = ask("query", *words)
-    assert 0 <= min(answer["rgb"]) <= max(answer["rgb"]) <= 1
-
-
 @pytest.mark.parametrize(
     "text",
     [
@@ -206,9 +200,11 @@ def test_lines_of_a_stream_are_answered_as_they_come(style):
         for line in (b"#cc3319\n", b"0.5,0.5,0.5\n"):
             query.stdin.write(line)
             query.stdin.flush()
-            answer = query.stdout.read1()  # hangs if the answer waits for the end of the stream
+            answer = b""
             while answer.count(b"0.") < 2:
-                answer += query.stdout.read1()
+                chunk = query.stdout.read1()  # hangs if the answer waits for the end of the stream
+                assert chunk
+                answer += chunk
         query.stdin.close()
         query.stdout.read()
         assert query.wait() == 0
@@ -224,15 +220,7 @@ def test_colours_by_xyz_and_by_chromaticity(ask):
 
 
 @pytest.mark.parametrize(
-    "words",
-    [
-        "",
-        "#fff --input colours.csv",
-        "#fff --xyz 0.1 0.1 0.1",
-        "--xy 0.3 0.3",
-        "--luminance 0.3 #fff",
-        "--xyz 0.1 0.1 0.1 --xy 0.3 0.3 --luminance 0.1",
-    ],
+    "words", ["", "#fff --input a.csv", "#fff --xyz 1 1 1", "--xy 0.3 0.3", "--luminance 0.3 #fff"]
 )
 def test_exactly_one_source_of_colours(misuse, words):
     misuse("query", *words.split())

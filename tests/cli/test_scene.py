@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.helpers import near_black, with_absent_points
-from tests.io.texture.conftest import channels, planes, write_exr
+from tests.io.texture.conftest import planes, write_exr
 from uplift.cube import read, write
 
 from .conftest import warning_lines
@@ -57,30 +57,12 @@ def test_queries_of_other_colours_are_errors_unless_filled(run, refuse, scene):
     assert run("query", "--cube", scene, "--fill-missing", 0.001, 0.002, 0.001).stderr == ""
 
 
-def test_textures_with_other_colours_are_errors_unless_filled(run, refuse, scene, home, small_cube):
-    rgb = np.array([[[0.001, 0.002, 0.001], [0.1, 0.9, 0.2]]], np.float32)
-    write_exr(home / "image.exr", planes(rgb))
-    arguments = ("texture", "image.exr", "-o", "out.exr", "--cube", scene, "--representation", "multipliers")
-    error = refuse(*arguments)
-    assert (error.code, error.path.name) == ("colour-not-in-scene", "image.exr")
-    assert "(0.1, 0.9, 0.2)" in error.problem
-    assert not (home / "out.exr").exists()
-    run(*arguments, "--fill-missing")
-    found = channels(home / "out.exr")
-    made = np.stack([found[f"multiplier.{index:02}"].ravel() for index in range(9)], axis=-1).astype(float)
-    data = small_cube.data
-    back = data.sensor.rgb(data.model.to_reflectance(made @ data.model.basis(data.sensor.wavelengths).T))
-    np.testing.assert_allclose(back, rgb[0], atol=1e-5)
-
-
 def test_reports_cover_the_stored_nodes(ask, scene, macbeth):
     found = ask("report", scene, "--atlas-dir", macbeth.parent)
     assert found["failures"]["over_threshold"] == 0
     assert found["round_trip"]["delta_e_2000"]["spectra"]["max"] < 1e-3
     assert len(found["atlas"]["absent"]) + len(found["entries"]) == 23
     assert found["atlas"]["absent"]
-    other = ask("report", scene, "--atlas", macbeth.parent / "tcs.txt")
-    assert other["atlas"]["absent"]
 
 
 def test_exports_of_all_colours_are_errors_unless_filled(run, refuse, scene, home):
