@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import json
 import subprocess
-import sys
 
 import jinja2
 import pytest
@@ -20,7 +19,6 @@ from tests.parts import MITSUBA, need
 from tools import render_docs
 from tools.render_docs import number, page_file, pick, read_data, render, table
 from uplift.lab.chart.table import read_chart
-from uplift.lab.study.stability import NO_ATLAS, SPACES
 
 DOCS = ROOT / "docs"
 RENDERED = render_docs.pages()
@@ -122,22 +120,3 @@ def test_stored_marks_agree_with_the_choices():
     assert {name for name, text in stored.items() if text} == {
         name for name in stored if name.removeprefix("c-").startswith("moments")
     }
-
-
-def test_statements_of_the_stability_page_hold_for_its_figures():
-    figures = read_data("stability")
-    ours = figures["map"]
-    assert sum(row["unfitted"] for row in ours) == 0
-    five = [row for row in ours if (row["dim"], row["threshold"], row["atlas"]) == (17, 1e-4, NO_ATLAS)]
-    assert {row["space"] for row in five} == set(SPACES)
-    assert max(row["stand_ins"] for row in ours if row["threshold"] >= 1e-4) <= 1
-    assert not any(row["stand_ins"] for row in ours if row["space"] == "sRGB")
-    for cube in figures["cubes"].values():
-        assert cube["lipschitz"]["largest_per_code"] < 0.06
-    cubes = figures["cubes"]
-    assert cubes["sigmoid-16"]["lipschitz"]["largest"] > 2 * cubes["sigmoid-8"]["lipschitz"]["largest"]
-
-
-def test_the_programs_run_as_modules():
-    done = subprocess.run([sys.executable, "-m", "benchmarks"], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert len(done.stdout.splitlines()) == len(pages())

@@ -64,18 +64,6 @@ def test_cube_with_atlas_has_less_than_half_the_error_of_mitsuba(painted, render
         assert cube < mitsuba / 2
 
 
-def test_figures_summarise_the_errors(painted, renders):
-    figures = demo.figures(painted, renders)
-    mitsuba, cube = (renders.delta_e["A", method] for method in (demo.MITSUBA, demo.ATLAS))
-    (ratio,) = [row for row in figures["ratios"] if row["light"] == "A"]
-    assert ratio["all"] == pytest.approx(mitsuba.mean() / cube.mean())
-    assert ratio["in_gamut"] > ratio["all"]
-    assert [row["patch"] for row in figures["patches"]] == list(painted.names)
-    assert figures["patches"][3]["A"] == {"mitsuba": mitsuba[3], "cube": cube[3]}
-    (noise,) = [row for row in figures["means"] if row["method"] == demo.OTHER_SEED]
-    assert noise["FL11"][0] == pytest.approx(renders.delta_e["FL11", demo.OTHER_SEED].mean())
-
-
 def test_skies_are_mixtures_of_their_lights():
     known = lamps()
     for sky in environment.SKIES:
