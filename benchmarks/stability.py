@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import warnings
 from typing import Any
 
-import click
-
 import uplift
-from benchmarks import CUBES, DATA, DOCS, record
+from benchmarks import CUBES, DOCS, record
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.progress import Progress
 from uplift.lab.study.plots import plot_locality, plot_map, plot_steepness
 from uplift.lab.study.sensitivity import COLOURS, MOVED_DELTA_E, NOISE, study_sensitivity
 from uplift.lab.study.stability import NO_ATLAS, SYNTHETIC_ATLASES, DesignSpace, study_stability
-from uplift.lab.timing import environment
 from uplift.pipeline.rebuild import recorded_atlas
 
 FOLDER = DOCS / "stability"
@@ -32,17 +28,10 @@ KINDS = {
 """Kinds of changed atlases by a part of their descriptions."""
 
 
-@click.command()
-@click.option("--keep-map", is_flag=True, help="Keep the stored failure map, which takes most of the time.")
-def main(keep_map: bool) -> None:
+def main() -> None:
     """Measure, draw and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     FOLDER.mkdir(exist_ok=True)
-    if keep_map:
-        stored = json.loads((DATA / "stability.json").read_text(encoding="utf-8"))
-        rows, map_environment = stored["map"], stored.get("map_environment", stored["environment"])
-    else:
-        rows, map_environment = failure_map(), environment()
     cubes = {name: cube_sensitivity(name) for name in STORED}
     record(
         "stability",
@@ -52,8 +41,7 @@ def main(keep_map: bool) -> None:
         queries=COLOURS,
         plain=PLAIN,
         constrained=CONSTRAINED,
-        map=rows,
-        map_environment=map_environment,
+        map=failure_map(),
         cubes=cubes,
         atlas_changes=[summary(title, part, cubes[CONSTRAINED]["changes"]) for title, part in KINDS.items()],
     )
