@@ -16,8 +16,7 @@ from ..startup import use_one_blas_thread
 if TYPE_CHECKING:
     from uplift.lab.comparison.compare import Comparison, TunedFilter
 
-FILES = ("compare.csv", "compare-boxes.png", "compare-cost.png", "compare.html")
-FILTERS = "compare-filters.csv"
+FILES = ("compare-boxes.png", "compare-cost.png", "compare.html")
 
 
 @click.command("compare")
@@ -56,8 +55,7 @@ def command(
     Gaussian quadrature (GQ), trigonometric moments (TM), the sigmoid (SG), linear models (LM), hero wavelengths (HW).
 
     --tolerance prints the cheapest sufficient representation for each set of lights. The cheapest stores the fewest
-    floats per surface, then per light. --output writes compare.csv, box plots, a plot of error over cost, a page, and
-    with --filters compare-filters.csv.
+    floats per surface, then per light. --output writes box plots, a plot of error over cost, and a page.
 
     \b
     Examples:
@@ -72,8 +70,7 @@ def command(
 
     if tolerance is not None:
         check_target(tolerance)
-    names = (*FILES, FILTERS) if filters else FILES
-    folder = None if output is None else check_folder(output, names, inputs=files, force=force)
+    folder = None if output is None else check_folder(output, FILES, inputs=files, force=force)
     comparison, tuned = _measure(files, lights, filters=filters, quick=quick)
     if folder is not None:
         _write(comparison, tuned, folder, force=force)
@@ -105,18 +102,13 @@ def _measure(
 
 def _write(comparison: Comparison, tuned: tuple[TunedFilter, ...], folder: Path, *, force: bool) -> None:
     from uplift.common.files import write_text
-    from uplift.lab.comparison.compare import filter_records, records
     from uplift.lab.comparison.pictures import render_comparison, write_boxes, write_costs
-    from uplift.lab.timing import write_csv
 
-    table, boxes, costs, html = (folder / name for name in FILES)
-    write_csv(records(comparison), table, force=force)
+    boxes, costs, html = (folder / name for name in FILES)
     write_boxes(comparison, boxes, force=force)
     write_costs(comparison, costs, force=force)
     write_text(render_comparison(comparison, tuned), html, force=force)
-    if tuned:
-        write_csv(filter_records(tuned), folder / FILTERS, force=force)
-    say(f"{folder}: {', '.join((*FILES, FILTERS) if tuned else FILES)}", err=True)
+    say(f"{folder}: {', '.join(FILES)}", err=True)
 
 
 def _print_advice(comparison: Comparison, tolerance: float) -> None:

@@ -131,13 +131,6 @@ def records_csv(records: Sequence[Mapping[str, Any]]) -> str:
     return csv_text(list(records[0]), [list(record.values()) for record in records])
 
 
-def write_csv(records: Sequence[Mapping[str, Any]], path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Write records to a CSV file. Raises `OutputError`."""
-    from uplift.common.files import write_text  # imports numpy, before which `ONE_THREAD` is to be set
-
-    write_text(records_csv(records), path, force=force)
-
-
 def write_record(path: Path, command: str, **figures: Any) -> None:
     """Write figures with the command that measures them; ``environment`` is that of this process by default."""
     content = {"command": command, "environment": environment(), **figures}

@@ -10,7 +10,7 @@ import ctypes
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
@@ -178,54 +178,41 @@ JOBS = {
 """Cubes and their lookups: modes of `Cube.reflectance`, in float64 or float32, in bulk with JAX, and by C."""
 
 
-def _methods() -> Iterator[Method]:
-    for options, lookups in JOBS.items():
-        for lookup in lookups.split():
-            if lookup.startswith("c-"):
-                yield _c_method(options, lookup.removeprefix("c-"))
-            else:
-                yield _python_method(options, lookup)
-
-
-def _claim(options: CubeOptions, mode: str) -> dict[str, Any]:
-    """Fields that all cubes have; nodes of ``moments`` and ``nearest`` are exact, colours between them are not."""
+def _method(options: CubeOptions, lookup: str) -> Method:
+    mode = lookup.removeprefix("c-").removesuffix(FLOAT32)
+    # Nodes of all modes are exact; colours between them are not in ``moments`` and ``nearest``, and refined sigmoids.
     exact = mode in ("spectra", "bulk") or (mode == "refined" and options.model == Moments.name)
-    error = 0.01 if exact else None
-    return {"source": "this package", "judge": ours, "claimed_error": error, "build": options.command}
-
-
-def _python_method(options: CubeOptions, lookup: str) -> Method:
-    mode, bulk = lookup.removesuffix(FLOAT32), lookup == "bulk"
-    dtype = "float32" if bulk or lookup.endswith(FLOAT32) else "float64"
-    of_dtype, short = ("", "") if dtype == "float64" else (', dtype="float32"', " f32")
-    prepare = prepare_bulk if bulk else partial(prepare_lookup, mode=mode, dtype=dtype)
+    fields: dict[str, Any] = {"dtype": "float64" if lookup == mode and mode != "bulk" else "float32"}
+    name, title = f"{options.name}-{lookup}", f"{options.title}, {lookup.replace('-', ', ')}"
+    label = f"{options.count} · {options.dim}³ {mode}"
+    family = f"uplift, {options.model}{' with atlas' if options.atlas else ''}"
+    prepare: Callable[..., PreparedMethod]
+    if lookup.startswith("c-"):
+        name, title, label = f"c-{options.name}-{mode}", f"C, {options.title}, {mode}", f"C {label}"
+        family, prepare = "uplift, C export", partial(prepare_c, mode=mode)
+        call = f"uplift export CUBE -o cube.h --mode {mode}; cube_reflectances(rgb, wavelengths, count, out)"
+        fields |= {"note": f"cc {' '.join(FLAGS[:5])}, called by ctypes", "needs": COMPILER}
+    elif mode == "bulk":
+        label, prepare, call = f"{label} f32", prepare_bulk, "uplift.lookup.bulk.spectra(cube)(rgb)"
+    else:
+        of_dtype = ', dtype="float32"' if lookup.endswith(FLOAT32) else ""
+        label += " f32" if of_dtype else ""
+        prepare = partial(prepare_lookup, mode=mode, dtype=fields["dtype"])
+        call = f'cube.reflectance(rgb, mode="{mode}"{of_dtype})'
     return Method(
-        method=f"{options.name}-{lookup}",
-        title=f"{options.title}, {lookup.replace('-', ', ')}",
-        label=f"{options.count} · {options.dim}³ {mode}{short}",
-        family=f"uplift, {options.model}{' with atlas' if options.atlas else ''}",
+        method=name,
+        title=title,
+        label=label,
+        family=family,
+        source="this package",
         mode=mode,
-        dtype=dtype,
-        call="uplift.lookup.bulk.spectra(cube)(rgb)" if bulk else f'cube.reflectance(rgb, mode="{mode}"{of_dtype})',
+        build=options.command,
+        call=call,
         prepare=partial(prepare, options=options),
-        **_claim(options, mode),
+        judge=ours,
+        claimed_error=0.01 if exact else None,
+        **fields,
     )
 
 
-def _c_method(options: CubeOptions, mode: str) -> Method:
-    return Method(
-        method=f"c-{options.name}-{mode}",
-        title=f"C, {options.title}, {mode}",
-        label=f"C {options.count} · {options.dim}³ {mode}",
-        family="uplift, C export",
-        mode=mode,
-        dtype="float32",
-        call=f"uplift export CUBE -o cube.h --mode {mode}; cube_reflectances(rgb, wavelengths, count, out)",
-        note=f"cc {' '.join(FLAGS[:5])}, called by ctypes",
-        prepare=partial(prepare_c, options=options, mode=mode),
-        needs=COMPILER,
-        **_claim(options, mode),
-    )
-
-
-METHODS = tuple(_methods())
+METHODS = tuple(_method(options, lookup) for options, lookups in JOBS.items() for lookup in lookups.split())

@@ -16,8 +16,8 @@ import numpy as np
 
 from uplift.atlas import Atlas, merge, resample
 from uplift.colorimetry import observer
-from uplift.colorimetry.lights import CHART_LIGHTS, DEFAULT_ILLUMINANT
-from uplift.colorimetry.sensor import Light, Sensor
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import AtlasError, OptionError
@@ -99,11 +99,6 @@ class Task:
     unseen: Array
     effort: Effort
     facts: Mapping[str, str]
-
-    @property
-    def lights(self) -> tuple[Light, ...]:
-        """Return the lights of the errors."""
-        return tuple(observer.light(name) for name in CHART_LIGHTS)
 
 
 def make_task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effort | None = None) -> Task:

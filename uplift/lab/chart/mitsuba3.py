@@ -13,7 +13,7 @@ Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral up
 from __future__ import annotations
 
 import math
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -112,31 +112,28 @@ def _evaluate(mitsuba: Any, drjit: Any, rgb: Array, wavelengths: Array) -> Array
     return np.stack(channels).T
 
 
-_TEXTS: dict[str, Any] = {
-    "family": "Mitsuba 3",
-    "source": "Jakob et al., Mitsuba 3, the table of Jakob & Hanika 2019 for sRGB",
-}
+_table = partial(
+    Method,
+    family="Mitsuba 3",
+    source="Jakob et al., Mitsuba 3, the table of Jakob & Hanika 2019 for sRGB",
+    judge=judge,
+    claimed_error=0.1,
+)
 METHODS = (
-    Method(
+    _table(
         method="mitsuba3-table",
         title="Mitsuba 3, table of 64",
         prepare=prepare,
-        judge=judge,
-        claimed_error=0.1,
         batch=False,
         note="coefficients from Python, one colour per call; spectra by numpy",
         needs=MITSUBA,
-        **_TEXTS,
     ),
-    Method(
+    _table(
         method="mitsuba3-llvm",
         title="Mitsuba 3, LLVM, table of 64",
         prepare=prepare_compiled,
-        judge=judge,
-        claimed_error=0.1,
         dtype="float32",
         note="a bitmap texture with a texel for each colour, loaded and evaluated, on one thread",
         needs=LLVM,
-        **_TEXTS,
     ),
 )

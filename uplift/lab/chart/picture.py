@@ -127,26 +127,14 @@ def render_chart(chart: Chart) -> str:
 
 
 def _tooltip(result: MethodResult) -> Tooltip:
-    lines = _lines(result) if result.state == State.MEASURED else []
+    numbers, lines = result.numbers, []
+    if result.state == State.MEASURED:
+        sizes = sorted(int(match[1]) for match in map(BATCH.fullmatch, numbers) if match)
+        lines = [(f"{size:,} per call", f"{format_time(numbers[f'ns_{size}'])} each") for size in sizes]
+        lines += [("set-up", format_build_time(numbers["setup_s"])), ("memory", format_size(numbers["bytes"]))]
+        lines.append(("errors", "mean / 99 % / largest"))
+        for error, name in ERRORS.items():
+            values = (numbers[f"{error}_{kind}"] for kind in ("mean", "p99", "max"))
+            lines.append((name, " / ".join(map(format_error, values))))
+        lines += [("", text) for text in (result.build, result.call, result.note) if text]
     return {"title": result.title, "family": result.family, "lines": lines}
-
-
-def _lines(result: MethodResult) -> list[tuple[str, str]]:
-    numbers = result.numbers
-    lines = []
-    for size in sorted(int(match[1]) for name in numbers if (match := BATCH.fullmatch(name))):
-        used = int(numbers[f"ns_{size}_colours"])
-        fewer = f", timed with {used:,}" if used < size else ""
-        lines.append((f"{size:,} per call{fewer}", f"{format_time(numbers[f'ns_{size}'])} each"))
-    lines.append(("memory", format_size(numbers["bytes"])))
-    for name in ("build", "load"):
-        if f"{name}_s" in numbers:
-            lines.append((name, format_build_time(numbers[f"{name}_s"])))
-    lines.append(("errors", "mean / 99 % / largest"))
-    lines += [
-        (name, " / ".join(format_error(numbers[f"{error}_{kind}"]) for kind in ("mean", "p99", "max")))
-        for error, name in ERRORS.items()
-    ]
-    count = f"{numbers['round_trip_colours']:g} colours, {numbers['unseen_spectra']:g} materials"
-    lines.append(("test set", count))
-    return lines + [("", text) for text in (result.build, result.call, result.note) if text]
