@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from importlib import import_module
 
 import numpy as np
 import pytest
-from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999, XYZ_to_sd_Otsu2018
+from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999
 
 from tests.helpers import raises
 from tests.parts import CC, LLVM, need
 from uplift.atlas import Atlas, Entry, merge, on_grid, read_atlas
-from uplift.colorimetry import observer
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.processes import call_in_child
 from uplift.fit.families import families_with
 from uplift.lab.chart import mitsuba3
 from uplift.lab.chart.cubes import CubeOptions, built_cube, prepare_c
-from uplift.lab.chart.measure import METHODS, QUICK_METHODS, measure_method, select_methods
-from uplift.lab.chart.method import RANGE, NotInstalledError, edges, make_task, ours, published_srgb
+from uplift.lab.chart.measure import METHODS, QUICK_METHODS, select_methods
+from uplift.lab.chart.method import RANGE, NotInstalledError, edges, make_task
 from uplift.lab.chart.picture import COLOURS
 from uplift.lab.chart.published import boxes
-from uplift.lab.chart.table import State
 
 
 def shipped(repository, *names):
@@ -98,14 +94,6 @@ def test_smits_and_mallett_match_colour_science(small_task, colours):
         np.testing.assert_allclose(prepared(name, small_task).uplift(colours, at), expected, atol=1e-12)
 
 
-@pytest.mark.filterwarnings("ignore::colour.utilities.ColourRuntimeWarning")
-def test_otsu_matches_colour_science(small_task, colours):
-    cmfs, light = observer.aligned(small_task.sensor, 380, 730, 10)
-    sd = XYZ_to_sd_Otsu2018(published_srgb().xyz(colours[0]), cmfs, light)
-    found = prepared("otsu2018", small_task).uplift(colours[:1], sd.wavelengths)
-    np.testing.assert_allclose(found[0], sd.values, atol=1e-12)
-
-
 def test_box_spectra_have_one_height_two_edges_and_the_colour(small_task):
     sensor, rgb = small_task.sensor, np.concatenate([np.random.default_rng(5).random((300, 3)), edges()])
     found = boxes(sensor)(rgb, sensor.wavelengths)
@@ -126,19 +114,13 @@ def test_jakob_fit_has_the_colour(small_task):
 
 
 def test_missing_mitsuba_is_not_installed(small_task, monkeypatch):
-    monkeypatch.setitem(sys.modules, "mitsuba", None)
-    for name in ("mitsuba3-table", "mitsuba3-llvm"):
+    monkeypatch.setattr(mitsuba3, "find_spec", lambda name: None)
+    for name in ("mitsuba3-table", "mitsuba3-llvm", "jakob2019-table64"):
         with pytest.raises(NotInstalledError, match="Mitsuba 3: pip install"):
             prepared(name, small_task)
-    monkeypatch.setattr(mitsuba3, "find_spec", lambda name: None)
-    with pytest.raises(NotInstalledError, match="Mitsuba 3: pip install"):
-        prepared("jakob2019-table64", small_task)
 
 
-TYPED = ("mallett2019", "smits1999", "moments9-32-spectra", "sigmoid-32-moments")
-
-
-@pytest.mark.parametrize("name", TYPED)
+@pytest.mark.parametrize("name", ["mallett2019", "smits1999", "moments9-32-spectra", "sigmoid-32-moments"])
 def test_both_types_give_the_same_spectra(small_task, colours, name):
     at = small_task.sensor.wavelengths
     double, single = prepared(name, small_task), prepared(f"{name}-float32", small_task)
@@ -161,17 +143,6 @@ def test_compiled_cube_gives_the_reflectances_of_python(small_task, colours):
     np.testing.assert_allclose(found, expected, atol=1e-5)
 
 
-@pytest.mark.skipif(os.name == "nt", reason="the compiler is a shell script")
-def test_broken_compiler_is_reported(small_task, tmp_path, monkeypatch):
-    (tmp_path / "cc").write_text("#!/bin/sh\nexit 1\n")
-    (tmp_path / "cc").chmod(0o755)
-    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
-    (method,) = select_methods(("c-sigmoid-32-moments",))
-    row = measure_method(method, small_task)
-    assert row.state == State.BROKEN
-    assert "apt install gcc" in row.why
-
-
 def vectorised_and_table(task, colours):
     """Reflectances by Mitsuba's vectorised variant and by its table, for one colour and for many."""
     compiled, table = (prepared(name, task).uplift for name in ("mitsuba3-llvm", "mitsuba3-table"))
@@ -192,20 +163,11 @@ def test_vectorised_mitsuba_gives_the_reflectances_of_its_table(small_task, colo
 
 def test_judges_have_the_range_of_the_cie_and_their_white():
     sensors = {method.judge() for method in METHODS}
-    assert len(sensors) == 4
+    assert sorted(sensor.illuminant for sensor in sensors) == ["D65", "D65", "D65", "E"]
     for sensor in sensors:
         assert sensor.range == RANGE
         white = sensor.rgb(np.ones(len(sensor.wavelengths)))
         np.testing.assert_allclose(white, 1, atol=1e-3)
-    assert published_srgb().illuminant == ours().illuminant == "D65"
-
-
-def test_smits_is_judged_under_an_equal_energy_white(small_task):
-    (smits,) = select_methods(("smits1999",))
-    sensor = smits.judge()
-    assert sensor.illuminant == "E"
-    white = smits.prepare(small_task).uplift(np.ones((1, 3)), sensor.wavelengths)
-    np.testing.assert_allclose(sensor.rgb(white), 1, atol=0.02)
 
 
 def test_prior_of_cubes_does_not_know_the_unseen_materials(small_task):
