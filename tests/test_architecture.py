@@ -15,13 +15,8 @@ LINT = "from importlinter.cli import lint_imports_command; lint_imports_command(
 def lint(folder):
     """Run the linter on the packages of ``folder``."""
     code = f"import sys; sys.path[:0] = [{str(folder)!r}]; {LINT}"
-    done = subprocess.run(
-        [sys.executable, "-c", code, "--no-cache"],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-    )
+    command = [sys.executable, "-c", code, "--no-cache"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, encoding="utf-8")
     return done.returncode, done.stdout + done.stderr
 
 
@@ -44,17 +39,10 @@ def test_the_contracts_hold(repository):
     ("module", "line", "contract"),
     [
         ("uplift/lookup/cube.py", "from uplift.io import texture", "Data flows one way"),
+        ("uplift/report/summary.py", "import uplift_cli.output.console", "Data flows one way"),
         ("uplift/lookup/cube.py", "import jax", "A lookup starts in the time that numpy takes"),
-        (
-            "uplift/cube/file.py",
-            "from uplift.fit import seeds",
-            "A lookup starts in the time that numpy takes",
-        ),
         ("uplift/models/sigmoid.py", "import colour", "One place reads colour-science's tables"),
         ("uplift/pipeline/build.py", "import click", "Only the command line knows click and rich"),
-        ("uplift/lattice/lattice.py", "import uplift.pipeline.build", "Data flows one way"),
-        ("uplift/common/errors.py", "from uplift.colorimetry import sensor", "Data flows one way"),
-        ("uplift/report/summary.py", "import uplift_cli.output.console", "Data flows one way"),
         ("uplift/lattice/lattice.py", "import uplift.lattice.entry_boxes", "No import cycles"),
         ("uplift/fit/seeds.py", "from uplift.viz import figure", "The core imports nothing above it"),
     ],

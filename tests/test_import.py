@@ -19,25 +19,15 @@ def run_python(code):
     return done.stdout.strip()
 
 
-def test_import_loads_no_dependency():
-    assert run_python(f"import sys, uplift; print({HEAVY} & set(sys.modules))") == "set()"
-
-
-def test_first_use_loads_dependencies():
-    code = f"import sys, uplift; uplift.Atlas; print({HEAVY} & set(sys.modules))"
-    assert run_python(code) == "{'numpy'}"
-
-
-def test_loading_a_cube_needs_only_numpy_and_safetensors():
-    code = f"import sys, uplift; uplift.load(); print(sorted({HEAVY} & set(sys.modules)))"
-    assert run_python(code) == "['numpy', 'safetensors']"
+@pytest.mark.parametrize(
+    ("code", "loaded"), [("pass", []), ("uplift.Atlas", ["numpy"]), ("uplift.load()", ["numpy", "safetensors"])]
+)
+def test_dependencies_are_loaded_when_they_are_used(code, loaded):
+    assert run_python(f"import sys, uplift; {code}; print(sorted({HEAVY} & set(sys.modules)))") == str(loaded)
 
 
 CORE = {"common", "colorimetry", "models", "lattice", "cube", "lookup"}
 HEAVY_OF_FITS = {"colour", "scipy", "jax", "equinox", "optimistix"}
-BUILD = CORE | {"atlas", "fit", "pipeline"}
-QUERY = "import uplift; uplift.load().reflectance([0.5, 0.5, 0.5], wavelengths=[400, 500]); "
-BUILD_2 = "import uplift; uplift.build(dim=2); "
 
 
 def loaded_subpackages(code):
@@ -47,20 +37,15 @@ def loaded_subpackages(code):
     return {name.split(".")[1] for name in ours}, set(modules)
 
 
-def test_build_without_scene_loads_only_the_pipeline_and_the_core():
-    assert loaded_subpackages(BUILD_2)[0] == BUILD
-
-
-def test_query_loads_only_the_numpy_part_of_the_core():
-    subpackages, modules = loaded_subpackages(QUERY)
-    assert subpackages == CORE
-    assert not modules & {"uplift.colorimetry.observer", "uplift.lookup.bulk", *HEAVY_OF_FITS}
-
-
-def test_queries_of_lights_load_the_table_and_the_numpy_part_of_the_core():
-    subpackages, modules = loaded_subpackages("import uplift; uplift.load_emission().spectrum([0.5, 0.5, 0.5])")
-    assert subpackages <= CORE | {"lights"}
-    assert not modules & {"uplift.colorimetry.observer", *HEAVY_OF_FITS}
+def test_builds_and_queries_load_only_the_core():
+    assert loaded_subpackages("import uplift; uplift.build(dim=2)")[0] == CORE | {"atlas", "fit", "pipeline"}
+    for code, more in (
+        ("uplift.load().reflectance([0.5, 0.5, 0.5], wavelengths=[400, 500])", set()),
+        ("uplift.load_emission().spectrum([0.5, 0.5, 0.5])", {"lights"}),
+    ):
+        subpackages, modules = loaded_subpackages(f"import uplift; {code}")
+        assert subpackages <= CORE | more
+        assert not modules & {"uplift.colorimetry.observer", "uplift.lookup.bulk", *HEAVY_OF_FITS}
 
 
 @pytest.mark.parametrize(
@@ -100,11 +85,6 @@ def test_every_public_name_is_documented_in_its_module(name):
     assert home.startswith("uplift.")
     assert home.endswith(f".{name}")
     assert found.__doc__
-
-
-def test_star_import_gives_the_public_names():
-    names = run_python("from uplift import *; print(*sorted(n for n in dir() if n[0] != '_'))")
-    assert names.split() == uplift.__all__
 
 
 def test_unknown_names_raise_attribute_error():

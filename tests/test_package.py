@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import configparser
-import email
 import subprocess
 import sys
 import zipfile
@@ -54,20 +52,6 @@ def test_nothing_else_is_in_it(wheel, repository):
     suffixes = ".c .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .npz .png .ti3 .toml .typed .uplift .xlsx"
     assert {Path(name).suffix for name in library} == set(suffixes.split())
     assert {Path(name).suffix for name in atlases} == {".md", ".txt"}
-
-
-def test_the_command_is_installed_as_uplift(wheel):
-    points = configparser.ConfigParser()
-    points.read_string(info(wheel, "entry_points.txt"))
-    assert dict(points["console_scripts"]) == {"uplift": "uplift_cli.__main__:run"}
-
-
-def test_name_version_python_and_dependencies_are_stated(wheel):
-    stated = email.message_from_string(info(wheel, "METADATA"))
-    assert (stated["Name"], stated["Version"]) == (DISTRIBUTION, uplift.__version__)
-    assert (stated["Requires-Python"], stated["License-Expression"]) == (">=3.11", "BSD-3-Clause")
-    assert {"optimistix>=0.1", "lineax>=0.1", "equinox>=0.13"} <= set(stated.get_all("Requires-Dist"))
-    assert {"cluster", "mitsuba"} <= set(stated.get_all("Provides-Extra"))
 
 
 def test_it_works_from_where_it_is_installed(wheel, tmp_path):

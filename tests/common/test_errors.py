@@ -48,8 +48,3 @@ def test_unknown_name_suggests_near_names_regardless_of_case():
     assert error.problem == "unknown illuminant 'd56'"
     assert "'D65'" in error.hint
     assert "'A'" not in error.hint
-
-
-def test_unknown_name_lists_valid_names_if_none_is_near():
-    assert unknown_name("?", ("none", "vision"), "warp").hint == "did you mean 'none', 'vision'?"
-    assert unknown_name("?", (), "warp").hint == ""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.helpers import raises
-from uplift.common.errors import PaletteError, PlanFileError, UnknownNameError
-from uplift.common.spec_file import SpecModel, problem, read_json, read_toml, resolves
+from uplift.common.errors import PaletteError, PlanFileError
+from uplift.common.spec_file import SpecModel, read_json, read_toml
 
 TEXT = """title = "a = [b]"
 point.x = 1
@@ -54,13 +54,6 @@ def test_errors_name_line_and_key_path(file, keys, line, dotted):
     assert caught.value.hint == "raise it"
 
 
-def test_messages_have_one_line_and_a_limited_length(file):
-    with pytest.raises(PaletteError) as caught:
-        file().fail((), "bad\n\x00\u2028" + "x" * 1000, code="invalid-value")
-    assert len(str(caught.value).splitlines()) == 1
-    assert len(caught.value.problem) < 500
-
-
 class Table(SpecModel):
     """A table with an alias and a looked-up name."""
 
@@ -73,23 +66,6 @@ def test_keys_have_hyphens_and_unknown_ones_are_refused(file):
     with raises(PaletteError, "unknown-key") as caught:
         file("max_value = 3").validate(Table)
     assert "'max-value'" in caught.value.hint
-
-
-def test_the_default_hint_is_used_where_there_is_no_other(file):
-    with raises(PaletteError, "invalid-value") as caught:
-        file("name = 3").validate(Table, hint="read the manual")
-    assert caught.value.hint == "read the manual"
-
-
-def test_errors_of_look_ups_keep_code_and_hint(file):
-    def look_up(name):
-        raise UnknownNameError(f"unknown thing '{name}'", code="unknown-thing", hint="try another")
-
-    check = resolves(look_up).func
-    with pytest.raises(type(problem("a", "b"))) as caught:
-        check("x")
-    assert caught.value.context["code"] == "unknown-thing"
-    assert caught.value.context["hint"] == "try another"
 
 
 @pytest.mark.parametrize("depth", [20, 40])
