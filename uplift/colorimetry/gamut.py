@@ -325,7 +325,8 @@ def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMa
         if not finite.all():
             problem = f"linear RGB {_format_rgb(rows[finite.argmin()])} is not finite"
             raise ColourError(problem, code="rgb-not-finite", hint="fix its source")
-        rows *= np.minimum(1, LARGEST / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1))
+        if method != "clip":  # which leaves other channels as they are
+            rows *= np.minimum(1, LARGEST / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1))
         blocks = (rows[first : first + BLOCK] for first in range(0, len(rows), BLOCK))
         mapped = np.concatenate([MAPPINGS[method](block, gamut) for block in blocks])
         inside[outside] = np.clip(mapped, 0, 1)  # removes rounding errors

@@ -43,9 +43,13 @@ def check_regular(path: StrPath, error: type[UpliftError], *, hint: str) -> None
     """Check that a path is a regular file, which ends and can be read twice; raise ``error`` otherwise."""
     try:
         mode = os.stat(path).st_mode
+    except (FileNotFoundError, NotADirectoryError) as cause:
+        raise error("no such file", code="file-not-found", path=path, hint=hint) from cause
     except (OSError, ValueError) as cause:
         raise _unreadable(path, error, hint, cause) from cause
-    _check_mode(mode, path, error, hint)
+    if not stat.S_ISREG(mode):
+        kind = "a folder" if stat.S_ISDIR(mode) else "a device or a pipe"
+        raise error(f"must be a file, got {kind}", code="not-a-regular-file", path=path, hint=hint)
 
 
 def read_bytes(path: StrPath, error: type[UpliftError], *, limit: int, hint: str) -> bytes:
@@ -53,10 +57,7 @@ def read_bytes(path: StrPath, error: type[UpliftError], *, limit: int, hint: str
     check_regular(path, error, hint=hint)
     try:
         with open(os.open(path, READ), "rb") as file:
-            _check_mode(os.fstat(file.fileno()).st_mode, path, error, hint)  # another file may have this name now
             data = file.read(limit + 1)
-    except UpliftError:
-        raise
     except (OSError, ValueError) as cause:
         raise _unreadable(path, error, hint, cause) from cause
     if data is None:
@@ -66,15 +67,7 @@ def read_bytes(path: StrPath, error: type[UpliftError], *, limit: int, hint: str
     return data
 
 
-def _check_mode(mode: int, path: StrPath, error: type[UpliftError], hint: str) -> None:
-    if not stat.S_ISREG(mode):
-        kind = "a folder" if stat.S_ISDIR(mode) else "a device or a pipe"
-        raise error(f"must be a file, got {kind}", code="not-a-regular-file", path=path, hint=hint)
-
-
 def _unreadable(path: StrPath, error: type[UpliftError], hint: str, cause: Exception) -> UpliftError:
-    if isinstance(cause, FileNotFoundError | NotADirectoryError):
-        return error("no such file", code="file-not-found", path=path, hint=hint)
     reason = getattr(cause, "strerror", None) or cause  # a null byte in the path has none
     return error(f"cannot be read: {reason}", code="file-unreadable", path=path, hint=hint)
 
@@ -104,40 +97,31 @@ def check_output(path: StrPath, *, inputs: Iterable[StrPath | None] = (), force:
     if os.fspath(path) == "-":
         hint = "give a file name, or ./- for a file of this name"
         raise OutputError("stands for standard output, which cannot hold a file", path=path, hint=hint)
-    path = Path(path)
+    path, status = Path(path), None
     try:
         status = path.stat()
-        target = path.resolve()
-    except (FileNotFoundError, NotADirectoryError):
-        status, target = None, path.resolve()
-    except PermissionError as error:
-        raise _no_permission(path, path.parent) from error
-    except (OSError, ValueError) as error:  # too long, with NUL, or a loop of links
+    except FileNotFoundError:
+        pass
+    except (OSError, ValueError) as error:  # no permission, too long, with NUL, or a loop of links
         reason = getattr(error, "strerror", None) or error
         raise OutputError(f"cannot be written: {reason}", path=path, hint="choose another name") from error
     if status is not None:
-        _check_existing(path, status, inputs, force)
-    if not target.parent.is_dir():
-        raise OutputError(f"the folder {target.parent} does not exist", path=path, hint="create it first")
-    if not os.access(target.parent, os.W_OK):
-        raise _no_permission(path, target.parent)
-    return path
-
-
-def _check_existing(path: Path, status: os.stat_result, inputs: Iterable[StrPath | None], force: bool) -> None:
-    for each in inputs:
-        if each is not None and os.path.exists(each) and os.path.samestat(status, os.stat(each)):
+        existing = (each for each in inputs if each is not None and os.path.exists(each))
+        if any(os.path.samestat(status, os.stat(each)) for each in existing):
             problem = "is read as input and must not be replaced"
             raise OutputError(problem, code="output-is-input", path=path, hint="choose another name")
-    if not stat.S_ISREG(status.st_mode):
-        raise OutputError("is not a regular file", code="not-a-regular-file", path=path, hint="name a file to write to")
-    if not force:
-        hint = "pass force=True to replace it, or choose another name"
-        raise OutputError("exists already", code="file-exists", path=path, hint=hint)
-
-
-def _no_permission(path: Path, folder: Path) -> OutputError:
-    return OutputError(f"no permission to write in {folder}", path=path, hint="choose another folder")
+        if not stat.S_ISREG(status.st_mode):
+            problem, hint = "is not a regular file", "name a file to write to"
+            raise OutputError(problem, code="not-a-regular-file", path=path, hint=hint)
+        if not force:
+            hint = "pass force=True to replace it, or choose another name"
+            raise OutputError("exists already", code="file-exists", path=path, hint=hint)
+    folder = path.resolve().parent
+    if not folder.is_dir():
+        raise OutputError(f"the folder {folder} does not exist", path=path, hint="create it first")
+    if not os.access(folder, os.W_OK):
+        raise OutputError(f"no permission to write in {folder}", path=path, hint="choose another folder")
+    return path
 
 
 def check_folder(
@@ -164,7 +148,7 @@ def write_text(text: str, path: StrPath, *, force: bool = False) -> None:
 def atomic_write(path: StrPath, *, force: bool = False) -> Iterator[Path]:
     """Provide a temporary path that is renamed to ``path`` if the block succeeds, and removed if it fails.
 
-    A replaced file keeps its owner and permissions. A symbolic link is kept and its target replaced.
+    A replaced file keeps its permissions. A symbolic link is kept and its target replaced.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -184,7 +168,7 @@ def atomic_write(path: StrPath, *, force: bool = False) -> Iterator[Path]:
         with temporary.open("rb+") as file:
             os.fsync(file.fileno())
         if target.exists():
-            _copy_permissions(target, temporary)
+            temporary.chmod(stat.S_IMODE(target.stat().st_mode) & 0o777)
         os.replace(temporary, target)
     except OutputError:
         raise
@@ -215,12 +199,3 @@ def remove_temporaries() -> None:
 
 def _prefix(target: Path) -> str:
     return f".{target.name[:40]}."
-
-
-def _copy_permissions(old: Path, new: Path) -> None:
-    """Give a new file the owner and permissions of the file that it replaces."""
-    status = old.stat()
-    if hasattr(os, "chown"):
-        with contextlib.suppress(OSError):  # only root can give files away
-            os.chown(new, status.st_uid, status.st_gid)
-    new.chmod(stat.S_IMODE(status.st_mode) & 0o777)

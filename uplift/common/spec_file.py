@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Iterable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
@@ -20,18 +21,20 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from uplift.common.arrays import StrPath
 from uplift.common.errors import UpliftError, unknown_name
 from uplift.common.files import read_bytes
-from uplift.common.json_text import TOO_DEEP, check_values, parse_json
-from uplift.common.text import format_value, shorten
+from uplift.common.text import TOO_DEEP, check_values, format_value, parse_json, shorten
 
 __all__ = ["SpecFile", "SpecModel", "problem", "read_json", "read_toml", "resolves"]
 
 MAX_BYTES = 16 << 20
 """Largest file that is read."""
 HINT = "check the format of the file"
-MAX_PROBLEM = 400
-"""Characters of a message."""
 TAG = "~"
 """First character of the tags of discriminated unions, which are not keys of a file."""
+
+_ASSIGNMENT = re.compile(r"""\s*(\[\[?)?((?:"[^"]*"|'[^']*'|[^][=#"'])+)(?(1)\]|=)""")
+"""Start of a line of TOML: a header with its brackets, or a key."""
+_PART = re.compile(r""""[^"]*"|'[^']*'|[^.\s"']+""")
+"""Part of a dotted key."""
 
 Model = TypeVar("Model")
 Key = str | int
@@ -93,18 +96,25 @@ class SpecFile:
         """Raise the error for the value at a key path, empty for the file."""
         path = self._existing(keys)
         where = f"{_dotted(path)}{' ' if text.startswith('must ') else ': '}" if path else ""
-        text = re.sub(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+", " ", where + text)
-        text = text if len(text) <= MAX_PROBLEM else f"{text[:MAX_PROBLEM]}…"
-        raise self.error(text, code=code, path=self.path, line=self.line(path), hint=hint)
+        raise self.error(where + text, code=code, path=self.path, line=self.line(path), hint=hint)
 
     def line(self, keys: Iterable[Key]) -> int | None:
         """Find the line, from 1, of a key or of the nearest table around it; None if neither is found."""
-        keys = tuple(keys)
-        best, found = 0, None
-        for line, path in _assignments(self.text):
+        keys, best, found = tuple(keys), 0, None
+        table: tuple[Key, ...] = ()
+        counts: Counter[tuple[Key, ...]] = Counter()
+        for number, row in enumerate(self.text.split("\n"), 1):
+            if not (match := _ASSIGNMENT.match(row)):
+                continue
+            path: tuple[Key, ...] = tuple(part.strip("\"'") for part in _PART.findall(match[2]))
+            if match[1]:
+                counts[path] += 1
+                path = table = path if match[1] == "[" else (*path, counts[path] - 1)
+            else:
+                path = table + path
             shared = min(len(path), len(keys))
             if shared > best and path[:shared] == keys[:shared]:
-                best, found = shared, line
+                best, found = shared, number
         return found
 
     def _existing(self, keys: Iterable[Key]) -> tuple[Key, ...]:
@@ -172,24 +182,3 @@ def _dotted(keys: tuple[Key, ...]) -> str:
     """Key path as text: ``apart[2].light``."""
     text = "".join(f"[{key}]" if isinstance(key, int) else f".{shorten(key)}" for key in keys)
     return text.removeprefix(".")
-
-
-def _assignments(text: str) -> Iterator[tuple[int, tuple[Key, ...]]]:
-    """Line and key path of every table header and assignment that starts a line of TOML."""
-    table: tuple[Key, ...] = ()
-    counts: dict[tuple[Key, ...], int] = {}
-    for line, row in enumerate(text.split("\n"), 1):
-        if header := re.match(r"\s*(\[\[?)([^\]=]+)\]", row):
-            table = _split(header[2])
-            if header[1] == "[[":
-                counts[table] = counts.get(table, -1) + 1
-                table = (*table, counts[table])
-            yield line, table
-        elif assignment := re.match(r"""((?:"[^"]*"|'[^']*'|[^=#"'])+)=""", row):
-            yield line, table + _split(assignment[1])
-
-
-def _split(dotted: str) -> tuple[Key, ...]:
-    """Parts of a dotted TOML key, without quotes."""
-    parts = re.findall(r""""[^"]*"|'[^']*'|[^.\s"']+""", dotted)
-    return tuple(part.strip("\"'") for part in parts)

@@ -1,10 +1,22 @@
-"""Text from elsewhere: made safe to show, shortened for messages, and parsed as numbers."""
+"""Text from elsewhere: made safe to show, shortened for messages, and parsed as numbers or JSON."""
 
 from __future__ import annotations
 
+import json
+import math
 import re
+from typing import Any
 
-__all__ = ["format_value", "json_escapes", "parse_float", "parse_whole", "printable", "shorten"]
+__all__ = [
+    "check_values",
+    "format_value",
+    "json_escapes",
+    "parse_float",
+    "parse_json",
+    "parse_whole",
+    "printable",
+    "shorten",
+]
 
 MAX_LENGTH = 40
 """Characters of a received value in a message."""
@@ -75,3 +87,49 @@ def parse_whole(text: str) -> int:
     if not _WHOLE.fullmatch(text):
         raise ValueError(f"not a whole number: {text[:40]!r}")
     return int(text)
+
+
+MAX_DEPTH = 32
+"""Deepest nesting of tables and lists."""
+TOO_DEEP = f"tables and lists must not nest more than {MAX_DEPTH} levels deep"
+MAX_VALUES = 2_000_000
+"""Values and keys of a file, tables and lists included."""
+
+
+def parse_json(text: str) -> Any:
+    """Parse JSON; `ValueError` for text that is not JSON, not finite, not Unicode, or beyond the limits."""
+    try:
+        value = json.loads(text, parse_constant=_finite, parse_float=_finite)
+    except RecursionError:
+        raise ValueError(TOO_DEEP) from None
+    check_values(value)
+    return value
+
+
+def check_values(value: object) -> None:
+    """Raise `ValueError` if parsed values nest too deeply for recursive code, are too many, or have lone surrogates."""
+    level, count = [value], 0
+    for _ in range(MAX_DEPTH + 1):
+        count += len(level)
+        if count > MAX_VALUES:
+            raise ValueError(f"must not have more than {MAX_VALUES:,} values")
+        children: list[Any] = []
+        for each in level:
+            if isinstance(each, dict):
+                children += each.keys()
+                children += each.values()
+            elif isinstance(each, list):
+                children += each
+            elif isinstance(each, str):
+                each.encode()  # raises ValueError for lone surrogates
+        if not children:
+            return
+        level = children
+    raise ValueError(TOO_DEEP)
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"numbers must be finite, got {text[:40]}")
+    return value

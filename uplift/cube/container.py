@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 
 from uplift.common.errors import CubeFileError, OutputError, UpliftError
 from uplift.common.files import atomic_write, check_regular
-from uplift.common.json_text import parse_json
-from uplift.common.text import format_value
+from uplift.common.text import format_value, parse_json
 
 KEY = "uplift"
 """The only metadata entry: safetensors does not keep the order of several."""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
-from uplift.common.threads import single_threaded_blas
+from uplift.common.machine import single_threaded_blas
 
 TOLERANCE, MAX_ITERATIONS = 1e-12, 1000
 """Relative change at which the bounded solver stops, and its limit of iterations."""

@@ -16,8 +16,8 @@ from uplift.colorimetry import observer as observers
 from uplift.colorimetry.lights import STANDARD_ILLUMINANTS, Lamps
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning
+from uplift.common.machine import single_threaded_blas
 from uplift.common.text import format_value
-from uplift.common.threads import single_threaded_blas
 from uplift.common.version import VERSION
 from uplift.lights.discs import lamp_entries
 from uplift.lights.fit import locus_lattice, mix_with_rim, nearest_lights

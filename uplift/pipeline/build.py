@@ -16,9 +16,9 @@ from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCEN
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask, StrPath
 from uplift.common.errors import OptionError, unknown_name
+from uplift.common.machine import single_threaded_blas
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import format_value
-from uplift.common.threads import single_threaded_blas
 from uplift.common.version import VERSION
 from uplift.cube import CubeData
 from uplift.fit.base import learn_base

@@ -12,7 +12,7 @@ from uplift.colorimetry.camera import CAMERA
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.observer import AXES, DEFAULT_OBSERVER, END, START, STEP
 from uplift.common.errors import OptionError, unknown_name
-from uplift.common.memory import total_memory
+from uplift.common.machine import total_memory
 from uplift.common.text import format_value
 from uplift.cube.file import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
 from uplift.models import Moments, Phase, Sigmoid

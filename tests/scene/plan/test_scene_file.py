@@ -60,7 +60,7 @@ TEXTURES = "textures = 'a.png'\n"
         (TEXTURES + "tolerance = nan", 2, "tolerance"),
         (TEXTURES + "quantile = 97.5", 2, "quantile"),
         (TEXTURES + "encoding = 'gamma'", 2, ""),
-        (TEXTURES + '"a\\nb" = 3', None, "a b"),
+        (TEXTURES + '"a\\nb" = 3', None, "a\nb"),
         (TEXTURES + "illuminant = 'D66'", 2, "illuminant"),
     ],
 )

@@ -14,7 +14,7 @@ import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.common.threads import single_threaded_blas
+from uplift.common.machine import single_threaded_blas
 from uplift.design.palette.colours import lab_per_rgb, screen_matrix
 
 MAX_REFLECTIONS = 3

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.errors import ColourError, TextureError, UpliftError
-from uplift.common.memory import total_memory
+from uplift.common.machine import total_memory
 from uplift.io.texture import exr_file
 from uplift.io.texture.colour_profile import Profile, read_profile
 

@@ -12,7 +12,7 @@ from scipy.optimize import least_squares
 from uplift.colorimetry.delta_e import delta_e_2000, lab_jacobian
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.common.threads import single_threaded_blas
+from uplift.common.machine import single_threaded_blas
 from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, evaluate, midpoints, ordered, prefiltered
 
 STEP = 1e-3

@@ -9,7 +9,7 @@ import pytest
 import scipy.linalg  # noqa: F401
 from threadpoolctl import OpenBLASController, threadpool_info, threadpool_limits
 
-from uplift.common.threads import single_threaded_blas
+from uplift.common.machine import single_threaded_blas
 
 
 def blas_threads():

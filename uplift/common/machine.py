@@ -1,10 +1,12 @@
-"""Threads of linear algebra."""
+"""The machine: threads of linear algebra, and memory."""
 
 from __future__ import annotations
 
+import contextlib
+import os
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 
@@ -38,7 +40,7 @@ class _SharedLimit:
 _LIMIT = _SharedLimit()
 
 
-@contextmanager
+@contextlib.contextmanager
 def single_threaded_blas() -> Iterator[None]:
     """Limit BLAS to one thread, until the last of several concurrent callers is done.
 
@@ -51,3 +53,18 @@ def single_threaded_blas() -> Iterator[None]:
     per_thread = ThreadpoolController().select(threading_layer="openmp")  # its limits hold for the calling thread
     with per_thread.limit(limits=1, user_api="blas"), _LIMIT:
         yield
+
+
+CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
+"""Limits of a container, by version of cgroups."""
+
+
+def total_memory() -> int | None:
+    """Return the bytes that this process may have at most, None if unknown: of the machine or of its container."""
+    limits = []
+    with contextlib.suppress(AttributeError, ValueError, OSError):  # not on Windows
+        limits.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    for path in CGROUP_LIMITS:
+        with contextlib.suppress(OSError, ValueError):  # "max" without a limit
+            limits.append(int(Path(path).read_text()))
+    return min(limits, default=None)
