@@ -227,14 +227,8 @@ def largest_difference(volumes: MismatchVolumes, xyz: Array) -> LargestDifferenc
     search = _Search(volumes, reference)
     slope = search.slope(row, corners[row, faces])
     found = search.ascend(row, slope, basis)
-    best = _Metamers(
-        np.concatenate([sampled, found.delta_e.reshape(-1, PARTS)], axis=1),
-        np.concatenate([volumes.xyz, found.xyz.reshape(-1, PARTS, 3)], axis=1),
-        np.concatenate(
-            [np.broadcast_to(volumes.normals, volumes.xyz.shape), found.direction.reshape(-1, PARTS, 3)], axis=1
-        ),
-        np.concatenate([volumes.basis, found.basis.reshape(-1, PARTS, 3)], axis=1),
-    ).best()
+    normals = np.broadcast_to(volumes.normals, volumes.xyz.shape)
+    best = _most_different(len(xyz), _Metamers(sampled, volumes.xyz, normals, volumes.basis), found)
     for _ in range(REFINEMENTS):
         best = search.around(best)
     return LargestDifference(best.delta_e, np.maximum(outer.max(axis=1), best.delta_e), best.xyz)
@@ -250,10 +244,14 @@ class _Metamers(NamedTuple):
     basis: Indices
     """(..., 3)"""
 
-    def best(self) -> _Metamers:
-        """Of (n, k) metamers the (n,) most different ones."""
-        rows = np.arange(len(self.delta_e))
-        return _Metamers(*(each[rows, self.delta_e.argmax(axis=1)] for each in self))
+
+def _most_different(count: int, *parts: _Metamers) -> _Metamers:
+    """Choose the most different metamer of each of n colours, of which each part has the same number in order."""
+    delta_e, *others = zip(*parts, strict=True)
+    differences = np.concatenate([each.reshape(count, -1) for each in delta_e], axis=1)
+    best = np.arange(count), differences.argmax(axis=1)
+    joined = (np.concatenate([each.reshape(count, -1, 3) for each in other], axis=1) for other in others)
+    return _Metamers(differences[best], *(each[best] for each in joined))
 
 
 @dataclass(frozen=True, eq=False)
@@ -292,12 +290,7 @@ class _Search:
         directions = (middle[:, None] + RING) @ np.linalg.inv(scale)
         row = np.repeat(np.arange(count), len(RING))
         ring = self.extremes(row, directions.reshape(-1, 3), np.repeat(best.basis, len(RING), axis=0))
-        return _Metamers(
-            *(
-                np.concatenate([old[:, None], new.reshape(count, len(RING), *new.shape[1:])], axis=1)
-                for old, new in zip(best, ring, strict=True)
-            )
-        ).best()
+        return _most_different(count, best, ring)
 
     def slope(self, row: Indices, xyz: Array) -> Array:
         """Derivative (m, 3) of ΔE00 with respect to XYZ (m, 3)."""
