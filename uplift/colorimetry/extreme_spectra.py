@@ -1,9 +1,9 @@
 """Extreme reflectances of a colour: of all reflectances in [0, 1] with given RGB, the one with the largest response.
 
 maximise c · g subject to W g = r, 0 ≤ g ≤ 1, for many problems at once. At the optimum g is 0 or 1 but at three
-wavelengths, the basis. Any three wavelengths with independent colours may start: the signs of the reduced responses
-u = c − λ W put the others at a bound. A step exchanges the wavelength of the basis whose reflectance violates [0, 1]
-most, and passes all changes of sign that still lower the dual objective λ · r + Σ max(u, 0).
+wavelengths, the basis. The signs of the reduced responses u = c − λ W put the others at a bound. A step exchanges the
+wavelength of the basis whose reflectance violates [0, 1] most, and passes all changes of sign that still lower the
+dual objective λ · r + Σ max(u, 0).
 
 References
 ----------
@@ -43,10 +43,7 @@ class ExtremeSpectra(NamedTuple):
 
 
 def extreme_spectra(matrix: Array, rgb: Array, response: Array, basis: Indices | None = None) -> ExtremeSpectra:
-    """Find the reflectances of given colours with the largest responses.
-
-    Shapes: ``matrix`` (3, N), ``rgb`` (n, 3), ``response`` (n, N), ``basis`` (n, 3).
-    """
+    """Find the reflectances of colours (n, 3) with the largest responses (n, N), from a ``basis`` (n, 3)."""
     start = np.tile(first_basis(matrix), (len(rgb), 1)) if basis is None else basis
     found = ExtremeSpectra(np.empty(response.shape), start.copy(), np.zeros(len(rgb), dtype=bool))
     rows = max(BLOCK_NUMBERS // matrix.shape[1], 1)
@@ -62,10 +59,7 @@ def extreme_spectra(matrix: Array, rgb: Array, response: Array, basis: Indices |
 
 
 def first_basis(matrix: Array) -> Indices:
-    """Choose three wavelengths with independent colours: of each row, the largest part that others do not share.
-
-    Shapes: ``matrix`` (3, N) → (3,).
-    """
+    """Choose three wavelengths (3,) with independent colours: the largest part that those before do not share."""
     rest, chosen = matrix.copy(), []
     for _ in range(3):
         lengths = np.linalg.norm(rest, axis=0)
@@ -115,6 +109,7 @@ def _solve(matrix: Array, rgb: Array, response: Array, found: ExtremeSpectra) ->
 
 def _state(matrix: Array, rgb: Array, response: Array, basis: Indices) -> tuple[Array, Array, Array, Array]:
     """Reduced responses (n, N), reflectances (n, 3) of the basis, inverse (n, 3, 3), reflectances (n, N) at bounds."""
+    # λ = c_B W_B⁻¹ for the basis B, u = c − λ W, g = 1 where u > 0, and g_B = W_B⁻¹ (r − W g)
     rows = np.arange(len(basis))[:, None]
     inverse = np.asarray(np.linalg.inv(matrix.T[basis].mT))
     multipliers = (np.take_along_axis(response, basis, axis=1)[:, None, :] @ inverse)[:, 0]

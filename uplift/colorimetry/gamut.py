@@ -1,13 +1,10 @@
 """Display gamuts by primaries and white, and gamut mapping of linear RGB outside [0, 1] (docs/display.md).
 
-Fishkin 1983, *Applying Color Science to Computer Graphics*, chapter 4: chromaticities of the primaries give the columns
-of the matrix to XYZ up to their lengths, and the white gives the lengths. Chapter 6 distinguishes two cases. A colour
-too bright for the display is scaled (6.1). A chromaticity outside the triangle of the primaries moves toward white on a
-straight line, which keeps the dominant wavelength (6.2.3). There the thesis multiplies the result by R + G + B, and
-calls this luminance. Here the luminance itself is kept.
+Fishkin 1983, *Applying Color Science to Computer Graphics*, chapters 4 and 6: a colour too bright for the display is
+scaled (6.1); a chromaticity outside the triangle of the primaries moves toward white on a straight line, which keeps
+the dominant wavelength (6.2.3). There the thesis keeps R + G + B, here the luminance is kept.
 
-Oklab (Ottosson 2020, "A perceptual color space for image processing") is a space in which lines of constant hue are
-nearly straight. L is 0 for black and 1 for white, a and b are 0 for grey.
+In Oklab (Ottosson 2020, "A perceptual color space for image processing") lines of constant hue are nearly straight.
 """
 
 from __future__ import annotations
@@ -48,9 +45,7 @@ OKLAB = np.array(
 NEARLY = 2.5e-3
 """Linear RGB, relative to the largest component, by which a line in Oklab may leave the gamut before its edge.
 
-The boundary of a gamut is concave near blue: lines from grey leave sRGB by 0.0008, ACEScg by 0.0021, and return.
-Stopping at the first exit would map neighbouring colours far apart.
-"""
+The boundary is concave near blue: lines from grey leave sRGB by 0.0008, ACEScg by 0.0021, and return."""
 HALVINGS = 24
 """Bisection steps along a line."""
 
@@ -62,10 +57,7 @@ BLOCK = 1 << 13
 
 
 class Gamut(Protocol):
-    """An RGB space whose linear RGB in [0, 1] can be displayed.
-
-    Both `Primaries` and `uplift.colorimetry.sensor.Sensor` fulfil this protocol.
-    """
+    """An RGB space whose linear RGB in [0, 1] can be displayed, such as `Primaries` and sensors."""
 
     @property
     def rgb_to_xyz(self) -> Array:
@@ -145,14 +137,7 @@ SRGB = Primaries((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), (0.3127, 0.3290))
 
 
 def conversion(source: Gamut, target: Gamut) -> Array:
-    """Compute the matrix between the linear RGB of two gamuts, with Bradford adaptation of the white.
-
-    Shape (3, 3).
-
-    >>> import numpy as np
-    >>> bool(np.allclose(conversion(SRGB, SRGB), np.eye(3)))
-    True
-    """
+    """Compute the matrix (3, 3) between the linear RGB of two gamuts, with Bradford adaptation of the white."""
     before, after = (BRADFORD @ gamut.rgb_to_xyz.sum(axis=1) for gamut in (source, target))
     adapt = np.linalg.solve(BRADFORD, (after / before)[:, None] * BRADFORD)
     matrix = np.linalg.solve(target.rgb_to_xyz, adapt @ source.rgb_to_xyz)
@@ -239,7 +224,6 @@ MAPPINGS: dict[str, Mapping] = {
     "desaturate": desaturate,
     "desaturate-oklab": desaturate_oklab,
 }
-"""Mappings by the name of their method."""
 METHODS = ("error", *MAPPINGS)
 """Names of the methods; ``"error"`` raises instead of moving a colour."""
 

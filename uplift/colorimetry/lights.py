@@ -67,7 +67,6 @@ class Lamps:
     """Spectral powers of lamps."""
 
     names: tuple[str, ...]
-    """Names, each once."""
     power: Array
     """(L, N) Power at the wavelengths of a sensor, not negative, relative to the equal-energy light of luminance 1."""
 

@@ -2,14 +2,11 @@
 
 Of all reflectances in [0, 1] with linear RGB r under the build illuminant, the XYZ under a second light fill a convex
 body: the object-colour solid of the six sensors, cut at r. In each direction its boundary is the XYZ of one extreme
-reflectance (`uplift.colorimetry.extreme_spectra`). The directions are spread evenly after the space is scaled so that
-the responses of the second light that the sensor does not share have the same size in all directions.
+reflectance (`uplift.colorimetry.extreme_spectra`).
 
 ΔE00 is not convex, so the search for the metamer that differs most from a given one starts in 20 parts of the volume:
-the triangles of directions within each triangle of the icosahedron. The metamer of a start is the extreme in the
-direction in which ΔE00 rises fastest at the outer corner that is most different. Each step goes to the extreme in the
-direction in which ΔE00 rises fastest at the current one, and ends where the new metamer differs no more. Finally,
-directions close to that of the best metamer are tried.
+the triangles of directions within each triangle of the icosahedron. Each step goes to the extreme in the direction in
+which ΔE00 rises fastest at the current one. Finally, directions close to that of the best metamer are tried.
 
 References
 ----------

@@ -1,7 +1,4 @@
-"""RGB spaces by name: of colour-science, of OpenColorIO, or by chromaticities.
-
-Names of OpenColorIO are those of the configuration in ``$OCIO``, and of the built-in one of ACES.
-"""
+"""RGB spaces by name: of colour-science, of OpenColorIO (``$OCIO`` and its built-in ACES), or by chromaticities."""
 
 from __future__ import annotations
 
@@ -32,7 +29,7 @@ SHORT_NAMES = {
     "ap0": "ACES2065-1", "ap1": "ACEScg", "p3": "Display P3", "prophoto": "ProPhoto RGB",
     "rec709": "ITU-R BT.709", "bt709": "ITU-R BT.709", "rec2020": "ITU-R BT.2020", "bt2020": "ITU-R BT.2020",
 }  # fmt: skip
-"""Names of colour-science by usual short ones, in lower case and without punctuation."""
+"""Short names, in lower case and without punctuation."""
 FIRST_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "Adobe RGB (1998)")
 """Spaces of colour-science that stand for others with the same primaries."""
 MAX_MATRIX_DIFFERENCE = 1e-3
@@ -114,10 +111,7 @@ class OcioSpace:
 
 
 def find_space(text: str) -> ImageSpace:
-    """Find an RGB space by name, or by chromaticities.
-
-    Names of the configuration in ``$OCIO`` come first, then those of colour-science and short ones such as ``AP1`` or
-    ``rec2020``, then those of the configuration that OpenColorIO contains.
+    """Find an RGB space by chromaticities, or by name: of ``$OCIO``, colour-science, or the built-in configuration.
 
     >>> find_space("rec2020").name, find_space("lin_ap1_scene").name
     ('ITU-R BT.2020', 'ACEScg')

@@ -1,7 +1,6 @@
 """Colours as codes: the sRGB transfer curve (IEC 61966-2-1), linear RGB for display, and colours as files write them.
 
-Screens and image viewers interpret a PNG as sRGB for every space of the cube, so this is separate from the encoding
-of a cube.
+Image viewers show a PNG as sRGB for every space of the cube, so this is separate from the encoding of a cube.
 """
 
 from __future__ import annotations
@@ -37,11 +36,8 @@ def decode(codes: Array) -> Array:
 def decode_portably(codes: Array) -> Array:
     """Convert encoded sRGB to linear values, with the same doubles on every CPU.
 
-    The powers of numpy and of C libraries differ in the last bit between instruction sets (AVX-512 and others). Here
-    they are computed in decimal arithmetic and rounded once; every other operation is a single one of IEEE 754, which
-    defines its rounding. This is slow and intended for the nodes of a lattice axis.
-
-    Shapes: ``codes`` (n,) → (n,).
+    The powers of numpy differ in the last bit between instruction sets (AVX-512 and others). Here they are computed in
+    decimal arithmetic and rounded once, which is slow; IEEE 754 defines how every other operation rounds.
 
     >>> import numpy as np
     >>> decode_portably(np.array([0.0, 0.5, 1.0])).tolist()
@@ -66,9 +62,7 @@ def to_display_codes(rgb: ArrayLike, gamut: Gamut) -> Array:
 
 
 def hex_codes(rgb: Array, gamut: Gamut = SRGB) -> list[str]:
-    """Convert linear RGB of a gamut to ``#rrggbb`` codes, by `to_display_codes`.
-
-    Shapes: ``rgb`` (n, 3).
+    """Convert linear RGB (n, 3) of a gamut to ``#rrggbb`` codes, by `to_display_codes`.
 
     >>> import numpy as np
     >>> hex_codes(np.array([[1.0, 0.5, 0.0]]))
