@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +27,6 @@ COMMENTS = (
     "Absent points, of a cube built for a scene, hold nothing but their status."
 )
 """The ``comments`` attribute of every part."""
-
-Number = TypeVar("Number", bound=np.generic)
 
 
 def attributes(data: CubeData) -> dict[str, Any]:
@@ -108,7 +106,7 @@ def check_slices(path: str | os.PathLike[str], *, force: bool = False) -> None:
     check_output(path, force=force)
 
 
-def blue_slices(values: NDArray[Number], dim: int) -> NDArray[Number]:
+def blue_slices(values: NDArray[Any], dim: int) -> NDArray[Any]:
     """Arrange the values (dim³, …) of nodes as a view (dim, dim, dim, …) with axes blue, row, red.
 
     Image rows count downwards, so row 0 has the highest green: ``row = dim − 1 − green``.

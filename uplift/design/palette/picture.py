@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,10 +60,12 @@ def _add_samples(weights: Weights, x: Array, y: Array) -> None:
         weights[rows, columns, number] += _shade(points)
     # All other materials from the outside in, attenuated by the skin.
     rows, columns, points = _intersect_sphere(x, y, BALL, RADIUS * SKIN)
-    met, hits = _intersect_opened(points)
-    depth = (1 - np.linalg.norm(hits.points, axis=1)) * (count - first - 1 + CORE)
+    met, points, normals, is_cut = _intersect_opened(points)
+    depth = (1 - np.linalg.norm(points, axis=1)) * (count - first - 1 + CORE)
     layer = np.clip(np.floor(depth + 1e-9).astype(int), 0, count - first - 1)
-    shade = _shade(hits.normals) * _corner_darkening(hits)
+    # Darker where walls of the cut meet: 1 is the wall itself.
+    dark = np.exp(-np.maximum(points, 0) / CORNER).sum(axis=1) - 1
+    shade = _shade(normals) * np.where(is_cut, 1 - 0.3 * np.clip(dark, 0, 2), 1)
     if first:
         dx, dy = x[columns[met]] - BALL[0], y[rows[met]] - BALL[1]
         shade *= 1 - _opacity(np.sqrt(RADIUS**2 - dx**2 - dy**2) / RADIUS)
@@ -86,17 +87,11 @@ def _intersect_sphere(
     return rows, columns, np.stack([dx[columns], dy[rows], np.sqrt(square[rows, columns])], axis=1)
 
 
-@dataclass(frozen=True, eq=False)
-class _Hits:
-    """Intersections of k rays: positions in radii from the centre, normals, and whether they lie on the cut."""
+def _intersect_opened(points: Array) -> tuple[NDArray[np.bool_], Array, Array, NDArray[np.bool_]]:
+    """Intersect the sphere without its octant. Rays that enter there reach a wall, or leave it (mask False).
 
-    points: Array
-    normals: Array
-    cut: NDArray[np.bool_]
-
-
-def _intersect_opened(points: Array) -> tuple[NDArray[np.bool_], _Hits]:
-    """Intersect the sphere without its octant. Rays that enter there reach a wall, or leave it (mask False)."""
+    For the other rays, return positions in radii from the centre, normals, and whether they lie on the cut.
+    """
     axes = cut_axes()
     rotated, direction = points @ axes, axes[2]
     cut = np.asarray((rotated > 0).all(axis=1))
@@ -104,7 +99,7 @@ def _intersect_opened(points: Array) -> tuple[NDArray[np.bool_], _Hits]:
     wall_point = rotated - steps.min(axis=1, keepdims=True) * direction
     met = ~cut | ((wall_point**2).sum(axis=1) < 1)
     normals = np.where(cut[:, None], axes[:, steps.argmin(axis=1)].T, points)
-    return met, _Hits(np.where(cut[:, None], wall_point, rotated)[met], normals[met], cut[met])
+    return met, np.where(cut[:, None], wall_point, rotated)[met], normals[met], cut[met]
 
 
 def cut_axes() -> Array:
@@ -121,12 +116,6 @@ def _shade(normals: Array) -> Array:
     return np.minimum(AMBIENT + key + fill, 1)
 
 
-def _corner_darkening(hits: _Hits) -> Array:
-    """Return the darkening where walls of the cut meet."""
-    dark = np.exp(-np.maximum(hits.points, 0) / CORNER).sum(axis=1) - 1  # 1 is the wall itself
-    return np.where(hits.cut, 1 - 0.3 * np.clip(dark, 0, 2), 1)
-
-
 def read_weights(path: StrPath, names: Sequence[str], labels: Mapping[str, str] | None = None) -> Weights:
     """Read the amounts (H, W, n) of n materials in each pixel of an image.
 
@@ -139,15 +128,12 @@ def read_weights(path: StrPath, names: Sequence[str], labels: Mapping[str, str] 
         part = image.parts[0]
         width, height = part.window.width, part.window.height
         if width * height > MAX_PIXELS:
-            raise TextureError(
-                f"image must have at most {MAX_PIXELS:,} pixels, got {width} × {height}",
-                path=path,
-                hint="scale it down without interpolation",
-            )
+            problem = f"image must have at most {MAX_PIXELS:,} pixels, got {width} × {height}"
+            raise TextureError(problem, hint="scale it down without interpolation")
         values = np.concatenate([band for _, band in image.bands(part)])
-    if part.max_code:
-        return _weights_of_labels(path, part, values, codes, len(names))
-    return _weights_of_channels(path, part, values, names)
+        if part.max_code:
+            return _weights_of_labels(part, values, codes, len(names))
+        return _weights_of_channels(part, values, names)
 
 
 def _parse_labels(names: Sequence[str], labels: Mapping[str, str]) -> dict[int, int]:
@@ -167,11 +153,10 @@ def _parse_labels(names: Sequence[str], labels: Mapping[str, str]) -> dict[int, 
     return codes
 
 
-def _weights_of_labels(path: StrPath, part: Part, values: Values, codes: Mapping[int, int], count: int) -> Weights:
+def _weights_of_labels(part: Part, values: Values, codes: Mapping[int, int], count: int) -> Weights:
     channels = colour_channels(part)
     if channels is None or part.max_code != 255:
-        text = "an image of labels must have 8-bit colours"
-        raise TextureError(text, path=path, hint="convert it to an 8-bit PNG")
+        raise TextureError("an image of labels must have 8-bit colours", hint="convert it to an 8-bit PNG")
     red, green, blue = (values[..., channel].astype(np.int32) for channel in channels.rgb)
     pixels = (red << 16) | (green << 8) | blue
     alpha = values[..., part.channels.index("A")] / 255 if "A" in part.channels else np.ones(pixels.shape)
@@ -184,7 +169,6 @@ def _weights_of_labels(path: StrPath, part: Part, values: Values, codes: Mapping
         more = ", …" if unknown.sum() > MAX_LISTED else ""
         raise TextureError(
             f"every colour must be a label, got {counts[unknown].sum():,} pixels of {listed}{more}",
-            path=path,
             hint="give each colour a label, and draw without antialiasing",
         )
     weights = np.zeros((*pixels.shape, count), dtype=np.float32)
@@ -193,18 +177,16 @@ def _weights_of_labels(path: StrPath, part: Part, values: Values, codes: Mapping
     return weights
 
 
-def _weights_of_channels(path: StrPath, part: Part, values: Values, names: Sequence[str]) -> Weights:
+def _weights_of_channels(part: Part, values: Values, names: Sequence[str]) -> Weights:
     present = [row for row, name in enumerate(names) if name in part.channels]
     if not present:
         raise TextureError(
             f"an image of weights must have a channel named after a material ({', '.join(names)})",
-            path=path,
             hint="rename its channels, or use an 8-bit image of labels",
         )
     weights = np.zeros((*values.shape[:2], len(names)), dtype=np.float32)
     for row in present:
         weights[..., row] = values[..., part.channels.index(names[row])]
     if not (np.isfinite(weights).all() and weights.min() >= 0):
-        text = "weights must be finite and not negative"
-        raise TextureError(text, path=path, hint="correct the image")
+        raise TextureError("weights must be finite and not negative", hint="correct the image")
     return weights

@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, PlainValidator, Tag, model_validator
@@ -101,19 +101,12 @@ def _check_name(name: str) -> str:
     return name
 
 
-def _check_true(value: Any) -> bool:
-    if value is not True:
-        raise problem(INVALID, f"must be true, got {format_value(value)}", "leave it out otherwise")
-    return True
-
-
 _NonNegative = Annotated[float, Field(strict=True, ge=0, le=MAX_NUMBER, allow_inf_nan=False)]
 _Kelvin = Annotated[float, Field(strict=True, ge=MIN_KELVIN, le=MAX_KELVIN, allow_inf_nan=False)]
 _Count = Annotated[float, Field(strict=True, ge=COUNTS[0], le=COUNTS[-1], multiple_of=1)]
 _Name = Annotated[str, AfterValidator(_check_name)]
 _Colour = Annotated[WrittenColour, PlainValidator(_parse_colour)]
 _Bounds = Annotated[tuple[float, float], PlainValidator(_parse_bounds)]
-_TrueFlag = Annotated[bool, PlainValidator(_check_true)]
 
 
 class _KnownLight(SpecModel):
@@ -158,7 +151,7 @@ class _BlackBodyLight(_KnownLight):
 
 
 class _DesignedLight(SpecModel):
-    design: _TrueFlag
+    design: Literal[True]
     bounds: _Bounds = (0.0, math.inf)
 
     def spectrum(self, name: str, sensor: Sensor) -> SpectrumSpec:
@@ -199,7 +192,7 @@ class _RgbMaterial(SpecModel):
 
 
 class _DesignedMaterial(SpecModel):
-    design: _TrueFlag
+    design: Literal[True]
     bounds: _Bounds = (0.0, 1.0)
 
     @property
