@@ -1,4 +1,4 @@
-"""Scene descriptions: properties, defaults and errors."""
+"""Scene descriptions of colours and of lights: properties, defaults, errors, and the environment."""
 
 from __future__ import annotations
 
@@ -8,10 +8,14 @@ import numpy as np
 import pytest
 
 from tests.helpers import raises
+from tests.io.texture.conftest import planes, write_exr
 from uplift.common.errors import OptionError
+from uplift.io import texture
 from uplift.io.mitsuba import register
+from uplift.lights.lookup import load_emission
 from uplift.lookup import load
 
+pytestmark = pytest.mark.filterwarnings("ignore:.*calls Python for every ray")
 COLOUR = [0.5, 0.25, 0.1]
 WAVELENGTHS = np.arange(362.5, 830, 50)
 
@@ -74,3 +78,137 @@ def test_missing_mitsuba_raises(monkeypatch):
     monkeypatch.setitem(sys.modules, "mitsuba", None)
     with raises(OptionError, "mitsuba-not-installed"):
         register()
+
+
+SUNSET = (3.0, 1.0, 0.2)
+SAMPLED = (450.0, 520.5, 600.0)
+
+
+@pytest.fixture(scope="module")
+def table():
+    return load_emission()
+
+
+@pytest.fixture(scope="module")
+def sky():
+    """Linear RGB (8, 16, 3): a gradient with a bright spot."""
+    rows, columns = np.mgrid[0:8, 0:16]
+    rgb = np.stack([0.2 + rows / 8, 0.5 + columns / 32, 1.0 - rows / 10], axis=-1)
+    rgb[2, 3] = (900.0, 800.0, 500.0)
+    return rgb.astype(np.float32)
+
+
+@pytest.fixture
+def radiance(mi):
+    """Function that evaluates the radiance (N,) of an emitter along a direction."""
+    import drjit
+
+    def radiance(emitter, direction, wavelengths):
+        si = drjit.zeros(mi.SurfaceInteraction3f)
+        si.wi = -mi.Vector3f(direction)
+        found = []
+        for wavelength in wavelengths:
+            si.wavelengths = mi.Spectrum(float(wavelength))
+            found.append(emitter.eval(si)[0])
+        return np.array(found)
+
+    return radiance
+
+
+def environment(mi, rgb, **properties):
+    return mi.load_dict({"type": "uplift_envmap", "bitmap": mi.Bitmap(rgb), **properties})
+
+
+def test_colours_have_the_spectra_of_the_table(mi, table, sky, spectrum):
+    light = mi.load_dict({"type": "uplift", "emission": True, "rgb": list(SUNSET)})
+    exact = 450.0, 520.0, 600.0
+    np.testing.assert_allclose(spectrum(light, (0.5, 0.5), exact), table.spectrum(SUNSET, exact), rtol=1e-5)
+    light = mi.load_dict({"type": "uplift", "emission": True, "bitmap": mi.Bitmap(sky)})
+    for row, column in ((0, 0), (2, 3), (7, 15)):
+        found = spectrum(light, ((column + 0.5) / 16, (row + 0.5) / 8), SAMPLED)
+        np.testing.assert_allclose(found, table.spectrum(sky[row, column], SAMPLED), rtol=1e-4)
+
+
+def test_images_and_spectral_images_agree(mi, table, sky, spectrum, tmp_path):
+    source = write_exr(tmp_path / "sky.exr", planes(sky))
+    texture.convert(texture.prepare_lights(table, threads=1), source, tmp_path / "spectral.exr")
+    found = [
+        spectrum(mi.load_dict({"type": "uplift", "emission": True, "filename": str(path)}), (0.2, 0.3), SAMPLED)
+        for path in (source, tmp_path / "spectral.exr")
+    ]
+    np.testing.assert_allclose(*found, rtol=1e-5)
+
+
+@pytest.mark.parametrize("degrees", [0, 70])
+def test_an_environment_lies_as_mitsubas_does(mi, radiance, degrees):
+    """Both show the same ramp; the shapes of their white spectra differ."""
+    ramp = (1 + np.arange(8 * 16, dtype=np.float32).reshape(8, 16, 1)) * np.ones(3, np.float32)
+    to_world = mi.ScalarTransform4f().rotate([1, 2, 3], degrees)
+    ours = environment(mi, ramp, to_world=to_world, scale=2.0)
+    theirs = mi.load_dict({"type": "envmap", "bitmap": mi.Bitmap(ramp), "to_world": to_world})
+    rng = np.random.default_rng(0)
+    directions = rng.normal(size=(12, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    levels = np.array([[radiance(each, list(way), [560.0])[0] for each in (ours, theirs)] for way in directions])
+    ratios = levels[:, 0] / levels[:, 1]
+    np.testing.assert_allclose(ratios, ratios.mean(), rtol=1e-3)
+    assert levels[:, 0].max() > 2 * levels[:, 0].min()
+
+
+def test_samples_are_radiance_over_density(mi, sky, radiance):
+    import drjit
+
+    scene = mi.load_dict({"type": "scene", "sky": environment(mi, sky), "ball": {"type": "sphere"}})
+    (emitter,) = scene.emitters()
+    it = drjit.zeros(mi.SurfaceInteraction3f)
+    it.wavelengths, it.wi = mi.Spectrum(550.0), mi.Vector3f(0, 0, 1)
+    for sample in ((0.05, 0.2), (0.4, 0.5), (0.85, 0.3)):
+        ds, weight = emitter.sample_direction(it, mi.Point2f(*sample))
+        expected = radiance(emitter, ds.d, [550.0])[0]
+        np.testing.assert_allclose(weight[0] * ds.pdf, expected, rtol=1e-4)
+        np.testing.assert_allclose(emitter.pdf_direction(it, ds), ds.pdf, rtol=1e-3)
+        np.testing.assert_allclose(emitter.eval_direction(it, ds)[0], expected, rtol=1e-4)
+        wavelengths, weight = emitter.sample_wavelengths(it, sample[0])
+        expected = radiance(emitter, [0, 0, -1], list(wavelengths))
+        np.testing.assert_allclose(weight * mi.pdf_rgb_spectrum(wavelengths), expected, rtol=1e-4)
+
+
+def test_a_white_wall_has_the_colour_of_the_sky(mi, table):
+    """Rendered by light and by BSDF samples."""
+    scene = mi.load_dict(
+        {
+            "type": "scene",
+            "integrator": {"type": "direct"},
+            "sky": {"type": "uplift_envmap", "bitmap": mi.Bitmap(np.full((4, 8, 3), SUNSET, np.float32))},
+            "wall": {
+                "type": "rectangle",
+                "bsdf": {"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.5}},
+            },
+            "camera": {
+                "type": "orthographic",
+                "to_world": mi.ScalarTransform4f().look_at(origin=[0, 0, 5], target=[0, 0, 0], up=[0, 1, 0]),
+                "film": {
+                    "type": "hdrfilm", "width": 4, "height": 4, "pixel_format": "xyz",
+                    "component_format": "float32", "rfilter": {"type": "box"},
+                },
+                "sampler": {"type": "multijitter", "sample_count": 256},
+            },
+        }
+    )  # fmt: skip
+    xyz = np.array(mi.render(scene, spp=256)).reshape(-1, 3).mean(axis=0)
+    np.testing.assert_allclose(xyz, 0.5 * table.xyz(SUNSET), rtol=0.03)
+
+
+@pytest.mark.parametrize(
+    ("properties", "message"),
+    [
+        ({"type": "uplift_envmap"}, "must have one of filename, bitmap"),
+        ({"type": "uplift_envmap", "rgb": "1, 1, 1"}, "must have one of"),
+        ({"type": "uplift", "emission": True, "rgb": "0, 0, 1, 1"}, "rgb must be three numbers"),
+        ({"type": "uplift", "emission": True, "rgb": "-3, 1, -2"}, "no light has the colour"),
+        ({"type": "uplift", "emission": True, "rgb": "1, 1, 1", "cube": "missing.uplift"}, "missing.uplift"),
+    ],
+)
+def test_invalid_properties_of_lights_raise(mi, properties, message):
+    with pytest.raises(RuntimeError, match=message):
+        mi.load_dict(properties)
