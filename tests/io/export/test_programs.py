@@ -102,27 +102,17 @@ int main(void)
     fwrite(found, sizeof found, 1, stdout);
     for (int k = 0; k < 21; ++k) cube_reflectances(rgb + 3 * k, at + 21 * k, 21, found + 21 * k);
     fwrite(found, sizeof found, 1, stdout);
-    return 0;
-}
-"""
-STORED = r"""
-#include <stdio.h>
-#include "cube.h"
-
-int main(void)
-{
-    float rgb[63], at[21], found[21], coefficients[21 * CUBE_COUNT], multipliers[21 * CUBE_COUNT];
-    for (int k = 0; k < 63; ++k) rgb[k] = k * 7 % 33 / 32.0f;
-    for (int k = 0; k < 21; ++k) at[k] = 400 + 15.0f * k;
+#if !CUBE_SPECTRA
+    float coefficients[21 * CUBE_COUNT], multipliers[21 * CUBE_COUNT];
     for (int k = 0; k < 21; ++k) cube_coefficients(rgb + 3 * k, coefficients + CUBE_COUNT * k);
     if (cube_multipliers_n(coefficients, 21, multipliers)) return 1;
-    for (int k = 0; k < 21; ++k) {
-        cube_evaluate(multipliers + CUBE_COUNT * k, at, 21, found);
-        fwrite(found, sizeof found, 1, stdout);
-    }
+    for (int k = 0; k < 21; ++k) cube_evaluate(multipliers + CUBE_COUNT * k, at + 21 * k, 21, found + 21 * k);
+    fwrite(found, sizeof found, 1, stdout);
     coefficients[0] = coefficients[10 * CUBE_COUNT] = 2;
     if (cube_multipliers_n(coefficients, 21, multipliers) != 2) return 2;
     return cube_multipliers(coefficients, multipliers);
+#endif
+    return 0;
 }
 """
 ROW = (np.arange(63, dtype=np.float32) * 7 % 33 / 32).reshape(21, 3)
@@ -135,19 +125,12 @@ def run_c(code, folder):
     return subprocess.run([folder / "main"], cwd=folder, capture_output=True, check=True).stdout
 
 
-@pytest.mark.parametrize("mode", ["spectra", "moments"])
-def test_many_colours_at_any_number_of_wavelengths(small_cube, tmp_path, mode):
+@pytest.mark.parametrize(("mode", "count"), [("spectra", 2), ("moments", 3)])
+def test_many_colours_at_any_number_of_wavelengths_and_stored_multipliers(small_cube, tmp_path, mode, count):
     write_program(small_cube.data, tmp_path / "cube.h", mode=mode)
-    found = np.frombuffer(run_c(MANY, tmp_path), np.float32).reshape(2, 21, 21)
+    found = np.frombuffer(run_c(MANY, tmp_path), np.float32).reshape(count, 21, 21)
     expected = [small_cube.reflectance(rgb, 400 + k + 15.0 * np.arange(21), mode=mode) for k, rgb in enumerate(ROW)]
-    np.testing.assert_allclose(found, [expected, expected], rtol=0, atol=WITHIN)
-
-
-def test_stored_multipliers(small_cube, tmp_path):
-    write_program(small_cube.data, tmp_path / "cube.h", mode="moments")
-    found = np.frombuffer(run_c(STORED, tmp_path), np.float32).reshape(21, 21)
-    expected = small_cube.reflectance(ROW, 400 + 15.0 * np.arange(21), mode="moments")
-    np.testing.assert_allclose(found, expected, rtol=0, atol=WITHIN)
+    np.testing.assert_allclose(found, [expected] * count, rtol=0, atol=WITHIN)
 
 
 def test_names_in_a_cube_cannot_end_a_comment(small_cube, check):

@@ -155,6 +155,7 @@ class Image:
             raise TextureError(
                 f"rows {first} to {end - 1} cannot be read: {problem or UNKNOWN_PROBLEM}",
                 code="damaged-image",
+                path=self.path,
                 hint="the file is damaged: write it again",
             )
         return np.asarray(rows)

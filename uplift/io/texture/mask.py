@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from uplift.common.arrays import StrPath
-from uplift.common.errors import OptionError, TextureError
+from uplift.common.errors import ColourError, OptionError, TextureError
 from uplift.common.files import check_regular
 from uplift.io.texture.colours import Counts, Floats, colour_channels, coloured_parts
 from uplift.io.texture.image import Image, Part, Values, open_image
@@ -105,7 +105,11 @@ class MaskedUplifter(Converter):
         sizes = dict.fromkeys((part.window.width, part.window.height) for part, _ in coloured_parts(image))
         with contextlib.ExitStack() as stack:  # a mask that fits one size only is an error for the other
             weights, *_ = [stack.enter_context(open_mask(self.mask, len(self.uplifters), size)) for size in sizes]
-            yield lambda part, first, rgb: self.mix(rgb, weights(first - part.window.y, len(rgb)))
+            try:
+                yield lambda part, first, rgb: self.mix(rgb, weights(first - part.window.y, len(rgb)))
+            except (ColourError, TextureError) as error:  # of the image, not of the mask
+                error.path = error.path or image.path
+                raise
 
     def convert(self, rgb: Floats) -> Converted:
         return self.uplifters[0].convert(rgb)
