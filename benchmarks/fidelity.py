@@ -94,7 +94,6 @@ def main() -> None:
         munsell=MUNSELL.exists(),
         entries=[row for name in TESTED for row in at_entries(name)],
         halves=[row for key, found in splits.items() for row in halves(*key, found)],
-        shares=[shares(*key, found) for key, found in splits.items()],
         smoothness=[
             neighbour_steps(name, count) for name in (None, "macbeth", "rawtoaces", *LARGE[2:]) for count in (9, 17)
         ],
@@ -155,16 +154,6 @@ def halves(name: str, count: int, splits: Splits) -> Iterator[Row]:
         rms, *delta_e = [{"mean": mean, "std": std} for mean, std in pairs]
         by_light = dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True))
         yield {"atlas": name, "coefficients": count, "cube": method, "rms": rms, "errors": by_light}
-
-
-def shares(name: str, count: int, splits: Splits) -> Row:
-    """Return the errors relative to the sigmoid, and the light under which the atlas helps least."""
-    ours, sigmoid, plain = (pooled(splits, method) for method in (HALF, SIGMOID, NO_ATLAS))
-    share, against = as_record(ours / sigmoid), as_record(ours / plain)["errors"]
-    worst = max(against, key=against.__getitem__)
-    lights = {light: share["errors"][light] for light in ("A", "FL11")}
-    least = {"ratio": against[worst], "light": worst}
-    return {"atlas": name, "coefficients": count, "rms": share["rms"], **lights, "worst": least}
 
 
 def pooled(splits: Splits, method: str) -> Array:
