@@ -55,7 +55,7 @@ def test_all_options_are_passed_to_the_build(run, home):
         "--start", "neighbours", "--solver", "dogleg", "--threshold", "1e-3", "--debug",
         "--range", "360:830", "--step", "10", "-o", "cube")  # fmt: skip
     data = uplift.load(home / "cube").data
-    assert data.model == uplift.models.Moments(5, uplift.models.Phase(360, 830, "vision"))
+    assert data.model == uplift.models.Moments(5, 360, 830, "vision")
     np.testing.assert_array_equal(data.lattice.nodes, [0, 0.5, 1])
     assert (data.sensor.space, data.sensor.illuminant) == ("Display P3", "D50")
     assert data.sensor.observer == "CIE 1964 10 Degree Standard Observer"

@@ -18,7 +18,7 @@ from uplift.cube import container, digest, read, write
 from uplift.cube.container import KEY
 from uplift.cube.file import ARRAYS, MAX_LIGHTS, METADATA, VERSION
 from uplift.lattice import Status
-from uplift.models import Moments, Phase
+from uplift.models import Moments
 
 FLIPS, CUTS = 1500, 200
 STORED = [name for name in ARRAYS if name not in ("points", "sensor.sensitivities")]
@@ -321,7 +321,7 @@ def test_unknown_provenance_of_later_versions_is_kept(data, tmp_path):
 def test_a_cube_of_format_3_is_read_and_written_in_the_present_format(tmp_path):
     """Its entries have as many coefficients as its nodes."""
     data = read(FORMAT_3)
-    assert data.entry_spectra.model == data.model == Moments(9, Phase(380.0, 780.0))
+    assert data.entry_spectra.model == data.model == Moments(9, 380.0, 780.0)
     assert data.entry_spectra.coefficients is data.atlas.coefficients
     assert len(data.atlas.names) == 23
     write(data, tmp_path / "cube.uplift")

@@ -11,7 +11,7 @@ from uplift.fit.base import learn_base, match_spectra, moment_matrix
 from uplift.fit.entries import FittedEntries
 from uplift.fit.families import Family, shipped_library
 from uplift.fit.problem import Problem
-from uplift.models import Moments, Phase, Sigmoid, evaluate, reflectance
+from uplift.models import Moments, Sigmoid, evaluate, reflectance
 
 LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))
 GRID = observer.grid()
@@ -53,7 +53,7 @@ def test_unseen_families_are_predicted_better_than_by_smooth_spectra(problem, se
     ("model", "space", "illuminant"),
     [
         (Moments(4), "sRGB", "D65"),
-        (Moments(17, Phase(380.0, 780.0, "vision")), "sRGB", "FL11"),
+        (Moments(17, 380.0, 780.0, "vision"), "sRGB", "FL11"),
         (Moments(9), "ProPhoto RGB", "A"),
     ],
     ids=lambda value: getattr(value, "count", value),
@@ -117,7 +117,7 @@ def test_models_of_three_coefficients_have_no_freedom(model, sensor):
     np.testing.assert_array_equal(learnt.coefficients(rgb), learn_base(problem)[0].coefficients(rgb))
 
 
-MODELS = [Moments(9), Moments(17), Moments(9, Phase(380.0, 780.0, "vision"))]
+MODELS = [Moments(9), Moments(17), Moments(9, 380.0, 780.0, "vision")]
 
 
 @pytest.mark.parametrize("model", MODELS, ids=str)

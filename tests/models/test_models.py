@@ -13,13 +13,13 @@ from hypothesis.extra.numpy import arrays
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
-from uplift.models import Moments, Phase, Sigmoid, evaluate, from_description
+from uplift.models import Moments, Sigmoid, evaluate, from_description
 from uplift.models.sigmoid import evaluate_unscaled
 
 GRID = np.arange(380.0, 781.0, 5.0)
 LIMIT = 2e-7
 """Linear RGB: about the rounding of RGB itself."""
-MODELS = [Moments(3), Moments(9), Moments(17), Moments(9, Phase(warp="vision")), Sigmoid()]
+MODELS = [Moments(3), Moments(9), Moments(17), Moments(9, warp="vision"), Sigmoid()]
 each = pytest.mark.parametrize("model", MODELS, ids=lambda model: f"{model.name}{model.count}")
 
 
@@ -121,23 +121,23 @@ def test_sigmoid_agrees_with_colour_science():
 
 @pytest.mark.parametrize("warp", ["none", "vision"])
 def test_phases_increase_from_minus_pi_to_0(warp):
-    phase = Phase(warp=warp)
-    values = phase(np.arange(300.0, 901.0, 5.0))
+    model = Moments(warp=warp)
+    values = model.phase(np.arange(300.0, 901.0, 5.0))
     assert values[0] == -np.pi
     assert values[-1] == 0
-    assert (np.diff(phase(GRID)) > 0).all()
+    assert (np.diff(model.phase(GRID)) > 0).all()
 
 
 def test_vision_warp_expands_the_middle():
-    middle = Phase(warp="vision")(np.array([500.0, 600.0]))
-    assert np.diff(middle) > 1.5 * np.diff(Phase()(np.array([500.0, 600.0])))
+    middle = Moments(warp="vision").phase(np.array([500.0, 600.0]))
+    assert np.diff(middle) > 1.5 * np.diff(Moments().phase(np.array([500.0, 600.0])))
 
 
 def test_invalid_phases_raise():
     with raises(OptionError, "unknown-warp"):
-        Phase(warp="eye")
+        Moments(warp="eye")
     with raises(OptionError, "invalid-range"):
-        Phase(780, 380)
+        Moments(9, 780, 380)
 
 
 @each

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from uplift.models.model import Model, evaluate, reflectance
-from uplift.models.moments import Moments, Phase
+from uplift.models.moments import Moments
 from uplift.models.sigmoid import Sigmoid
 
-__all__ = ["Moments", "Phase", "Sigmoid", "evaluate", "from_description", "reflectance"]
+__all__ = ["Moments", "Sigmoid", "evaluate", "from_description", "reflectance"]
 
 
 def from_description(description: Mapping[str, Any]) -> Model:
@@ -40,5 +40,5 @@ def from_description(description: Mapping[str, Any]) -> Model:
     if description["name"] == Sigmoid.name:
         return Sigmoid(**rest)
     if description["name"] == Moments.name:
-        return Moments(count=rest["count"], phase=Phase(**rest["phase"]))
+        return Moments(rest["count"], **rest["phase"])
     raise KeyError(description["name"])

@@ -12,7 +12,7 @@ ACM TOG 38(4). docs/mathematics.md, 2 to 4.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -45,58 +45,25 @@ WARPS: dict[str, Callable[[Array], Array]] = {"none": np.asarray, "vision": _vis
 
 
 @dataclass(frozen=True)
-class Phase:
-    """Map from [start, end] nm to [−π, 0]; wavelengths outside take the phase of the nearer end.
-
-    Parameters
-    ----------
-    start, end : float
-        Range in nm.
-    warp : {"none", "vision"}
-        Increasing function applied to the wavelength before the linear map.
-
-    Raises
-    ------
-    OptionError
-        The warp is unknown or the range is empty.
-    """
-
-    start: float = 380.0
-    end: float = 780.0
-    warp: str = "none"
-
-    def __post_init__(self) -> None:
-        if self.warp not in WARPS:
-            raise OptionError(f"unknown warp '{self.warp}'", code="unknown-warp", hint=f"use one of {', '.join(WARPS)}")
-        if not 0 < self.start < self.end < np.inf:
-            raise OptionError(
-                f"a phase needs 0 < start < end < inf, got start {self.start} and end {self.end}",
-                code="invalid-range",
-            )
-
-    def __call__(self, wavelengths: ArrayLike) -> Array:
-        """Convert wavelengths (N,) in nm to phases (N,) in [−π, 0]."""
-        warp = WARPS[self.warp]
-        low, high = warp(np.array([self.start, self.end]))
-        inside = np.clip(np.asarray(wavelengths, dtype=float), self.start, self.end)
-        return np.pi * (warp(inside) - low) / (high - low) - np.pi
-
-
-@dataclass(frozen=True)
 class Moments(Model):
     """Bounded maximum-entropy spectra of given moments.
+
+    The phase φ increases from −π at the start of a range of wavelengths to 0 at its end; the spectrum is constant
+    outside.
 
     Parameters
     ----------
     count : int
         Number of coefficients, from 3 to 17: the zeroth moment and 2 to 16 others.
-    phase : Phase
-        Map from wavelength to phase.
+    start, end : float
+        Range in nm.
+    warp : {"none", "vision"}
+        Increasing function applied to the wavelength before its linear map to the phase.
 
     Raises
     ------
     OptionError
-        The count is out of range.
+        The count is out of range, the range is empty, or the warp is unknown.
 
     References
     ----------
@@ -111,10 +78,19 @@ class Moments(Model):
     """
 
     count: int = 9
-    phase: Phase = field(default_factory=Phase)
+    start: float = 380.0
+    end: float = 780.0
+    warp: str = "none"
     name = "moments"
 
     def __post_init__(self) -> None:
+        if self.warp not in WARPS:
+            raise OptionError(f"unknown warp '{self.warp}'", code="unknown-warp", hint=f"use one of {', '.join(WARPS)}")
+        if not 0 < self.start < self.end < np.inf:
+            raise OptionError(
+                f"a phase needs 0 < start < end < inf, got start {self.start} and end {self.end}",
+                code="invalid-range",
+            )
         if not MIN_COUNT <= self.count <= MAX_COUNT:
             raise OptionError(
                 f"coefficients of the moments model must be in [{MIN_COUNT}, {MAX_COUNT}], "
@@ -122,6 +98,25 @@ class Moments(Model):
                 code="option-out-of-range",
                 hint="the count includes the zeroth moment",
             )
+
+    def phase(self, wavelengths: ArrayLike) -> Array:
+        """Map wavelengths to phases.
+
+        Parameters
+        ----------
+        wavelengths : array_like, shape (N,)
+            Wavelengths in nm; those outside the range take the phase of its nearer end.
+
+        Returns
+        -------
+        ndarray, shape (N,)
+            φ in [−π, 0].
+        """
+        # φ = π (w(λ) − w(λ₀)) / (w(λ₁) − w(λ₀)) − π
+        warp = WARPS[self.warp]
+        low, high = warp(np.array([self.start, self.end]))
+        inside = np.clip(np.asarray(wavelengths, dtype=float), self.start, self.end)
+        return np.pi * (warp(inside) - low) / (high - low) - np.pi
 
     def basis(self, wavelengths: ArrayLike) -> Array:
         # B p = p₀ + 2 Σ p_l cos lφ
@@ -163,3 +158,7 @@ class Moments(Model):
         # The linear part is at most |p₀| + 2 Σ |p_l|.
         largest = np.abs(multipliers[:, 0]) + 2 * np.abs(multipliers[:, 1:]).sum(axis=1)
         return np.asarray(largest <= MAX_SAFE_LINEAR)
+
+    def describe(self) -> dict[str, Any]:
+        phase = {"start": self.start, "end": self.end, "warp": self.warp}
+        return {"name": self.name, "count": self.count, "phase": phase}

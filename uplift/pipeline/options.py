@@ -15,7 +15,7 @@ from uplift.common.errors import OptionError, unknown_name
 from uplift.common.machine import total_memory
 from uplift.common.text import format_value
 from uplift.cube.file import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
-from uplift.models import Moments, Phase, Sigmoid
+from uplift.models import Moments, Sigmoid
 from uplift.models.model import Model
 from uplift.models.moments import MAX_COUNT
 
@@ -128,8 +128,8 @@ class Options:
     def spectrum_model(self, coefficients: int | None = None) -> Model:
         """Create the spectrum model, from `shortest` to `longest` nm, of the nodes or of other moments."""
         if self.model == Moments.name:
-            phase = Phase(self.shortest, self.longest, self.warp)
-            return Moments(self.coefficients if coefficients is None else coefficients, phase)
+            count = self.coefficients if coefficients is None else coefficients
+            return Moments(count, self.shortest, self.longest, self.warp)
         if self.model == Sigmoid.name:
             return Sigmoid(self.shortest, self.longest)
         raise unknown_name(self.model, MODELS, "model")

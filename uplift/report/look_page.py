@@ -21,7 +21,7 @@ from uplift.common.errors import OptionError
 from uplift.common.files import write_text
 from uplift.lookup import Bounds, Cube
 from uplift.models import Moments
-from uplift.models.moments import MAX_COUNT, Phase
+from uplift.models.moments import MAX_COUNT
 from uplift.viz.html import render, resource
 
 DIGITS = 12  # digits of the numbers of the page: the RGB of its spectra is exact to far less than a code
@@ -69,7 +69,7 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
 
 def _model(sensor: Sensor, answer: Array, rgb: Array) -> dict[str, Any]:
     """Linear part of the answer, basis in the metric of least change, and the RGB to keep."""
-    model = Moments(MAX_COUNT, Phase(*sensor.range[:2]))
+    model = Moments(MAX_COUNT, *sensor.range[:2])
     inside = np.clip(answer, MARGIN, 1 - MARGIN)
     basis = model.basis(sensor.wavelengths) / np.sqrt(model.metric_diagonal())
     return {

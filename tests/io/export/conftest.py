@@ -8,7 +8,7 @@ import pytest
 
 from tests.helpers import with_points
 from uplift.lookup import Cube, load
-from uplift.models import Moments, Phase
+from uplift.models import Moments
 
 
 @pytest.fixture(scope="session")
@@ -16,7 +16,7 @@ def warped_cube(small_cube) -> Cube:
     """Cube of five of nine moments, reinterpreted with another wavelength range and warp."""
     data = small_cube.data
     atlas = replace(data.atlas, coefficients=data.atlas.coefficients[:, :5], spectra=None)
-    model = Moments(5, Phase(400, 700, "vision"))
+    model = Moments(5, 400, 700, "vision")
     return Cube(with_points(replace(data, model=model, atlas=atlas), coefficients=data.points.coefficients[:, :5]))
 
 

@@ -17,7 +17,7 @@ from uplift.common.errors import TextureError
 from uplift.io import texture as textures
 from uplift.io.mitsuba.texture import blend
 from uplift.io.mitsuba.texture_file import multipliers_of_rounded, read_texels
-from uplift.models import Moments, Phase, Sigmoid, evaluate
+from uplift.models import Moments, Sigmoid, evaluate
 
 pytestmark = pytest.mark.filterwarnings("ignore:the texture calls Python:uplift.UpliftWarning")
 
@@ -259,7 +259,7 @@ def test_moments_that_rounding_moved_outside_return():
 
 
 SAMPLED = [340.0, 401.5, 555.0, 820.0]
-MODELS = [Moments(9), Moments(3), Moments(17, Phase(400, 700, "vision")), Sigmoid(), Sigmoid(400, 700)]
+MODELS = [Moments(9), Moments(3), Moments(17, 400, 700, "vision"), Sigmoid(), Sigmoid(400, 700)]
 
 
 @pytest.mark.parametrize("model", MODELS, ids=str)

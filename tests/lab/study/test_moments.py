@@ -16,7 +16,7 @@ from uplift.colorimetry import observer
 from uplift.common.errors import AtlasError, OptionError
 from uplift.lab.study import complex_moments
 from uplift.lab.study.moments import ALL_ATLASES, MAX_MOMENTS, TECHNIQUES, Technique, fine_grid, study_moments
-from uplift.models import Moments, Phase, duality, evaluate
+from uplift.models import Moments, duality, evaluate
 
 MIRRORED = [technique for technique in TECHNIQUES if technique.mirrored]
 UNMIRRORED = [technique for technique in TECHNIQUES if not technique.mirrored]
@@ -70,7 +70,7 @@ def test_reconstruction_has_its_complex_moments(technique, count):
 @pytest.mark.parametrize("count", [3, 9, 16])
 def test_mirrored_moments_are_those_of_cubes(technique, count):
     """The model of cubes gives the same spectra and the same moments."""
-    model = Moments(count, Phase(warp="vision" if technique.warped else "none"))
+    model = Moments(count, warp="vision" if technique.warped else "none")
     moments = technique.moments(bumps(20, fine_grid()), fine_grid(), count - 1)
     multipliers = model.from_storage(moments)
     np.testing.assert_allclose(

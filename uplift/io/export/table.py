@@ -115,7 +115,6 @@ def _model_constants(model: object) -> dict[str, float]:
     if isinstance(model, Sigmoid):
         return {"SIGMOIDS": 1, "START": model.start, "END": model.end}
     assert isinstance(model, Moments)
-    phase = model.phase
-    low, high = WARPS[phase.warp](np.array([phase.start, phase.end])).tolist()
-    constants = {"SIGMOIDS": 0, "WARPED": int(phase.warp == "vision"), "START": phase.start, "END": phase.end}
+    low, high = WARPS[model.warp](np.array([model.start, model.end])).tolist()
+    constants = {"SIGMOIDS": 0, "WARPED": int(model.warp == "vision"), "START": model.start, "END": model.end}
     return constants | {"LOW": low, "SCALE": 1 / (high - low)}

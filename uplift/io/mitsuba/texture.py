@@ -79,9 +79,9 @@ def _squash(model: Model, linear: Any) -> Any:
 def _phase(model: Moments, wavelengths: Any) -> Any:
     import drjit as dr
 
-    low, high = WARPS[model.phase.warp](np.array([model.phase.start, model.phase.end])).tolist()
-    clipped = dr.clip(wavelengths, model.phase.start, model.phase.end)
-    warped = dr.tanh(0.0072 * (clipped - 538)) if model.phase.warp == "vision" else clipped
+    low, high = WARPS[model.warp](np.array([model.start, model.end])).tolist()
+    clipped = dr.clip(wavelengths, model.start, model.end)
+    warped = dr.tanh(0.0072 * (clipped - 538)) if model.warp == "vision" else clipped
     return dr.pi * (warped - low) / (high - low) - dr.pi
 
 

@@ -21,15 +21,14 @@ from uplift.common.arrays import Array, Complex, Indices
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.study import complex_moments
-from uplift.models import duality
-from uplift.models.moments import Phase
+from uplift.models import Moments, duality
 
 
 @dataclass(frozen=True)
 class Technique:
     """A mapping of the spectrum to the circle.
 
-    ``mirrored``: map [start, end] nm of `Phase` to the half circle [−π, 0] and mirror it, which makes the moments real.
+    ``mirrored``: map [start, end] nm to the half circle [−π, 0] and mirror it, which makes the moments real.
         Otherwise the range covers the circle [−π, π], and its two ends meet.
     ``warped``: warp the phase towards wavelengths to which the eye is sensitive.
     """
@@ -53,7 +52,7 @@ class Technique:
 
     def phase(self, wavelengths: ArrayLike) -> Array:
         """Phases (N,) of wavelengths (N,)."""
-        half = Phase(warp="vision" if self.warped else "none")(wavelengths)
+        half = Moments(warp="vision" if self.warped else "none").phase(wavelengths)
         return half if self.mirrored else 2 * half + np.pi
 
     def moments(self, reflectance: Array, wavelengths: ArrayLike, moments: int) -> Complex | Array:
