@@ -159,16 +159,3 @@ def test_a_camera_cube_is_built_queried_shown_and_checked(run, ask):
     facts = ask("info", "camera-3.uplift")
     assert (facts["space"], facts["provenance"]["options"]["observer"]) == (NIKON, NIKON)
     run("check", "camera-3.uplift")
-
-
-@pytest.mark.parametrize(
-    ("text", "args", "code"),
-    [
-        ("400,1,0,0\n500,0,-1,0\n", (), "option"),
-        ("400,1,0,0\n", ("-o", "bad.csv", "--force"), "output-is-input"),
-    ],
-)
-def test_bad_sensitivities_are_refused(refuse, home, text, args, code):
-    (home / "bad.csv").write_text(text)
-    assert refuse("build", *CAMERA, "bad.csv", *args).code == code
-    assert [(path.name, path.read_text()) for path in home.iterdir()] == [("bad.csv", text)]

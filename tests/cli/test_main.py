@@ -201,26 +201,6 @@ def test_invalid_numbers_are_refused_on_one_line(command, option):
         assert len(caught.value.message) < 200
 
 
-@pytest.mark.parametrize(
-    "args",
-    [
-        "query 1e308 0 0",
-        "query 0.1 0.2 0.3 --wavelengths 1e308",
-        "query 0.1 0.2 0.3 --wavelengths 0:1e308:5e-324",
-        "query 1e308 -1e308 5e-324 --out-of-gamut desaturate-oklab",
-        "query 1e308 0.5 0.25 --out-of-gamut scale --input-space P3-D65",
-        "mix 1e308:#ff0000 5e-324:#00ff00",
-        "mix #ff0000 --thickness 1e308",
-        "mix #ff0000 --thickness 5e-324",
-    ],
-)
-def test_extreme_numbers_are_answered_or_refused_on_one_line(args):
-    result = CliRunner().invoke(main, args.split(), env={"COLUMNS": "160"})
-    assert result.exit_code in (0, 2)
-    assert len(result.stderr.strip().splitlines()) <= 1, result.stderr
-    assert "nan" not in result.stdout
-
-
 def test_tables_wrap_texts_keep_numbers_whole_and_show_texts_as_they_are(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "40")
     table = make_table(("name",), ("first", "second"))
