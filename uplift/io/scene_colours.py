@@ -14,7 +14,7 @@ import numpy as np
 from uplift.colorimetry.gamut import check_method
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import find_space
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.io.texture.colours import check_encoding, coloured_parts, make_decoder, space_warnings
@@ -80,7 +80,7 @@ class Images:
                         yield decode(channels.straight(pixels[first : first + BLOCK_PIXELS]))[0].astype(float)
 
 
-def cells_touched(lattice: Lattice, rgb: Array) -> Array:
+def cells_touched(lattice: Lattice, rgb: Array) -> Indices:
     """Return the numbers (m,) of the cells around linear RGB (n, 3), and of those within rounding error of them."""
     (low, _), (high, _) = lattice.cell(rgb - MARGIN), lattice.cell(rgb + MARGIN)
     on_face = (low != high).any(axis=1)

@@ -26,9 +26,7 @@ def missing_points(data: CubeData, rgb: Array | None = None) -> Indices:
     """Return the absent points that linear RGB (n, 3) need, or all absent points."""
     absent = ~data.points.present
     if rgb is not None:
-        queried = np.zeros(data.lattice.size, dtype=bool)
-        queried[cells(data, rgb)] = True
-        absent &= data.lattice.corner_points(queried)
+        absent &= data.lattice.corner_points(data.lattice.mask(cells(data, rgb)))
     return np.flatnonzero(absent)
 
 

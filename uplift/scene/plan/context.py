@@ -19,7 +19,6 @@ from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.scene_colours import Images, cells_touched
 from uplift.io.texture.colours import coloured_parts
 from uplift.io.texture.image import open_image
-from uplift.lattice import Lattice
 from uplift.lattice.entry_boxes import EntryBoxes
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
@@ -107,18 +106,11 @@ class ColourSet:
 
     def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
         """Lattice points (dim³,) that the colours need."""
-        return boxes.required_points(occupied_cells(boxes.lattice, self.rgb))
+        return boxes.required_points(boxes.lattice.mask(cells_touched(boxes.lattice, self.rgb)))
 
     def describe(self) -> list[dict[str, Any]]:
         """An empty list: colours have no source files."""
         return []
-
-
-def occupied_cells(lattice: Lattice, rgb: Array) -> Mask:
-    """Mask (dim³,) of the cells that contain linear RGB (n, 3)."""
-    occupied = np.zeros(lattice.size, dtype=bool)
-    occupied[cells_touched(lattice, rgb)] = True
-    return occupied
 
 
 @dataclass(frozen=True)

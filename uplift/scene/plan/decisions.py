@@ -20,10 +20,11 @@ from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
 from uplift.common.progress import Progress
 from uplift.io import texture
+from uplift.io.scene_colours import cells_touched
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
-from uplift.scene.plan.context import PlanContext, occupied_cells
+from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet, Trial
 from uplift.scene.representations import Representation, all_representations
 from uplift.scene.representations.samples import STEP, wavelengths, xyz_weights
@@ -63,7 +64,7 @@ def lattice_trials(context: PlanContext, tests: EvaluationSet, count: int) -> It
     sizes = []
     for dim, axis in product((*context.grid.dims, context.grid.reference), AXES):
         lattice = Lattice(observer.axis_nodes(axis, dim))
-        needed = lattice.corner_points(occupied_cells(lattice, context.colours.colour_bins))
+        needed = lattice.corner_points(lattice.mask(cells_touched(lattice, context.colours.colour_bins)))
         sizes.append((int(needed.sum()), dim, axis))
     latest: dict[str, float] = {}
     for done, (points, dim, axis) in enumerate(sorted(sizes)):
