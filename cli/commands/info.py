@@ -22,7 +22,7 @@ def command(file: str | None, style: str) -> None:
       uplift info macbeth-32.uplift --format json | jq .status
     """
     from uplift.lookup import load
-    from uplift.report.summary import summarise
+    from uplift.report.measures import summarise
 
     print_facts(file or "packaged cube", summarise(load(file).data), style)
 

@@ -113,7 +113,7 @@ def info(table_path: str, style: str, plot_path: str | None, html: str | None, f
     """
     from uplift.common.files import check_outputs, write_text
     from uplift.lights.lookup import find_table, load_emission
-    from uplift.report.summary import summarise_emission
+    from uplift.report.measures import summarise_emission
 
     check_outputs((plot_path, html), inputs=[table_path], force=force)
     table = load_emission(table_path)

@@ -70,8 +70,7 @@ def command(
     from uplift.common.errors import OutputError
     from uplift.common.files import check_output
     from uplift.io.texture.picture import read_picture
-    from uplift.report.relight import RGB_PRODUCT, relight, write_relit_sheet
-    from uplift.report.relight_page import write_relit_page
+    from uplift.report.relight import RGB_PRODUCT, relight, write_relit_page, write_relit_sheet
     from uplift.samples import sample_path
     from uplift.viz.figure import SUFFIXES
 

@@ -37,7 +37,7 @@ from uplift.lattice import Lattice, PointTable
 from uplift.lookup import MODES, Cube, load, query
 from uplift.pipeline.options import Options
 from uplift.pipeline.rebuild import recorded_atlas
-from uplift.report.summary import summarise
+from uplift.report.measures import summarise
 from uplift.scene.plan import read_scene_file
 from uplift.scene.plan.plan_file import FORMAT, read_plan
 

@@ -9,8 +9,7 @@ from benchmarks.browser import browser
 from tests.browsing import check_page
 from tests.pages import Page
 from tests.parts import CHROMIUM, need
-from uplift.report.relight import RGB_PRODUCT, relight
-from uplift.report.relight_page import write_relit_page
+from uplift.report.relight import RGB_PRODUCT, relight, write_relit_page
 
 
 @pytest.fixture(scope="module")

@@ -35,8 +35,8 @@ from uplift.report.measures import (
     collect_failures,
     compute_smoothness,
     round_trip_errors,
+    summarise,
 )
-from uplift.report.summary import summarise
 
 MIN_ERROR = 1e-9  # smaller distances and ΔE00 are rounding errors and are counted in the lowest bin
 MIN_STEP = 1e-4  # smaller rms differences of reflectance are counted in the lowest bin

@@ -13,8 +13,7 @@ from uplift.common.arrays import Array
 from uplift.lights.lattice import chromaticity
 from uplift.lights.lookup import EmissionTable
 from uplift.report.charts import Histogram, histogram_chart, linear_edges, log_edges, make_histogram
-from uplift.report.measures import COLOURS, SEED
-from uplift.report.summary import summarise_emission
+from uplift.report.measures import COLOURS, SEED, summarise_emission
 from uplift.viz.chromaticity import draw_colours, draw_errors, draw_lamps
 from uplift.viz.figure import STYLE, to_page_svg
 from uplift.viz.html import render

@@ -1,13 +1,17 @@
-"""Colours of an image under other lights, by products of RGB and by spectra of cubes; one figure of them.
+"""Colours of an image under other lights, by products of RGB and by spectra of cubes; a figure and a page of them.
 
-The figure has a row per light, a column per method, and a map of the differences.
+The figure has a row per light, a column per method, and a map of the differences. The page has two methods on the two
+sides of a line that moves.
 """
 
 from __future__ import annotations
 
+import base64
+import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -20,13 +24,16 @@ from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array, StrPath
+from uplift.common.files import write_text
 from uplift.io.texture.colours import Floats
 from uplift.lookup import Cube, bulk
 from uplift.lookup.cube import common_sensor
-from uplift.viz.figure import GREY, INK, colour_map, figure_text, new_figure, write_figure
+from uplift.viz.figure import GREY, INK, RAMP, colour_map, figure_text, new_figure, ramp_codes, write_figure
+from uplift.viz.html import render, resource
 
 RGB_PRODUCT = "RGB × light"  # name of the method that multiplies the RGB of the image by those of the light
 MIN_MAP_LIMIT = 2.0  # smallest ΔE00 at the dark end of a map: invisible differences stay pale
+JPEG_QUALITY = 92
 ROWS = 64  # rows whose spectra are in memory at once
 
 
@@ -191,3 +198,79 @@ def _draw_row(figure: Any, axes: Sequence[Any], image: Relit, rendering: Renderi
 
 def _caption(difference: Difference) -> str:
     return f"ΔE00 from RGB × light: mean {difference.mean:.1f}, 95 % {difference.p95:.1f}"
+
+
+def write_relit_page(relit: Sequence[Relit], path: StrPath, *, force: bool = False) -> int:
+    """Write relit images as one self-contained HTML page."""
+    text = _page(relit)
+    write_text(text, path, force=force)
+    return len(text.encode())
+
+
+def _page(relit: Sequence[Relit]) -> str:
+    """Render the page. It opens under the light with the largest differences."""
+    first, methods = relit[0], relit[0].methods
+    lights = [rendering.light_label for rendering in first.renderings]
+    last = methods[-1]
+    changes = [
+        np.mean([image.renderings[number].difference(RGB_PRODUCT, last).mean for image in relit])
+        for number in range(len(lights))
+    ]
+    limits = [max(image.renderings[number].map_limit for image in relit) for number in range(len(lights))]
+    return render(
+        "report/templates/relight_page.html.j2",
+        title="Images under other lights",
+        lead="The same RGB, lit by products of RGB and by spectra. Drag the line, or use the arrow keys.",
+        lights=lights,
+        methods=methods,
+        start=int(np.argmax(changes)),
+        limits=limits,
+        ramp=RAMP,
+        sections=[_section(image, limits) for image in relit],
+        script=resource("report/relight_page.js"),
+    )
+
+
+def _section(image: Relit, limits: Sequence[float]) -> dict[str, Any]:
+    """One relit image: its layers, and a row of the table for each light and pair of methods.
+
+    A layer has the number of its ``light``, and ``shows`` the number of a method or 'first-second' of a map.
+    """
+    layers, rows = [], []
+    for number, (rendering, limit) in enumerate(zip(image.renderings, limits, strict=True)):
+        for method, name in enumerate(image.methods):
+            label, source = f"{image.name} under {rendering.light}, {name}", _jpeg(rendering.screen_codes(name))
+            layers.append({"light": number, "shows": str(method), "label": label, "source": source})
+        for (one, first), (other, second) in combinations(enumerate(image.methods), 2):
+            difference = rendering.difference(first, second)
+            label = f"ΔE00 map of {image.name} under {rendering.light}: {first}, {second}"
+            source = _map(difference.delta_e / limit)
+            layers.append({"light": number, "shows": f"{one}-{other}", "label": label, "source": source})
+            figures = (difference.mean, difference.p95, difference.max)
+            rows.append((rendering.light, first, second, *(f"{figure:.2f}" for figure in figures)))
+    height, width, _ = image.renderings[0].colours[RGB_PRODUCT].shape
+    size = {"width": width, "height": height, "reduction": image.reduction}
+    return {"name": image.name, **size, "layers": layers, "rows": rows}
+
+
+def _jpeg(codes: NDArray[np.uint8]) -> str:
+    from PIL import Image
+
+    file = io.BytesIO()
+    Image.fromarray(codes).save(file, "JPEG", quality=JPEG_QUALITY, subsampling=0)
+    return _data_url("image/jpeg", file)
+
+
+def _map(values: NDArray[np.float64]) -> str:
+    """Encode a map as a PNG with a palette of the 256 colours of the ramp."""
+    from PIL import Image
+
+    image = Image.fromarray(np.rint(255 * np.clip(values, 0, 1)).astype(np.uint8), "P")
+    image.putpalette(ramp_codes(np.linspace(0, 1, 256)).tobytes())
+    file = io.BytesIO()
+    image.save(file, "PNG", optimize=True)
+    return _data_url("image/png", file)
+
+
+def _data_url(kind: str, file: io.BytesIO) -> str:
+    return f"data:{kind};base64,{base64.b64encode(file.getvalue()).decode()}"
