@@ -85,7 +85,7 @@ def command(
 def _measure(
     files: tuple[str, ...], lights: tuple[str, ...], *, filters: bool, quick: bool
 ) -> tuple[Comparison, tuple[TunedFilter, ...]]:
-    from uplift.lab.comparison.compare import QUICK, TimingOptions, compare, make_scene, tune_filters
+    from uplift.lab.comparison.compare import compare, make_scene, tune_filters
     from uplift.scene.representations import all_representations
     from uplift.scene.representations.filters import COARSE_STRIDE, FINE_STRIDE
 
@@ -93,7 +93,7 @@ def _measure(
     scene = scene.thinned() if quick else scene
     with progress_bar("representations") as progress:
         representations = all_representations(scene.powers, scene.surfaces)
-        comparison = compare(scene, representations, QUICK if quick else TimingOptions(), progress)
+        comparison = compare(scene, representations, quick=quick, progress=progress)
     if not filters:
         return comparison, ()
     with progress_bar("filters") as progress:

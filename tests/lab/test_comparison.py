@@ -21,7 +21,6 @@ from uplift.lab.comparison.compare import (
     NONE,
     Comparison,
     RepresentationResult,
-    TimingOptions,
     cheapest,
     compare,
     compute_statistics,
@@ -36,8 +35,6 @@ from uplift.scene.representations.filters import COARSE_STRIDE, candidates, filt
 from uplift.scene.representations.models import trigonometric_moments
 from uplift.scene.representations.samples import SampleRepresentation, point_samples, riemann_sums, xyz_weights
 
-EFFORT = TimingOptions(runs=3, seconds=0.001, rows=32)
-
 
 @pytest.fixture(scope="module")
 def checker():
@@ -47,7 +44,7 @@ def checker():
 @pytest.fixture(scope="module")
 def found(checker):
     made = [make(count) for make in (point_samples, riemann_sums, enhanced_riemann) for count in (16, 32)]
-    return compare(checker, [*made, sun_composite(15), trigonometric_moments(9)], EFFORT)
+    return compare(checker, [*made, sun_composite(15), trigonometric_moments(9)], quick=True)
 
 
 def test_dense_data_have_no_error(checker):
@@ -71,7 +68,7 @@ def test_errors_match_explicit_loops(checker):
 def test_result_that_is_not_finite_is_an_error(checker):
     broken = SampleRepresentation("broken", "broken", np.full((401, 3), np.nan), np.eye(3))
     with raises(UpliftError, "result-not-finite"):
-        compare(checker, [broken], EFFORT)
+        compare(checker, [broken], quick=True)
 
 
 def test_results_are_ranked_within_their_sets(checker, found):
@@ -81,7 +78,7 @@ def test_results_are_ranked_within_their_sets(checker, found):
         means = [row.statistics.mean for row in found.of(name)]
         assert means == sorted(means)
         assert len(means) == 8
-    assert all(row.ns.median > 0 and row.ns.runs == EFFORT.runs for row in found.results)
+    assert all(row.ns.median > 0 and row.ns.runs == 3 for row in found.results)
 
 
 def test_storage_includes_spikes(found):

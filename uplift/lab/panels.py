@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup
 
 from uplift.common.arrays import Array, StrPath
-from uplift.viz.figure import GREY, INK, STYLE, figure_text, new_figure, style_axes, to_page_svg, write_png
+from uplift.viz.figure import GREY, INK, OTHER, STYLE, figure_text, new_figure, style_axes, to_page_svg, write_png
 from uplift.viz.scatter import LEGEND, Label, draw_labels, style_title
 
 CLEAR_RATIO = 0.99
@@ -58,6 +58,12 @@ class Panel:
     axis: str
     format: Callable[[float], str]
     points: Sequence[Point]
+
+
+def family_colours(families: Iterable[str], known: Mapping[str, str]) -> dict[str, str]:
+    """``#rrggbb`` of families in the order of the known ones; others are dark grey."""
+    present = dict.fromkeys(families)
+    return {name: known.get(name, OTHER) for name in sorted(present, key=[*known, *sorted(present)].index)}
 
 
 def pareto_front(points: Sequence[tuple[float, float]]) -> list[int]:
@@ -113,6 +119,7 @@ def panel_figure(
         if titles:
             style_title(axes, panel.title)
     if legend:
+        legend = {**legend, "Pareto front": {**FRONT_LINE, "linestyle": "-"}}
         handles = [
             Line2D([], [], **{"linestyle": "", "color": GREY, "marker": "o", **style}) for style in legend.values()
         ]

@@ -9,7 +9,7 @@ from typing import Any
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.arrays import StrPath
 from uplift.lab.chart.table import BATCH, REFERENCE, Chart, Criterion, MethodResult, State, criteria
-from uplift.lab.panels import FRONT_LINE, Panel, Point, page_panel, pareto_front, write_panels
+from uplift.lab.panels import Panel, Point, family_colours, page_panel, pareto_front, write_panels
 from uplift.viz.figure import OTHER
 from uplift.viz.format import format_build_time, format_error, format_size, format_time
 from uplift.viz.html import Tooltip, render
@@ -42,12 +42,6 @@ ERRORS = {
     "own_lights": "own, mean",
 }
 """Columns of the table: headings by names of errors."""
-
-
-def family_colours(chart: Chart) -> dict[str, str]:
-    """``#rrggbb`` of the families that were measured."""
-    present = {result.family for result in chart.measured}
-    return {name: COLOURS.get(name, OTHER) for name in sorted(present, key=[*COLOURS, *present].index)}
 
 
 def drawn_results(criterion: Criterion, chart: Chart) -> list[MethodResult]:
@@ -87,12 +81,11 @@ def panel(criterion: Criterion, chart: Chart) -> Panel:
 
 def legend(chart: Chart) -> dict[str, dict[str, Any]]:
     """Return the styles of the legend by name: colours of families, markers of modes, and lines."""
-    families = family_colours(chart)
+    families = family_colours((result.family for result in chart.measured), COLOURS)
     return {
         **{name: {"color": families[name], "marker": "o" if name.startswith("uplift") else "*"} for name in families},
         **{f"mode {mode}": {"marker": marker} for mode, marker in MODES.items()},
         "timed with fewer colours": {"marker": "*", "markerfacecolor": "white"},
-        "Pareto front": {**FRONT_LINE, "linestyle": "-"},
     }
 
 
@@ -116,7 +109,7 @@ def render_chart(chart: Chart) -> str:
         title=TITLE,
         chart=chart,
         pictures=pictures,
-        families=family_colours(chart),
+        families=family_colours((result.family for result in chart.measured), COLOURS),
         tooltips=[_tooltip(result) for result in chart.results],
         facts=chart.facts,
         sources=list(dict.fromkeys(f"{result.family}: {result.source}" for result in chart.results)),

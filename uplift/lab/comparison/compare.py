@@ -45,6 +45,8 @@ NAMED_SET = "given"
 """Name of the set of lights that a user lists."""
 QUICK_SURFACES = 40
 """Surfaces of a quick comparison."""
+TIMING, QUICK_TIMING = (1024, 0.05, 7), (256, 0.005, 3)
+"""Products per call, shortest duration of a run in seconds, and runs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,23 +148,6 @@ def compute_statistics(errors: ArrayLike) -> Statistics:
 
 
 @dataclass(frozen=True)
-class TimingOptions:
-    """Accuracy of the timings.
-
-    ``runs``: repetitions.
-    ``seconds``: shortest duration of a run.
-    ``rows``: products per call.
-    """
-
-    runs: int = 7
-    seconds: float = 0.05
-    rows: int = 1024
-
-
-QUICK = TimingOptions(runs=3, seconds=0.005, rows=256)
-
-
-@dataclass(frozen=True)
 class RepresentationResult:
     """Error and cost of a representation under a set of lights.
 
@@ -203,10 +188,14 @@ class Comparison:
 def compare(
     scene: Scene,
     representations: Sequence[Representation],
-    effort: TimingOptions | None = None,
+    *,
+    quick: bool = False,
     progress: ProgressCallback = ignore_progress,
 ) -> Comparison:
-    """Measure representations under every set of lights of a scene. Raises `UpliftError`."""
+    """Measure representations under every set of lights of a scene, with few repetitions if ``quick``.
+
+    Raises `UpliftError`.
+    """
     sets, results = {light_set.name: light_set.title for light_set in scene.sets}, []
     for done, representation in enumerate(representations, 1):
         floats = float(representation.storage(representation.encode_surface(scene.surfaces)).mean())
@@ -220,7 +209,7 @@ def compare(
                     error_statistics(representation, scene, light_set),
                     floats,
                     float(light_floats),
-                    _time(representation, scene, light_set, effort or TimingOptions()),
+                    _time(representation, scene, light_set, quick=quick),
                 )
             )
         progress(Progress("representations", done, len(representations)))
@@ -243,16 +232,17 @@ def error_statistics(representation: Representation, scene: Scene, light_set: Li
     return compute_statistics(errors)
 
 
-def _time(representation: Representation, scene: Scene, light_set: LightSet, effort: TimingOptions) -> Spread:
+def _time(representation: Representation, scene: Scene, light_set: LightSet, *, quick: bool) -> Spread:
     """CPU time of a product, in ns: each light of a set in turn, with many surfaces per call."""
-    surfaces = representation.encode_surface(np.resize(scene.surfaces, (effort.rows, scene.surfaces.shape[1])))
-    lights = [_repeat_light(representation, power, effort.rows) for power in light_set.powers]
+    rows, lap, runs = QUICK_TIMING if quick else TIMING
+    surfaces = representation.encode_surface(np.resize(scene.surfaces, (rows, scene.surfaces.shape[1])))
+    lights = [_repeat_light(representation, power, rows) for power in light_set.powers]
 
     def multiply() -> None:
         for light in lights:
             representation.multiply(light, surfaces)
 
-    return time_laps(multiply, effort.seconds, effort.runs).scaled(1e9 / (len(lights) * effort.rows))
+    return time_laps(multiply, lap, runs).scaled(1e9 / (len(lights) * rows))
 
 
 def _repeat_light(representation: Representation, power: Array, rows: int) -> Any:

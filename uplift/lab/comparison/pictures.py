@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from uplift.common.arrays import StrPath
 from uplift.lab.comparison.compare import HEADINGS, Comparison, RepresentationResult, TunedFilter
-from uplift.lab.panels import FRONT_LINE, Panel, Point, page_panel, write_panels
+from uplift.lab.panels import Panel, Point, family_colours, page_panel, write_panels
 from uplift.viz.figure import INK, OTHER, STYLE, new_figure, style_axes, to_page_svg, write_png
 from uplift.viz.format import capitalise, format_error, format_time
 from uplift.viz.html import Tooltip, render
@@ -48,12 +48,6 @@ SOURCES = (
 )
 
 
-def family_colours(comparison: Comparison) -> dict[str, str]:
-    """``#rrggbb`` of the families of a comparison."""
-    present = {result.family for result in comparison.results}
-    return {name: COLOURS.get(name, OTHER) for name in sorted(present, key=[*COLOURS, *sorted(present)].index)}
-
-
 def names(comparison: Comparison) -> list[str]:
     """Return the names of the representations; their order numbers the markers."""
     return list(dict.fromkeys(result.name for result in comparison.results))
@@ -86,9 +80,9 @@ def cost_panels(comparison: Comparison) -> list[Panel]:
 
 def write_costs(comparison: Comparison, path: StrPath, *, force: bool = False) -> None:
     """Write the panels of error over cost as PNG. Raises `OutputError`."""
-    legend = {name: {"color": colour} for name, colour in family_colours(comparison).items()}
-    panels = cost_panels(comparison)
-    write_panels(panels, len(COSTS), path, {**legend, "Pareto front": {**FRONT_LINE, "linestyle": "-"}}, force=force)
+    families = family_colours((result.family for result in comparison.results), COLOURS)
+    legend = {name: {"color": colour} for name, colour in families.items()}
+    write_panels(cost_panels(comparison), len(COSTS), path, legend, force=force)
 
 
 def write_boxes(comparison: Comparison, path: StrPath, *, force: bool = False) -> None:
@@ -143,7 +137,7 @@ def render_comparison(comparison: Comparison, tuned: Sequence[TunedFilter] = ())
         comparison=comparison,
         pictures=[(f"{panel.title}, over {panel.axis}", page_panel(panel, number)) for number, panel in panels],
         boxes=page_boxes(comparison),
-        families=family_colours(comparison),
+        families=family_colours((result.family for result in comparison.results), COLOURS),
         tooltips=[_tooltip(name, comparison) for name in names(comparison)],
         facts=comparison.facts,
         sources=SOURCES,
