@@ -33,12 +33,10 @@ def command(cube: str, output: str | None, sheet: str | None, force: bool) -> No
         raise click.UsageError("Nothing to write: give --output FILE, --plot FILE, or both.")
     from uplift.common.files import check_outputs
     from uplift.cube import read
-    from uplift.io.exr import check_slices, write_slices
+    from uplift.io.exr import write_slices
     from uplift.viz.sheet import check_sheet, write_sheet
 
     check_outputs((output, sheet), inputs=[cube], force=force)
-    if output is not None:
-        check_slices(output, force=force)
     if sheet is not None:
         check_sheet(sheet, force=force)
     data = read(cube)

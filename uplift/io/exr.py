@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.errors import OutputError
-from uplift.common.files import atomic_write, check_output
+from uplift.common.files import atomic_write
 from uplift.cube.data import CubeData
 from uplift.cube.file import digest
 from uplift.lattice import Status
@@ -88,14 +88,8 @@ def write_slices(data: CubeData, path: str | os.PathLike[str], *, force: bool = 
     lattice RGB under the build illuminant), ``status``, ``entry`` and ``round`` (−1 for none; ``round`` only with debug
     information), ``standardError`` (of cubes with an atlas) and ``coefficient.00`` onwards.
 
-    Raises `OutputError` for other suffixes than ``.exr``, and as `uplift.common.files.check_output`.
+    Raises `OutputError` for other suffixes than ``.exr``, and as `uplift.common.files.atomic_write`.
     """
-    check_slices(path, force=force)
-    write_parts(_parts(data), path, force=force)
-
-
-def check_slices(path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Check that `write_slices` can write a file, before long work. Raises `OutputError`."""
     if Path(path).suffix.lower() != ".exr":
         raise OutputError(
             "the name of a file of slices must end in .exr",
@@ -103,7 +97,7 @@ def check_slices(path: str | os.PathLike[str], *, force: bool = False) -> None:
             path=path,
             hint="name the file .exr, or write a contact sheet",
         )
-    check_output(path, force=force)
+    write_parts(_parts(data), path, force=force)
 
 
 def blue_slices(values: NDArray[Any], dim: int) -> NDArray[Any]:
