@@ -15,6 +15,7 @@ HEADER_1_1 = (
     "ART measurement archive version 1.1\n\nArchive content: greys\n"
     "Archive copyright: (c) A. Person: 2020\nArchive license: CC0\n\n"
 )
+SAMPLES = "{0.5, 0.25, 0.125, 0.0625}"
 REGULAR = "Start                 :  400.0 nm\nIncrement             :  100.0 nm\n"
 BISPECTRAL = """\
 Reflectance start     :  400.0 nm
@@ -91,9 +92,7 @@ def test_latin_1_is_the_fallback_of_utf_8(save):
 @pytest.mark.parametrize("samples", ["{{400, 50}, {555.5, 25}, {700, 12.5}}", "{ {400,50}{555.5,25}\n,{700,12.5} }"])
 def test_point_samples(save, samples):
     text = PLAIN.replace("regular", "point sampled").replace("value  :  1.0", "value  :  100.0")
-    text = text.replace("{0.5, 0.25, 0.125, 0.0625}", samples)
-    text = text.replace(REGULAR, "")
-    (entry,) = read_atlas(save(text)).entries
+    (entry,) = read_atlas(save(text.replace(SAMPLES, samples).replace(REGULAR, ""))).entries
     assert entry.wavelengths.tolist() == [400, 555.5, 700]
     assert entry.values.tolist() == [0.5, 0.25, 0.125]
     assert entry.step is None
@@ -124,7 +123,11 @@ def test_entries_that_are_no_reflectances_are_skipped(save, other, reason):
 
 
 def without(key):
-    return lambda text: "\n".join(line for line in text.split("\n") if not line.startswith(key))
+    return "\n".join(line for line in PLAIN.split("\n") if not line.startswith(key))
+
+
+def pairs(samples):
+    return PLAIN.replace("regular", "point sampled").replace(REGULAR, "").replace(SAMPLES, samples)
 
 
 FAULTS = [
@@ -132,62 +135,51 @@ FAULTS = [
     (without("Maximum"), 1),
     (without("{"), 1),
     (without("ASCII"), 16),
-    (lambda text: text[: text.index("Measured by")], 6),
-    (lambda text: text[: text.index("25")], 17),
-    (lambda text: text.replace("}", "}\n\n\nabc"), 20),
-    (lambda text: text.replace("0.25,", "\n0.25,\n oops,"), 19),
-    (lambda text: text.replace("0.0625", "0.06 0.02\n"), 17),
-    (lambda text: text.replace("0.25", "0_2"), 17),
-    (lambda text: text.replace("400.0 nm", "0.4 µm"), 12),
-    (lambda text: text.replace("value  :  1.0", "value  :  0"), 14),
-    (lambda text: text.replace("value  :  1.0", "value  :  1e-320"), 1),
-    (lambda text: text.replace("reflectance spectrum", "smell"), 4),
-    (lambda text: text.replace("regular", "random"), 11),
-    (lambda text: text.replace("regular", "point sampled"), 12),
-    (lambda text: text.replace(":  no", ":  perhaps"), 5),
-    (lambda text: text.replace("Maximum", "Maximun"), 14),
-    (lambda text: text.replace("Increment  ", "Start  "), 13),
-    (lambda text: text.replace("0.25", "nan"), 1),
-    (lambda text: text.replace("100.0 nm", "0 nm"), 1),
-    (lambda text: text.replace("400.0 nm", "401 nm"), 1),
-    (lambda text: text.replace(", 0.25, 0.125, 0.0625", ""), 1),
+    (PLAIN[: PLAIN.index("Measured by")], 6),
+    (PLAIN[: PLAIN.index("25")], 17),
+    *(
+        (PLAIN.replace(old, new), line)
+        for old, new, line in (
+            ("}", "}\n\n\nabc", 20),
+            ("0.25,", "\n0.25,\n oops,", 19),
+            ("0.0625", "0.06 0.02\n", 17),
+            ("0.25", "0_2", 17),
+            ("400.0 nm", "0.4 µm", 12),
+            ("value  :  1.0", "value  :  0", 14),
+            ("value  :  1.0", "value  :  1e-320", 1),
+            ("reflectance spectrum", "smell", 4),
+            ("regular", "random", 11),
+            ("regular", "point sampled", 12),
+            (":  no", ":  perhaps", 5),
+            ("Maximum", "Maximun", 14),
+            ("Increment  ", "Start  ", 13),
+            ("0.25", "nan", 1),
+            ("100.0 nm", "0 nm", 1),
+            ("400.0 nm", "401 nm", 1),
+            (", 0.25, 0.125, 0.0625", "", 1),
+        )
+    ),
+    *(
+        (pairs(samples), 15)
+        for samples in ("{1, 2, 3}", "{{400, 1}, {500}}", "{{400, 1}, 500, 1}", "{}", "{{{400, 1}}}")
+    ),
+]
+OUTSIDE = [
+    (HEADER_1_1, 7),
+    (HEADER_1_1.replace("1.1", "2.0") + PLAIN, 1),
+    ("# my atlas\n" + PLAIN, 1),
+    ("Archive colour: red\n" + PLAIN, 1),
+    (PLAIN.replace(":   grey", ":"), 1),
 ]
 
 
-@pytest.mark.parametrize(("damage", "line"), FAULTS)
-def test_faults_report_file_line_entry_and_hint(save, damage, line):
-    path = save(damage(PLAIN))
-    with raises(AtlasError, "atlas") as caught:
-        read_atlas(path)
-    assert caught.value.where == f"{path}:{line}: entry 'grey'"
-
-
 @pytest.mark.parametrize(
-    ("text", "line"),
-    [
-        (HEADER_1_1, 7),
-        (HEADER_1_1.replace("1.1", "2.0") + PLAIN, 1),
-        ("# my atlas\n" + PLAIN, 1),
-        ("Archive colour: red\n" + PLAIN, 1),
-        (PLAIN.replace(":   grey", ":"), 1),
-    ],
+    ("text", "line", "entry"), [*((*each, "grey") for each in FAULTS), *((*each, None) for each in OUTSIDE)]
 )
-def test_faults_outside_entries(save, text, line):
-    path = save(text)
-    with raises(AtlasError, "atlas") as caught:
-        read_atlas(path)
-    assert caught.value.where.startswith(f"{path}:{line}")
-
-
-@pytest.mark.parametrize(
-    "samples", ["{1, 2, 3}", "{{400, 1}, {500}}", "{{400, 1}, 500, 1}", "{}", "{{400, 1, 2}}", "{{{400, 1}}}"]
-)
-def test_samples_that_are_not_pairs_raise(save, samples):
-    text = PLAIN.replace("regular", "point sampled").replace("{0.5, 0.25, 0.125, 0.0625}", samples)
-    text = text.replace(REGULAR, "")
+def test_faults_report_line_and_entry(save, text, line, entry):
     with raises(AtlasError, "atlas") as caught:
         read_atlas(save(text))
-    assert caught.value.where.endswith("atlas.txt:15: entry 'grey'")
+    assert (caught.value.line, caught.value.entry or None) == (line, entry)
 
 
 def test_truncated_files_raise(save):

@@ -11,8 +11,6 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid, solid_volume, toward_grey
 from uplift.lattice import Lattice
 
-SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
-
 
 def best_residual(sensor, rgb):
     """Smallest max |linear RGB| residual over all reflectances, for each colour (n, 3)."""
@@ -20,7 +18,7 @@ def best_residual(sensor, rgb):
     return np.array([np.abs(result.fun).max() for result in found])
 
 
-@pytest.mark.parametrize("space", SPACES)
+@pytest.mark.parametrize("space", ["sRGB", "ACEScg", "ProPhoto RGB"])
 def test_solid_contains_the_colours_that_a_solver_reaches(space):
     """On a small lattice, and on the points of a large one nearest to the boundary."""
     sensor = observer.sensor(space)
