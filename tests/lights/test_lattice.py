@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from uplift.colorimetry import observer
 from uplift.common.errors import OptionError
 from uplift.lights.fit import locus_lattice
-from uplift.lights.lattice import BEND, ChromaticityLattice, chromaticity
+from uplift.lights.lattice import LOCUS_TOLERANCE, ChromaticityLattice, chromaticity
 
 WHITE = np.array([0.2, 0.4])
 KNOTS = np.array([[0.6, 0.5], [0.3, 0.6], [0.0, 0.55], [0.05, 0.2], [0.25, 0.0]])
@@ -106,4 +106,4 @@ def test_all_mixtures_of_wavelengths_lie_within_the_bend(locus):
     xyz = RADIOMETRY / RADIOMETRY.sum(axis=1, keepdims=True).clip(1e-12)
     uv = np.concatenate([chromaticity(xyz[first] * part + xyz[second]).reshape(-1, 2) for part in (0.3, 1, 3)])
     share = locus[0].polar(uv - D65)[2]
-    assert 1 + 1e-4 < share.max() <= 1 + BEND
+    assert 1 + 1e-4 < share.max() <= 1 + LOCUS_TOLERANCE

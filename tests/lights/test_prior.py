@@ -9,7 +9,7 @@ from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import Lamps
 from uplift.lights.discs import MIN_RADIUS, lamp_entries
-from uplift.lights.fit import locus_lattice, mix_with_rim, nearest_lights
+from uplift.lights.fit import locus_lattice, mix_with_locus, nearest_lights
 from uplift.lights.lattice import chromaticity
 from uplift.lights.prior import fit_lamp_prior, relit_delta_e, smoothest_lights
 
@@ -27,7 +27,7 @@ def fitted():
 
 def test_every_node_is_exact_and_positive():
     uv = LATTICE.nodes[:, :-1].reshape(-1, 2)
-    power = mix_with_rim(smoothest_lights(uv, RADIOMETRY), uv, LATTICE, RIM, RADIOMETRY)
+    power = mix_with_locus(smoothest_lights(uv, RADIOMETRY), uv, LATTICE, RIM, RADIOMETRY)
     assert power.min() >= 0
     np.testing.assert_allclose(chromaticity(power @ RADIOMETRY), uv, atol=1e-9)
 

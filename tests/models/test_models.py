@@ -35,7 +35,7 @@ def test_linear_part_of_constant_multipliers_is_1(model):
 
 @each
 @given(x=arrays(float, 6, elements=st.floats(-1e12, 1e12)))
-def test_squash_is_increasing_bounded_and_odd_about_one_half(model, x):
+def test_reflectance_is_increasing_bounded_and_odd_about_one_half(model, x):
     y = model.to_reflectance(np.sort(x))
     assert (np.diff(y) >= -1e-16).all()
     assert ((y >= 0) & (y <= 1)).all()
@@ -45,7 +45,7 @@ def test_squash_is_increasing_bounded_and_odd_about_one_half(model, x):
 
 @each
 @given(y=arrays(float, 5, elements=st.floats(1e-6, 1 - 1e-6)))
-def test_unsquash_is_the_inverse_of_squash(model, y):
+def test_from_reflectance_is_the_inverse(model, y):
     np.testing.assert_allclose(model.to_reflectance(model.from_reflectance(y)), y, rtol=1e-9)
     limits = np.array([0.0, 1.0])
     np.testing.assert_allclose(model.to_reflectance(model.from_reflectance(limits)), limits, atol=1e-12)
@@ -60,7 +60,7 @@ def test_all_multipliers_give_reflectances(model, data):
 
 
 @each
-def test_slope_is_the_derivative_of_squash_and_positive(model):
+def test_derivative_agrees_with_differences_and_is_positive(model):
     x = np.linspace(-30, 30, 401)
     numeric = (model.to_reflectance(x + 1e-5) - model.to_reflectance(x - 1e-5)) / 2e-5
     np.testing.assert_allclose(model.derivative(x), numeric, atol=1e-9)

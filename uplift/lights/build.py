@@ -20,7 +20,7 @@ from uplift.common.machine import single_threaded_blas
 from uplift.common.text import format_value
 from uplift.common.version import VERSION
 from uplift.lights.discs import lamp_entries
-from uplift.lights.fit import locus_lattice, mix_with_rim, nearest_lights
+from uplift.lights.fit import locus_lattice, mix_with_locus, nearest_lights
 from uplift.lights.lamps import read_lamps
 from uplift.lights.lattice import ChromaticityLattice, chromaticity
 from uplift.lights.lookup import EmissionTable
@@ -109,10 +109,10 @@ def build_emission(
     surfaces = on_grid(read_atlas(SURFACES), observers.grid())
 
     prior, left_out = fit_lamp_prior(lamps, surfaces, radiometry, len(exact))
-    lattice, rim = locus_lattice(radiometry, white, int(knots), np.linspace(0, 1, int(rings)))
+    lattice, locus = locus_lattice(radiometry, white, int(knots), np.linspace(0, 1, int(rings)))
     uv = lattice.nodes[:, :-1].reshape(-1, 2)
-    inner = mix_with_rim(nearest_lights(prior(uv), uv, radiometry), uv, lattice, rim, radiometry)
-    nodes = np.concatenate([inner.reshape(len(rim), -1, inner.shape[1]), rim[:, None]], axis=1)
+    inner = mix_with_locus(nearest_lights(prior(uv), uv, radiometry), uv, lattice, locus, radiometry)
+    nodes = np.concatenate([inner.reshape(len(locus), -1, inner.shape[1]), locus[:, None]], axis=1)
     left_out_errors = relit_delta_e(lamps, left_out, surfaces, radiometry).mean(axis=1)
 
     entries, duplicates = lamp_entries(exact, others, lattice, radiometry)

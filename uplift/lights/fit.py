@@ -1,4 +1,4 @@
-"""Fit the nodes of an emission table: the rim of single wavelengths, and expected lights moved to chromaticities."""
+"""Fit the nodes of an emission table: the locus of single wavelengths, and expected lights moved to chromaticities."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Indices
 from uplift.fit.solver import solve
-from uplift.lights.lattice import BEND, DENOMINATOR, ChromaticityLattice, chromaticity, unit_xyz
+from uplift.lights.lattice import DENOMINATOR, LOCUS_TOLERANCE, ChromaticityLattice, chromaticity, unit_xyz
 from uplift.models.minimum_norm import forward_map
 from uplift.models.model import Model
 
@@ -20,7 +20,7 @@ MAX_PASSES = 60
 FAINTEST = 1e-6
 """Smallest power of a prior as a share of its mean: the model has positive powers only."""
 MIN_ANGLE = 1e-3
-"""Smallest angle in radians between a wavelength inside the convex polygon and its neighbours on the rim."""
+"""Smallest angle in radians between a wavelength inside the convex polygon and its neighbours on the polygon."""
 
 
 @dataclass(frozen=True)
@@ -53,39 +53,39 @@ class Exponential(Model):
 
 
 def locus_lattice(radiometry: Array, white: Array, knots: int, rings: Array) -> tuple[ChromaticityLattice, Array]:
-    """Create a lattice whose rim is the spectral locus, the polygon of the chromaticities of single wavelengths.
+    """Create a lattice that ends at the spectral locus, the polygon of the chromaticities of single wavelengths.
 
     Every corner of the polygon is a knot; the others divide its longest edges, as white views them, until there are
     `knots`. Returns also the power (K, N) of unit X + 15 Y + 3 Z at the knots. `radiometry` (N, 3) leads from power to
     XYZ, `white` (2,) is u′v′ of the centre.
     """
-    # The locus is not quite convex: from 575 to 700 nm, mixtures of wavelengths lie outside it by up to BEND. They have
-    # a place on the rim nevertheless, next to the wavelengths between them. On the convex polygon, pure orange would be
-    # a mixture of yellow and red.
+    # The locus is not quite convex: from 575 to 700 nm, mixtures of wavelengths lie outside it, by LOCUS_TOLERANCE at
+    # most. They have a place on the polygon nevertheless, next to the wavelengths between them. On the convex polygon,
+    # pure orange would be a mixture of yellow and red.
     size = radiometry @ DENOMINATOR
     visible = np.flatnonzero(size > 0)
     uv = chromaticity(radiometry[visible])
     corners = _corners(uv, white)
-    rim = np.zeros((len(corners), len(radiometry)))
-    rim[np.arange(len(corners)), visible[corners]] = 1 / size[visible[corners]]
+    locus = np.zeros((len(corners), len(radiometry)))
+    locus[np.arange(len(corners)), visible[corners]] = 1 / size[visible[corners]]
     places = uv[corners]
     while len(places) < knots:
         edge = int(np.argmax(_angles(places - white, np.roll(places, -1, axis=0) - white)))
-        places, rim = (
+        places, locus = (
             np.insert(array, edge + 1, (array[edge] + array[(edge + 1) % len(array)]) / 2, axis=0)
-            for array in (places, rim)
+            for array in (places, locus)
         )
-    return ChromaticityLattice(white, places, rings), rim
+    return ChromaticityLattice(white, places, rings), locus
 
 
 def _corners(uv: Array, white: Array) -> Indices:
-    """Corners of the convex polygon of chromaticities (n, 2), and others that lie on it but for `BEND`, in order."""
+    """Corners of the convex polygon of chromaticities (n, 2), and others within `LOCUS_TOLERANCE` of it, in order."""
     from scipy.spatial import ConvexHull
 
     hull = ConvexHull(uv).vertices
     length = ChromaticityLattice(white, uv[hull], np.array([0.0, 1.0])).polar(uv - white)[2]
     corners = list(hull)
-    for row in np.flatnonzero(length >= 1 - BEND):
+    for row in np.flatnonzero(length >= 1 - LOCUS_TOLERANCE):
         apart = np.abs(_angles(uv[corners] - white, np.broadcast_to(uv[row] - white, (len(corners), 2))))
         if apart.min() >= MIN_ANGLE:
             corners.append(row)
@@ -103,7 +103,7 @@ def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
     """Move spectra (n, N), of any scale, to chromaticities (n, 2), each by the smoothest and smallest factor.
 
     `radiometry` (N, 3) leads from power, at evenly spaced wavelengths, to XYZ. Returns power (n, N) of unit
-    X + 15 Y + 3 Z. Chromaticities near the spectral locus may be missed; see `mix_with_rim`.
+    X + 15 Y + 3 Z. Chromaticities near the spectral locus may be missed; see `mix_with_locus`.
     """
     model = Exponential(len(radiometry))
     wavelengths = np.linspace(0.0, 1.0, len(radiometry))
@@ -123,10 +123,10 @@ def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
     return np.asarray(power / (power @ radiometry @ DENOMINATOR)[:, None])
 
 
-def mix_with_rim(power: Array, uv: Array, lattice: ChromaticityLattice, rim: Array, radiometry: Array) -> Array:
-    """Remove the last differences of power (n, N) from chromaticities (n, 2) by adding a little light of the rim.
+def mix_with_locus(power: Array, uv: Array, lattice: ChromaticityLattice, locus: Array, radiometry: Array) -> Array:
+    """Remove the last differences of power (n, N) from chromaticities (n, 2) by adding a little light of the locus.
 
-    `rim` (K, N) is the power at the knots; it, `power` and the result have unit X + 15 Y + 3 Z.
+    `locus` (K, N) is the power at the knots; it, `power` and the result have unit X + 15 Y + 3 Z.
     """
     knots = lattice.knots
     edges = np.roll(knots, -1, axis=0) - knots
@@ -145,5 +145,5 @@ def mix_with_rim(power: Array, uv: Array, lattice: ChromaticityLattice, rim: Arr
     rows, sector = np.arange(len(uv)), length.argmin(axis=1)
     share = (1 / np.maximum(length[rows, sector], 1.0))[:, None]
     position = np.clip(along[rows, sector], 0.0, 1.0)[:, None]
-    edge = (1 - position) * rim[sector] + position * rim[(sector + 1) % len(rim)]
+    edge = (1 - position) * locus[sector] + position * locus[(sector + 1) % len(locus)]
     return np.asarray((1 - share) * power + share * edge)

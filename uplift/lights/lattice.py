@@ -17,7 +17,7 @@ from uplift.common.errors import OptionError
 
 DENOMINATOR = np.array([1.0, 15.0, 3.0])
 """Weights of X, Y and Z in the denominator of u′ and v′."""
-BEND = 3e-4
+LOCUS_TOLERANCE = 3e-4
 """Share of the distance from white by which lights may lie beyond the polygon, as the spectral locus bends inward."""
 TINY = float(np.finfo(np.float64).tiny)
 
@@ -151,7 +151,7 @@ class ChromaticityLattice:
 
     def contains(self, uv: Array) -> Mask:
         """Test whether chromaticities (n, 2) are realisable; NaN is not."""
-        return np.asarray(self.polar(uv - self.white)[2] <= 1 + BEND)
+        return np.asarray(self.polar(uv - self.white)[2] <= 1 + LOCUS_TOLERANCE)
 
 
 def _error(problem: str) -> OptionError:

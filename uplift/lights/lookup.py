@@ -14,7 +14,7 @@ from uplift.colorimetry.gamut import as_rgb
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import weighted_sum
-from uplift.lights.lattice import BEND, DENOMINATOR, Cells
+from uplift.lights.lattice import DENOMINATOR, LOCUS_TOLERANCE, Cells
 from uplift.lights.table import EmissionData, read_emission, write_emission
 from uplift.lookup.blocks import Function, as_float_type, as_thread_count, as_wavelengths, blockwise
 from uplift.lookup.cube import find_file
@@ -404,14 +404,14 @@ def _polar(data: EmissionData, xyz: Array) -> tuple[Array, Array, Array]:
 
 
 def _is_light(xyz: Array, size: Array, length: Array) -> Mask:
-    """Test whether XYZ (n, 3) are black or within the spectral locus, beyond which `BEND` is allowed."""
-    return np.asarray(((size > 0) & (length <= size * (1 + BEND))) | (xyz == 0).all(axis=1))
+    """Test whether XYZ (n, 3) are black or within the spectral locus, beyond which `LOCUS_TOLERANCE` is allowed."""
+    return np.asarray(((size > 0) & (length <= size * (1 + LOCUS_TOLERANCE))) | (xyz == 0).all(axis=1))
 
 
 def _to_locus(data: EmissionData, xyz: Array, *, clip: bool) -> tuple[Array, Array]:
     """Move XYZ (n, 3) towards white of the same luminance, white + f (colour − white), up to the spectral locus.
 
-    Returns u′v′ (n, 2) and X + 15 Y + 3 Z (n,). Unless ``clip``, `ColourError` for excesses beyond `BEND`.
+    Returns u′v′ (n, 2) and X + 15 Y + 3 Z (n,). Unless ``clip``, `ColourError` for excesses beyond `LOCUS_TOLERANCE`.
     """
     offset, size, length = _polar(data, xyz)
     wrong = ~_is_light(xyz, size, length)

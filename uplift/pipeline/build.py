@@ -216,6 +216,7 @@ def build(
 
 def _problem(options: Options, observer: str | Camera, solver: str | Solver) -> tuple[Options, Problem]:
     """Return the problem of a build, and options with the names of the space and of a camera, not aliases or files."""
+    # r = W g, on the wavelengths of the build (docs/mathematics.md, 1)
     sensor = observers.sensor(
         options.space, options.illuminant, observer if isinstance(observer, Camera) else options.observer
     )

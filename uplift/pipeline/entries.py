@@ -96,6 +96,7 @@ def as_atlas(atlas: AtlasLike) -> Atlas:
 def entries_in_gamut(atlas: Atlas, sensor: Sensor) -> MeasuredEntries:
     """Return the entries whose colours lie within the RGB space, with a warning for each other."""
     measured = on_grid(atlas, sensor.wavelengths)
+    # t = W m of measured reflectances m
     rgb = sensor.rgb(measured)
     inside = sensor.contains(rgb)
     note = ""

@@ -159,6 +159,7 @@ def _goal(look: Look, sensor: Sensor, screens: Sequence[Sensor]) -> LookGoal:
     if not solid(sensor.matrix).contains(rgb[None])[0]:
         problem = f"no reflectance has the colour {format_rgb(look.rgb)} under {sensor.illuminant}"
         raise look_error(look, problem, hint="choose one of less chroma")
+    # Targets y in XYZ, of colours of sRGB whose white is that of the light
     targets = zip(look.lights.values(), screens, strict=True)
     xyz = np.array([screen.xyz(parse_colour(target).rgb(screen)) for target, screen in targets])
     return LookGoal(rgb, tuple(screen.light for screen in screens), xyz)
