@@ -26,7 +26,7 @@ twice as long."""
 CODE = (":/uplift", ":/cli", ":/benchmarks", ":(top,exclude)uplift/lab/chart/measured.csv")
 """Files that measurements depend on: the code, without the measurements that are part of the package."""
 SOURCES = Path(__file__).parents[1]
-MIN_RUNS, MAX_LAPS = 3, 15
+MIN_RUNS, MAX_LAPS = 3, 75
 """Fewest runs, and duration of all runs together in units of the shortest, unless `MIN_RUNS` take longer."""
 
 
