@@ -19,7 +19,7 @@ with warnings.catch_warnings():
     import colour
 
 INSTALLED = ROOT / "out" / "pictures"
-"""Folder into which `make textures` installs packages with images."""
+"""Folder into which `make pictures` installs packages with images."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,9 +43,9 @@ class Picture:
 
 
 def pictures() -> Iterator[Picture]:
-    """Yield the images; raise `FileNotFoundError` unless `make textures` installed them."""
+    """Yield the images; raise `FileNotFoundError` unless `make pictures` installed them."""
     if not INSTALLED.is_dir():
-        raise FileNotFoundError(f"{INSTALLED}: run 'make textures'")
+        raise FileNotFoundError(f"{INSTALLED}: run 'make pictures'")
     for name in ("astronaut.png", "coffee.png", "chelsea.png", "ihc.png", "rocket.jpg"):
         yield Picture(INSTALLED / "skimage" / "data" / name, "scikit-image")
     for name in ("china.jpg", "flower.jpg"):
