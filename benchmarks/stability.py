@@ -1,4 +1,4 @@
-"""Failure map of fits and sensitivity of stored cubes, for docs/stability.md and its pictures."""
+"""Failures of fits and sensitivity of stored cubes, for docs/stability.md and its picture."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import uplift
 from benchmarks import CUBES, DOCS, record
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.progress import Progress
-from uplift.lab.study.plots import plot_locality, plot_map, plot_steepness
+from uplift.lab.study.plots import plot_locality
 from uplift.lab.study.sensitivity import COLOURS, MOVED_DELTA_E, NOISE, study_sensitivity
 from uplift.lab.study.stability import NO_ATLAS, SYNTHETIC_ATLASES, DesignSpace, study_stability
 from uplift.pipeline.rebuild import recorded_atlas
@@ -18,7 +18,7 @@ from uplift.pipeline.rebuild import recorded_atlas
 FOLDER = DOCS / "stability"
 PLAIN, CONSTRAINED = "moments-16", "moments-16-macbeth"
 STORED = (PLAIN, CONSTRAINED, "sigmoid-16", "sigmoid-16-macbeth", "moments-8", "sigmoid-8")
-"""Stored cubes; the first two are plotted, and the atlas of the second one is changed."""
+"""Stored cubes; the page lists the first two, and the atlas of the second one is changed."""
 ENTRIES = 24
 KINDS = {
     f"noise of {NOISE:g} on all entries": "noise",
@@ -48,30 +48,26 @@ def main() -> None:
 
 
 def failure_map() -> list[dict[str, Any]]:
-    """Run the builds of the design, and plot them."""
+    """Run the builds of the design."""
 
     def show(progress: Progress) -> None:
         if progress.done % 20 == 0 or progress.done == progress.total:
             print(f"{progress.done} of {progress.total} builds", file=sys.stderr)
 
     atlases = {"macbeth": uplift.read_atlas("macbeth")} | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
-    design = DesignSpace(atlases=(NO_ATLAS, *atlases))
-    results = study_stability(design.configs(), atlases, show)
-    plot_map(design.grids(), results, FOLDER / "map.png", force=True)
+    results = study_stability(DesignSpace(atlases=(NO_ATLAS, *atlases)).configs(), atlases, show)
     return [row | {"technique": config.model_label} for config, row in results.items()]
 
 
 def cube_sensitivity(name: str) -> dict[str, Any]:
-    """Measure the sensitivity of a stored cube, and plot that of the first two."""
+    """Measure the sensitivity of a stored cube, and plot the effect of entries that are left out."""
     path = CUBES / f"{name}.uplift"
     cube = uplift.load(path)
     atlas = recorded_atlas(cube.data, path) if name == CONSTRAINED else None
-    result = study_sensitivity(cube, atlas, ENTRIES)
-    if name in (PLAIN, CONSTRAINED):
-        plot_steepness(cube.data, result.lipschitz, FOLDER / f"steepness-{name}.png", force=True)
-    if result.removed:
-        plot_locality(result.removed, FOLDER / "locality.png", force=True)
-    return result.record()
+    moves, changes = study_sensitivity(cube, atlas, ENTRIES)
+    if changes:
+        plot_locality(changes, FOLDER / "locality.png", force=True)
+    return {"moves": moves, "changes": [change.record() for change in changes]}
 
 
 def summary(title: str, part: str, changes: list[dict[str, Any]]) -> dict[str, Any]:

@@ -19,9 +19,8 @@ from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
 MOMENTS_PLOTS = ("moments.png", "moments-patches.png", "moments-worst.png")
-STABILITY_PLOTS = ("stability.png",)
-SENSITIVITY_PLOTS = ("sensitivity-steepness.png", "sensitivity-locality.png")
-"""Files of --output; the last one is for cubes with an atlas."""
+SENSITIVITY_PLOTS = ("sensitivity-locality.png",)
+"""Files of --output."""
 MACBETH = "macbeth"
 Row = Mapping[str, Any]
 output_option = click.option("-o", "--output", metavar="DIR", help="Folder for plots.")
@@ -188,25 +187,20 @@ def _list_option(name: str, kind: Callable[[str], Any], metavar: str, help: str)
 @options.atlas("Atlas in addition to the synthetic ones", MACBETH)
 @_list_option("--atlases", str, "NAME,…", "Atlases to use by name, or 'none'.")
 @click.option("--samples", type=options.Whole(0, 100_000), help="Number of random settings in addition to the grids.")
-@output_option
 @options.output_format("table", "json", "csv")
-@options.force
-def stability(
-    quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool, **settings: Any
-) -> None:
+def stability(quick: bool, files: tuple[str, ...], style: str, **settings: Any) -> None:
     """Build cubes over dims, coefficients, models, spaces, thresholds and atlases, and count unfitted nodes.
 
     Reports for each build the realisable and the unfitted nodes, rounds, improvement attempts, the largest residual and
     the time. The builds are a grid of each setting against models and coefficients, and a random sample of other
     combinations.
 
-    Atlases are none, the ColorChecker, and three difficult synthetic ones: crowded, spiky and noisy. --output writes
-    the heat map stability.png.
+    Atlases are none, the ColorChecker, and three difficult synthetic ones: crowded, spiky and noisy.
 
     \b
     Examples:
       uplift study stability --quick
-      uplift study stability --output out --force
+      uplift study stability --format json
       uplift study stability --thresholds 1e-4,1e-6 --dims 9 --format csv
     """
     enable_jit_cache()
@@ -215,13 +209,8 @@ def stability(
     atlases = read_atlases(files or (MACBETH,)) | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
     given = {name: value for name, value in settings.items() if value is not None}
     design = replace(QUICK_DESIGN if quick else DesignSpace(), **({"atlases": (NO_ATLAS, *atlases)} | given))
-    _check_plots(output, STABILITY_PLOTS, files, force=force)
     with progress_bar("builds") as progress:
         results = study_stability(design.configs(), atlases, progress)
-    if output is not None:
-        from uplift.lab.study.plots import plot_map
-
-        _write_plots(output, {STABILITY_PLOTS[0]: partial(plot_map, design.grids(), results)}, force=force)
     records = list(results.values())
     hidden = ("success", "points", "stand_ins")
     _print(style, records, records, [{key: row[key] for key in row if key not in hidden} for row in records])
@@ -243,12 +232,11 @@ def sensitivity(
 ) -> None:
     """Perturb queried colours and the measurements of a cube, and report the change of its spectra.
 
-    Colours are perturbed by an 8-bit code, a 10-bit code and float rounding. The Lipschitz constant of mode 'spectra'
-    is computed for every cell. The cube is rebuilt with noise on its atlas, with one entry reversed, and with one entry
-    left out. CUBE defaults to the packaged cube, which has no atlas. ΔE00 are under FL11 and, for colours, under the
-    illuminant of the cube.
+    Colours are perturbed by an 8-bit code, a 10-bit code and float rounding. The cube is rebuilt with noise on its
+    atlas, with one entry reversed, and with one entry left out. CUBE defaults to the packaged cube, which has no atlas.
+    ΔE00 are under FL11 and, for colours, under the illuminant of the cube.
 
-    --output writes, as PNG, the steepness of the cube and the distance to which an entry affects it.
+    --output writes, as PNG, the distance to which an entry of the atlas affects the cube.
 
     \b
     Examples:
@@ -263,29 +251,16 @@ def sensitivity(
 
     loaded = load(cube)
     atlas = recorded_atlas(loaded.data, cube, folders) if cube is not None and entries else None
-    plots = SENSITIVITY_PLOTS if atlas else SENSITIVITY_PLOTS[:1]
-    _check_plots(output, plots, [cube], force=force)
+    if output is not None and atlas is None:
+        raise click.UsageError("--output draws the effect of entries: it needs a CUBE with an atlas, and --entries.")
+    _check_plots(output, SENSITIVITY_PLOTS, [cube], force=force)
     with progress_bar("builds") as progress:
-        result = study_sensitivity(loaded, atlas, entries, progress)
+        moves, changes = study_sensitivity(loaded, atlas, entries, progress)
     if output is not None:
-        from uplift.lab.study.plots import plot_locality, plot_steepness
+        from uplift.lab.study.plots import plot_locality
 
-        writers = partial(plot_steepness, result.data, result.lipschitz), partial(plot_locality, result.removed)
-        _write_plots(output, dict(zip(plots, writers, strict=False)), force=force)
-    record = result.record()
-    _print(style, record, (), record["moves"])
-    if style == "table":
-        steep = record["lipschitz"]
-        where = ", ".join(f"{value:.4f}" for value in steep["steepest_cell"])
-        say(
-            f"Lipschitz constant {steep['largest']:.3g} rms per unit of linear RGB (median of the cells "
-            f"{steep['median_cell']:.2g}), {steep['largest_per_code']:.2g} per 8-bit code; steepest cell at {where}, "
-            f"steepest wavelength {steep['steepest_wavelength']:g} nm"
-        )
-        if steep["moved_cells"]:
-            say(
-                f"in {steep['moved_cells']} cells, which have corners without their own colours, answers are moved to "
-                "exact colours: there the constants are those of the mixtures before"
-            )
-        if record["changes"]:
-            _print_table(record["changes"])
+        _write_plots(output, {SENSITIVITY_PLOTS[0]: partial(plot_locality, changes)}, force=force)
+    record = {"moves": moves, "changes": [change.record() for change in changes]}
+    _print(style, record, (), moves)
+    if style == "table" and changes:
+        _print_table(record["changes"])

@@ -114,8 +114,7 @@ def test_held_out_has_the_same_numbers_in_all_formats(run, rows, macbeth):
 
 def test_stability(run, rows, home, tcs):
     words = (*SETTINGS, "--thresholds", "1e-3,1e-4", "--samples", 1, "--atlas", tcs, "--atlases", "none,tcs")
-    result = run("study", "stability", *words, "-o", "out")
-    check_plots(home / "out", ["stability.png"], result.stderr)
+    result = run("study", "stability", *words)
     assert re.fullmatch(r"3 builds, \d+ realisable nodes: 0 unfitted in 0 builds", result.stdout.splitlines()[-1])
     found = rows("stability", *words)
     assert {row["atlas"] for row in found} == {"none", "tcs"}
@@ -125,16 +124,12 @@ def test_stability(run, rows, home, tcs):
 def test_sensitivity_of_a_stored_cube(run, home, cubes):
     args = ("study", "sensitivity", cubes / "moments-8-macbeth.uplift", "--entries", 1)
     result = run(*args, "-o", "out", "--format", "json")
-    check_plots(home / "out", ["sensitivity-steepness.png", "sensitivity-locality.png"], result.stderr)
+    check_plots(home / "out", ["sensitivity-locality.png"], result.stderr)
     changes = [one["change"] for one in json.loads(result.stdout)["changes"]]
     assert len(changes) == 5
     assert all("dark skin" in change for change in changes[3:])
 
 
-def test_sensitivity_of_cubes_without_an_atlas(run, home):
-    result = run("study", "sensitivity", "-o", "out")
-    check_plots(home / "out", ["sensitivity-steepness.png"], result.stderr)
-    assert "Lipschitz constant" in result.stdout
-    assert "left out" not in result.stdout
-    run("build", "--space", "ITU-R BT.2020", "--dim", 3, "-o", "wide.uplift")
-    assert re.search(r"in [1-8] cells, which have corners", run("study", "sensitivity", "wide.uplift").stdout)
+def test_sensitivity_of_cubes_without_an_atlas(run, misuse):
+    assert "left out" not in run("study", "sensitivity").stdout
+    assert "needs a CUBE with an atlas" in misuse("study", "sensitivity", "-o", "out")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import product
 from types import SimpleNamespace
 
 import numpy as np
@@ -77,11 +79,9 @@ def test_design_contains_grids_and_sample_once():
     design = DesignSpace()
     configs = design.configs()
     assert len(set(configs)) == len(configs) > 3 * len(QUICK_DESIGN.configs())
-    for grid in design.grids():
-        values = getattr(design, f"{grid.axis}s" if grid.axis != "atlas" else "atlases")
-        for row in grid.rows:
-            assert set(row) <= set(configs)
-            assert tuple(getattr(config, grid.axis) for config in row) == values
+    for axis, fixed in (("space", {"threshold": 1e-4}), ("threshold", {"space": "sRGB"}), ("dim", {"space": "sRGB"})):
+        for variant, value in product(design.variants, getattr(design, f"{axis}s")):
+            assert replace(variant, **{"dim": 17} | fixed | {axis: value}) in configs
     five = {(config.space, config.model) for config in configs if config.dim == 17}
     assert five >= {(space, model) for space in SPACES for model in ("moments", "sigmoid")}
 

@@ -20,7 +20,6 @@ from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.cube import CubeData
-from uplift.lab.study.lipschitz import LipschitzConstants, lipschitz_constants
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
 from uplift.pipeline.build import build
@@ -71,48 +70,12 @@ class Change:
         }
 
 
-@dataclass(frozen=True, eq=False)
-class Sensitivity:
-    """Changes of the answers to moved queries, Lipschitz constants, and changes of the atlas, none without an atlas."""
-
-    data: CubeData
-    moves: list[Record]
-    lipschitz: LipschitzConstants
-    changes: list[Change]
-
-    @property
-    def removed(self) -> list[Change]:
-        """Changes by an entry left out."""
-        return [change for change in self.changes if change.description.endswith("left out")]
-
-    def record(self) -> Record:
-        """Convert to JSON values; ``steepest_cell`` is the linear RGB of the lowest corner of a cell."""
-        constants, boxes, inexact = self.lipschitz, self.lipschitz.boxes, self.data.inexact_cells
-        lattice = self.data.lattice
-        steepest = np.unravel_index(int(constants.cells.argmax()), constants.cells.shape)
-        cells = np.zeros((0, 0, 0)) if inexact is None else inexact.reshape((lattice.dim,) * 3)[:-1, :-1, :-1]
-        return {
-            "moves": self.moves,
-            "lipschitz": {
-                "largest": constants.largest,
-                "median_cell": float(np.median(constants.cells)),
-                "largest_per_code": float(constants.codes.max()),
-                "median_per_code": float(np.median(constants.codes)),
-                "steepest_cell": lattice.nodes[np.array(steepest)].tolist(),
-                "steepest_wavelength": float(self.data.sensor.wavelengths[constants.wavelengths.argmax()]),
-                "largest_box": float(boxes.max()) if boxes.size else None,
-                "moved_cells": int(cells.sum()),
-            },
-            "changes": [each.record() for each in self.changes],
-        }
-
-
 def study_sensitivity(
     cube: Cube, atlas: Atlas | None, entries: int, progress: ProgressCallback = ignore_progress
-) -> Sensitivity:
-    """Perturb queries, compute Lipschitz constants, and rebuild the cube with changes of its atlas.
+) -> tuple[list[Record], list[Change]]:
+    """Perturb queries, and rebuild the cube with changes of its atlas, ``entries`` of them one at a time.
 
-    ``entries`` of the atlas are changed, one at a time.
+    Returns the changes of the answers, and those of the nodes, none without an atlas.
     """
     data = cube.data
     if data.complete_cells is not None:
@@ -122,7 +85,7 @@ def study_sensitivity(
             hint="build it without a scene",
         )
     light = observer.light(NARROW_BAND_LIGHT, data.sensor.observer)
-    moves, lipschitz, changes = perturb(cube, light), lipschitz_constants(data), []
+    changes = []
     if atlas is not None and entries > 0:
         options = recorded_options(data.provenance["options"])
         before = rebuild(atlas.entries, options)
@@ -131,7 +94,7 @@ def study_sensitivity(
         for number, (description, name, changed) in enumerate(jobs, 1):
             changes.append(compare(before, rebuild(changed, options), light, description, name))
             progress(Progress("builds", number, len(jobs)))
-    return Sensitivity(data, moves, lipschitz, changes)
+    return perturb(cube, light), changes
 
 
 def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Record]:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, fields, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -154,17 +155,6 @@ SMALL_DIM = 9
 MAX_SAMPLED_DIM = 17
 """Largest size in the sample."""
 SEED = 4
-DESCRIPTIONS = {"dim": "{}³", "space": "{}", "threshold": "threshold {}", "atlas": "atlas {}"}
-"""Values of axes in titles of grids."""
-
-
-@dataclass(frozen=True)
-class Grid:
-    """One axis, a field of `RunConfig`, against the model variants: each row has the configurations of a variant."""
-
-    title: str
-    axis: str
-    rows: tuple[tuple[RunConfig, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -190,10 +180,9 @@ class DesignSpace:
         moments = [RunConfig("moments", count) for count in self.coefficients if Moments.name in self.models]
         return (*moments, *[RunConfig("sigmoid", Sigmoid.count)] * (Sigmoid.name in self.models))
 
-    def grids(self) -> tuple[Grid, ...]:
-        """Make the grids of the design, without repetition."""
+    def grids(self) -> Iterator[RunConfig]:
+        """Yield every variant at the values of one axis, the others fixed."""
         default, wide_and_small = self._fixed(), self._fixed(SMALL_DIM, SPACES[-1])
-        by_title = {}
         for axis, values, fixed in (
             ("space", self.spaces, default),
             ("threshold", self.thresholds, default),
@@ -201,11 +190,8 @@ class DesignSpace:
             ("atlas", self.atlases, default),
             ("dim", self.dims, default),
         ):
-            rest = ", ".join(DESCRIPTIONS[name].format(value) for name, value in fixed.items() if name != axis)
-            title = f"by {axis}: {rest}"
-            rows = (tuple(replace(one, **fixed | {axis: value}) for value in values) for one in self.variants)
-            by_title[title] = Grid(title, axis, tuple(rows))
-        return tuple(by_title.values())
+            for variant, value in product(self.variants, values):
+                yield replace(variant, **fixed | {axis: value})
 
     def _fixed(self, dim: int = 17, space: str = SPACES[0]) -> dict[str, Any]:
         """Values of the axes that a grid does not vary: the given or usual one if the axis has it, else the first."""
@@ -233,8 +219,7 @@ class DesignSpace:
 
     def configs(self) -> tuple[RunConfig, ...]:
         """List every configuration of the grids and of the sample once."""
-        in_grids = [config for grid in self.grids() for row in grid.rows for config in row]
-        return tuple(dict.fromkeys([*in_grids, *self.sample()]))
+        return tuple(dict.fromkeys([*self.grids(), *self.sample()]))
 
 
 QUICK_DESIGN = DesignSpace(
