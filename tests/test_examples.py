@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from uplift_cli.main import COMMANDS
 
-from tests.examples import ELSEWHERE, ROOT, build_wheel, examples, page_examples, run_lines, unpack
+from tests.examples import ELSEWHERE, ROOT, build_wheel, examples, run_lines, unpack
 
 EXAMPLES = examples()
 BEGIN = "uplift samples"
@@ -62,23 +62,3 @@ def test_every_command_has_an_example_that_runs():
     assert {line.split()[1] for line in FEW} >= set(COMMANDS) - SLOW.keys()
     assert set(FEW) <= set(EXAMPLES)
     assert all((ROOT / path).is_file() for path in SLOW.values())
-
-
-def test_blocks_of_pages_are_read():
-    text = "```console\n$ uplift a 'b c' \\\n  d    # remark\nout\n```\n```python\nuplift x\n```\n```\nuplift e\n```\n"
-    assert list(page_examples(text)) == ["uplift a 'b c' d", "uplift e"]
-
-
-def test_failures_are_noticed(package, tmp_path):
-    lines = [
-        "mkdir -p data",
-        "uplift query 1 1 1 > data/white.txt",
-        "uplift query 2 2 2",
-        "uplift info none.uplift",
-        "uplift atlas --format json macbeth | jq .entries",
-        "uplift atlas --format json macbeth | jq .no",
-    ]
-    good, bad, missing, found, lost = run_lines(lines, package, tmp_path)
-    assert [each["code"] for each in (good, bad, missing, found, lost)] == [0, 2, 2, 0, 1]
-    assert (tmp_path / "data" / "white.txt").read_text() == good["stdout"]
-    assert "error: none.uplift" in missing["stderr"]

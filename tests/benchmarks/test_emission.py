@@ -9,19 +9,7 @@ import numpy as np
 import pytest
 
 import uplift
-from benchmarks.emission import (
-    FAMILIES,
-    by_nearest,
-    draw_error_map,
-    exactness,
-    lamp_family,
-    mixtures,
-    planck,
-    predict,
-    sigmoid_times_d65,
-    spokes,
-    unknown_lamps,
-)
+from benchmarks.emission import FAMILIES, exactness, lamp_family, mixtures, planck, predict, spokes, unknown_lamps
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import Lamps
@@ -67,26 +55,10 @@ def test_a_table_without_a_lamp_has_its_colour_and_not_its_spectrum():
     assert np.abs(found["lamp"][0] - found["both"][0]).max() > 1e-4
 
 
-def test_sigmoids_times_d65_have_the_rgb():
-    some, d65 = LAMPS.power[[row("D65"), row("FL11"), row("LED-B3")]], LAMPS.power[row("D65")]
-    found = sigmoid_times_d65(some, TABLE, d65)
-    np.testing.assert_allclose(chromaticity(found @ RADIOMETRY), chromaticity(some @ RADIOMETRY), atol=1e-5)
-    np.testing.assert_allclose(np.ptp(found[0] / d65), 0, atol=1e-3)
-
-
 def test_tungsten_is_planckian():
     lamp = LAMPS.power[row("A")]
     found = planck(UV[[row("A")]], RADIOMETRY, observer.grid())[0]
     np.testing.assert_allclose(found / found.sum(), lamp / lamp.sum(), rtol=5e-3)
-
-
-def test_the_nearest_lamp_is_a_known_one(unknown):
-    d65 = row("D65")
-    apart = np.linalg.norm(UV - UV[d65], axis=1)
-    for rule in ("lamp", "family"):
-        found = by_nearest(LAMPS, unknown[rule], RADIOMETRY)["nearest lamp"][d65]
-        expected = np.where(unknown[rule][d65], np.inf, apart).argmin()
-        np.testing.assert_array_equal(found, LAMPS.power[expected])
 
 
 def test_exactness_is_measured_from_white_to_the_locus():
@@ -104,8 +76,3 @@ def test_exactness_is_measured_from_white_to_the_locus():
     data = TABLE.data
     wrong = EmissionTable(replace(data, spectra=data.spectra * np.linspace(0.9, 1.1, 81, dtype=np.float32)))
     assert next(exactness(wrong, uv))["uv_error"] > 1e-3
-
-
-def test_the_map_is_drawn(tmp_path):
-    draw_error_map(TABLE, LAMPS.names, UV, np.ones(len(LAMPS)), tmp_path / "map.png")
-    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")

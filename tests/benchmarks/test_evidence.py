@@ -65,12 +65,3 @@ def test_the_viewer_reads_the_scan_in_which_every_material_is_visible(tmp_path):
     order = ["block", "haze", "piston", "valve"]
     found = read_weights(tmp_path / "engine.exr", order, {})
     np.testing.assert_allclose(found, weights[..., [list(scan.DENSITIES).index(name) for name in order]], atol=1e-6)
-
-
-def test_a_block_in_front_hides_what_is_behind():
-    slab = np.zeros((24, 24, 24), dtype=np.float32)
-    slab[:, :, 14:20] = scan.DENSITIES["block"]
-    slab[:, :, 4:10] = scan.DENSITIES["valve"]
-    names = list(scan.DENSITIES)
-    middle = scan.cast(slab, 24)[12, 12]
-    assert middle[names.index("block")] > 20 * middle[names.index("valve")]

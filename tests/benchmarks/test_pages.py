@@ -17,7 +17,7 @@ from benchmarks.choices import ALONE, MARK, OURS, SHIPPED, is_optimistic, mark
 from tests.conftest import ROOT
 from tests.parts import MITSUBA, need
 from tools import render_docs
-from tools.render_docs import number, page_file, pick, read_data, render, table
+from tools.render_docs import page_file, read_data, render, table
 from uplift.lab.chart.table import read_chart
 
 DOCS = ROOT / "docs"
@@ -69,34 +69,10 @@ def test_a_missing_figure_is_an_error():
         render("accuracy", data=data)
 
 
-@pytest.mark.parametrize(
-    ("value", "spec", "text"),
-    [
-        (None, ".2f", ""),
-        (True, "", "●"),
-        (1234.5, ",.0f", "1,234"),
-        (4200, "time", "4.2 µs"),
-        ([1, 2.5], ".1f", "1.0 / 2.5"),
-        ([1, 2.5], "list .1f", "1.0, 2.5"),
-        ({"median": 2, "min": 1, "max": 3, "runs": 5}, ".1f", "2.0 (1.0–3.0)"),
-        ({"mean": 2, "std": 0.5}, ".1f", "2.0 ± 0.5"),
-    ],
-)
-def test_formats_of_numbers(value, spec, text):
-    assert number(value, spec) == text
-
-
 def test_table_fills_a_row_pattern():
     rows = [{"name": "x", "errors": {"FL2": [1.0, 2.0]}}]
     text = table(rows, lambda: "\nname | mean\n{name} | {errors.FL2.0:.1f}\n")
     assert text == "| name | mean |\n| --- | --- |\n| x | 1.0 |\n"
-
-
-def test_pick_returns_the_only_match():
-    rows = [{"a": 1, "b": 2}, {"a": 1, "b": 3}]
-    assert pick(rows, b=3) == rows[1]
-    with pytest.raises(LookupError, match="2 rows"):
-        pick(rows, a=1)
 
 
 def test_a_choice_marks_its_methods_on_its_sets(monkeypatch):

@@ -9,8 +9,7 @@ import time
 import numpy as np
 import pytest
 
-from benchmarks.peers import Peer, alone, ceres, judge, judge_multipliers
-from uplift.models import Sigmoid
+from benchmarks.peers import Peer, alone, ceres, judge
 
 TARGET = np.full((10, 3), 0.5)
 
@@ -27,13 +26,6 @@ def test_judge_raises_on_a_wrong_answer(wrong):
     found[:2, 0] = wrong
     with pytest.raises(RuntimeError, match=r"80\.0% of the points"):
         judge(found, TARGET, least=0.9)
-
-
-def test_spectra_of_another_colour_are_a_wrong_answer():
-    grey = np.zeros((10, 3))
-    assert judge_multipliers(Sigmoid(), grey, TARGET, least=1)["share"] == 1
-    with pytest.raises(RuntimeError, match="wrong answer"):
-        judge_multipliers(Sigmoid(), grey, TARGET / 2, least=1)
 
 
 def test_absent_tools_have_rows_without_figures(monkeypatch):

@@ -38,16 +38,6 @@ def renders(painted, repository):
     return demo.render(methods, LAYOUT, SPP)
 
 
-def test_24_patches_do_not_overlap():
-    width, height = LAYOUT.size
-    image = np.zeros((height, width))
-    for place in LAYOUT.patches():
-        image[place] += 1
-    assert image.max() == 1
-    assert image.sum() == 24 * LAYOUT.patch**2
-    assert sum(image[place].size for place in LAYOUT.patches(inset=1)) == 24 * (LAYOUT.patch - 2) ** 2
-
-
 def test_reference_equals_the_integral_of_the_measured_spectra(painted, renders):
     for name in demo.LIGHTS:
         expected = painted.measured @ light(name).xyz.T

@@ -11,9 +11,7 @@ from tests.helpers import near_black, raises, with_absent_points
 from uplift.common.errors import CubeFileError
 from uplift.cube import digest, read, write
 from uplift.cube.file import POINTS
-from uplift.io.exr import channels, write_slices
 from uplift.lattice import Lattice, Status
-from uplift.viz.sheet import BACKGROUND, panels, write_sheet
 
 
 @pytest.fixture
@@ -91,17 +89,3 @@ def test_forged_files_are_refused(data, tmp_path, change):
 
 def test_an_unchanged_sparse_file_is_read(data, tmp_path):
     assert not read(forge(data, tmp_path / "true.uplift", lambda *_: None)).points.present.all()
-
-
-def test_absent_points_are_background_on_sheets_and_zero_in_slices(data, tmp_path):
-    for panel in panels(data):
-        assert (panel.colours[~data.points.present] == np.float32(BACKGROUND)).all() or np.allclose(
-            panel.colours[~data.points.present], BACKGROUND
-        )
-        assert not np.allclose(panel.colours[data.points.present], BACKGROUND)
-    for name, values in channels(data).items():
-        if not name.startswith("target"):
-            expected = {"status": Status.ABSENT, "entry": -1, "round": -1}.get(name, 0)
-            assert (np.asarray(values)[~data.points.present] == expected).all(), name
-    write_slices(data, tmp_path / "slices.exr")
-    write_sheet(data, tmp_path / "sheet.png")

@@ -70,8 +70,7 @@ def test_expected_errors_are_numbers_where_sodium_has_no_z():
 
 
 @pytest.mark.parametrize(
-    ("problem", "atlas"),
-    [("got none", Atlas(())), ("none of 'dark'", Atlas((Entry("dark", AT, np.zeros(81)),)))],
+    ("problem", "atlas"), [("got none", Atlas(())), ("none of 'dark'", Atlas((Entry("dark", AT, np.zeros(81)),)))]
 )
 def test_atlases_without_light_are_refused(problem, atlas):
     with pytest.raises(OptionError, match=problem):
@@ -87,13 +86,6 @@ def test_bad_numbers_of_nodes_are_refused(options):
 def write(path, values, comment="# spectral irradiance"):
     path.write_text(f"{comment}\nname,400,500,600,700\nbulb,{','.join(map(str, values))}\n")
     return path
-
-
-@pytest.mark.parametrize("scale", [1e-6, 1, 1e6])
-def test_powers_have_no_scale(tmp_path, scale):
-    atlas = read_lamps(write(tmp_path / "lamps.csv", [scale * value for value in (1, 2, 3, 4)]))
-    assert atlas.names == ("bulb",)
-    assert atlas[0].values == pytest.approx([0.25, 0.5, 0.75, 1])
 
 
 def test_a_lamp_without_power_is_refused(tmp_path):
@@ -117,8 +109,7 @@ def test_lamps_of_the_lighting_standard_state_power(tmp_path, quantity):
 
 
 @pytest.mark.parametrize(
-    ("layout", "quantity"),
-    [(TM27, "reflectance"), (TM27, "R-Factor"), (TM27, "transmittance"), (JCAMP, "REFLECTANCE")],
+    ("layout", "quantity"), [(TM27, "reflectance"), (TM27, "R-Factor"), (TM27, "transmittance"), (JCAMP, "REFLECTANCE")]
 )
 def test_stated_quantities_of_materials_are_refused(tmp_path, layout, quantity):
     path = tmp_path / "material.txt"

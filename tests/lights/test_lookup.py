@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,12 +9,9 @@ from hypothesis import strategies as st
 
 import uplift
 from tests.helpers import raises
-from uplift.common.errors import ColourError, CubeFileError, OptionError
+from uplift.common.errors import ColourError, OptionError
 from uplift.lights.discs import LampEntries
 from uplift.lights.lattice import DENOMINATOR, chromaticity, unit_xyz
-from uplift.lights.lookup import EMISSION, find_table
-from uplift.lookup.blocks import BLOCK
-from uplift.lookup.cube import DEFAULT
 
 TABLE = uplift.load_emission()
 RADIOMETRY = TABLE.data.cmfs / TABLE.data.cmfs[:, 1].sum()
@@ -153,29 +148,6 @@ def test_wavelengths_are_interpolated_linearly():
     np.testing.assert_allclose(found, expected, rtol=1e-12)
 
 
-@pytest.mark.parametrize("shape", [(), (2, 3), (2, 0)])
-def test_results_keep_the_shape_of_the_input(shape):
-    rgb = np.random.default_rng(0).random((*shape, 3))
-    assert TABLE.spectrum(rgb).shape == (*shape, 81)
-    assert TABLE.spectrum(rgb, [500, 600]).shape == (*shape, 2)
-    assert TABLE.contains(rgb).shape == shape
-    assert TABLE.expected_error(rgb).shape == shape
-
-
-def test_results_do_not_depend_on_threads_or_blocks():
-    rgb = np.random.default_rng(0).random((BLOCK + 5, 3))
-    together = TABLE.spectrum(rgb, [450.0, 650.0])
-    np.testing.assert_array_equal(TABLE.spectrum(rgb, [450.0, 650.0], threads=3), together)
-    np.testing.assert_array_equal(TABLE.spectrum(rgb[BLOCK], [450.0, 650.0]), together[BLOCK])
-
-
-def test_single_precision_is_close():
-    rgb = np.random.default_rng(0).random((50, 3)) * 1e4
-    found = TABLE.spectrum(rgb.astype(np.float32), dtype=np.float32)
-    assert found.dtype == np.float32
-    np.testing.assert_allclose(found, TABLE.spectrum(rgb.astype(np.float32)), rtol=1e-6)
-
-
 @pytest.mark.parametrize(
     ("code", "kind", "rgb", "options"),
     [
@@ -193,14 +165,6 @@ def test_single_precision_is_close():
 def test_bad_input_is_refused(code, kind, rgb, options):
     with raises(kind, code):
         TABLE.spectrum(rgb, **options)
-
-
-def test_packaged_table_has_a_name_which_files_take_over(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert find_table("Emission") == EMISSION
-    Path("emission").write_bytes(DEFAULT.read_bytes())
-    with raises(CubeFileError, "not-an-emission-table"):
-        uplift.load_emission("emission")
 
 
 def test_discs_are_those_of_a_comparison_with_all():

@@ -8,7 +8,7 @@ import pytest
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import Lamps
-from uplift.lights.discs import MIN_RADIUS, lamp_entries
+from uplift.lights.discs import lamp_entries
 from uplift.lights.fit import locus_lattice, mix_with_locus, nearest_lights
 from uplift.lights.lattice import chromaticity
 from uplift.lights.prior import fit_lamp_prior, relit_delta_e, smoothest_lights
@@ -30,13 +30,6 @@ def test_every_node_is_exact_and_positive():
     power = mix_with_locus(smoothest_lights(uv, RADIOMETRY), uv, LATTICE, RIM, RADIOMETRY)
     assert power.min() >= 0
     np.testing.assert_allclose(chromaticity(power @ RADIOMETRY), uv, atol=1e-9)
-
-
-def test_a_light_of_the_right_chromaticity_is_unchanged():
-    uv = chromaticity(LAMPS.power[:5] @ RADIOMETRY)
-    found = nearest_lights(LAMPS.power[:5], uv, RADIOMETRY)
-    expected = LAMPS.power[:5]
-    np.testing.assert_allclose(found / found.sum(1)[:, None], expected / expected.sum(1)[:, None], atol=1e-6)
 
 
 def test_left_out_lamps_are_predicted_better_than_by_smooth_light_and_by_the_nearest_lamp(fitted):
@@ -82,14 +75,3 @@ def test_discs_do_not_overlap_and_duplicates_are_left_out():
     assert entries.names[0] == "one"
     apart = np.linalg.norm(entries.uv[:, None] - entries.uv, axis=-1) + 9 * np.eye(len(entries.uv))
     assert (entries.radius[:, None] + entries.radius <= apart + 1e-12).all()
-
-
-def test_of_other_lamps_of_one_chromaticity_neither_is_exact():
-    constraint, others = Lamps(LAMPS.names[:1], LAMPS.power[:1]), LAMPS.without(LAMPS.names[:1])
-    entries, _ = lamp_entries(constraint, others, LATTICE, RADIOMETRY)
-    uv = chromaticity(LAMPS.power @ RADIOMETRY)
-    apart = np.linalg.norm(uv[:, None] - uv, axis=-1) + 9 * np.eye(len(uv))
-    twins = {LAMPS.names[row] for row in np.flatnonzero(apart.min(axis=1) < 2 * MIN_RADIUS)}
-    assert twins - {LAMPS.names[0]}
-    assert not (twins - {LAMPS.names[0]}) & set(entries.names)
-    assert entries.radius[1:].min() >= MIN_RADIUS

@@ -68,12 +68,6 @@ def test_nodes_closer_than_bins_are_distinguished():
     np.testing.assert_allclose(found, Cube(data).coefficients(rgb), rtol=0, atol=1e-5)
 
 
-@pytest.mark.parametrize("shape", [(), (5,), (2, 0), (4, 1, 2)])
-def test_results_keep_the_shape_of_the_input(sample, shape):
-    rgb = np.random.default_rng(0).random((*shape, 3))
-    assert sample(rgb).shape == (*shape, 9)
-
-
 def test_results_do_not_depend_on_chunks_and_threads(small_cube, monkeypatch):
     rgb = colours(small_cube.data)
     whole = bulk.spectra(small_cube, AT, threads=1)(rgb)

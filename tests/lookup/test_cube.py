@@ -13,7 +13,7 @@ from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import Status
 from uplift.lookup import MODES
-from uplift.lookup.blocks import BLOCK, blockwise
+from uplift.lookup.blocks import BLOCK
 from uplift.lookup.cube import DEFAULT, PACKAGED, TABULATED, find_file
 
 RED = (0.6, 0.03, 0.01)
@@ -35,21 +35,6 @@ def test_reflectance_keeps_the_shape_of_the_input(small_cube, mode, shape):
     assert small_cube.reflectance(rgb, mode=mode).shape == (*shape, 81)
     assert small_cube.reflectance(rgb, [500, 600], mode).shape == (*shape, 2)
     assert small_cube.coefficients(rgb).shape == (*shape, 9)
-
-
-@pytest.mark.parametrize("kind", [list, tuple, np.float16, np.longdouble])
-def test_other_numeric_types_are_accepted(small_cube, kind):
-    exact = np.array([0.5, 0.25, 0.125])
-    rgb = kind(exact) if kind in (list, tuple) else exact.astype(kind)
-    np.testing.assert_array_equal(small_cube.reflectance(rgb), small_cube.reflectance(exact))
-    assert small_cube.reflectance(rgb).dtype == np.float64
-
-
-def test_wavelengths_may_be_unordered_and_repeated(small_cube, mode):
-    both = small_cube.reflectance(RED, [700, 400, 555.5, 400], mode)
-    for column, wavelength in enumerate((700, 400, 555.5, 400)):
-        single = small_cube.reflectance(RED, wavelength, mode)
-        np.testing.assert_allclose(single, both[[column]], rtol=0, atol=1e-12)
 
 
 def test_spectra_are_in_0_to_1_and_constant_outside_their_range(small_cube, small_sigmoid_cube, mode):
@@ -101,14 +86,6 @@ def test_a_table_of_all_points_gives_equal_spectra(small_cube, monkeypatch, mode
     np.testing.assert_allclose(small_cube.reflectance(rgb, AT, mode), from_table, rtol=0, atol=1e-14)
 
 
-def test_errors_in_threads_are_raised():
-    def fail(rows):
-        raise ArithmeticError(len(rows))
-
-    with pytest.raises(ArithmeticError, match="4"):
-        blockwise(fail, np.zeros((8, 3)), 1, threads=2, block=4)
-
-
 NAN, RAGGED = np.nan, [[0.5, 0.5, 0.5], [0.5, 0.5]]
 COLOURS = [(NAN, 0, 0), (-0.001, 0, 0), 0.5, (0.5, 0.5), (0.5,) * 4, [], RAGGED, "red", None, np.zeros((3, 2))]
 
@@ -119,14 +96,6 @@ def test_invalid_colours_are_refused(small_cube, rgb):
         with pytest.raises(ColourError) as caught:
             function(rgb)
         assert "\n" not in str(caught.value)
-
-
-def test_the_error_quotes_the_invalid_colour(small_cube):
-    rgb = random_colours(10)
-    rgb[7] = (0.5, 1.25, 0)
-    with raises(ColourError, "rgb-out-of-gamut") as caught:
-        small_cube.reflectance(rgb)
-    assert "(0.5, 1.25, 0)" in caught.value.problem
 
 
 WAVELENGTHS = [[], [0], [-500], [500, NAN], [np.inf], "red", ["a"], [[400, 500], [600, 700]], [[400], [500, 600]], {}]

@@ -101,19 +101,3 @@ def test_more_coefficients_are_the_moments_of_the_exact_spectra(small_cube, data
     spectra = small_cube.reflectance(rgb, 380 + 400 * (phase + np.pi) / np.pi)
     moments = [np.trapezoid(spectra * np.cos(order * phase), phase) / np.pi for order in range(17)]
     np.testing.assert_allclose(small_cube.coefficients(rgb, 17), np.transpose(moments), rtol=0, atol=1e-6)
-
-
-def test_a_table_of_coefficients_changes_nothing(small_cube, data):
-    rgb = np.concatenate([in_boxes(data), np.random.default_rng(2).random((600, 3))])
-    assert len(rgb) >= data.lattice.size
-    few = np.concatenate([small_cube.coefficients(rgb[row : row + 100], 17) for row in range(0, len(rgb), 100)])
-    np.testing.assert_allclose(small_cube.coefficients(rgb, 17), few, rtol=0, atol=1e-12)
-
-
-def test_outside_boxes_multipliers_have_the_refined_spectra(small_cube, data):
-    rgb = np.random.default_rng(2).random((200, 3))
-    outside = np.setdiff1d(np.arange(200), data.entry_boxes.find(rgb).rows)
-    assert len(outside) > 20
-    found = extended(data, rgb)[outside]
-    np.testing.assert_allclose(found, small_cube.reflectance(rgb[outside], mode="refined"), atol=1e-12)
-    assert (extended_multipliers(data, rgb)[outside][:, 9:] == 0).all()

@@ -43,17 +43,6 @@ def test_cell_and_statuses_are_those_around_the_colour(small_cube):
     assert {Status.ATLAS_PRIMARY, Status.REGULAR} <= found_statuses
 
 
-@pytest.mark.parametrize("mode", MODES)
-def test_the_reflectance_is_that_of_the_cube(small_cube, mode):
-    rgb = np.random.default_rng(6).random((20, 3))
-    at = np.array([410.0, 555.5, 690.0])
-    for row, answer in enumerate(query(small_cube, rgb, at, mode)):
-        np.testing.assert_array_equal(answer.rgb, rgb[row])
-        np.testing.assert_array_equal(answer.wavelengths, at)
-        expected = small_cube.reflectance(rgb[row], at, mode)
-        np.testing.assert_allclose(answer.reflectance, expected, rtol=0, atol=1e-12)
-
-
 def test_entries_are_found_at_their_nearest_codes_and_not_two_codes_away(small_cube):
     atlas = small_cube.data.atlas
     nearest = np.round(small_cube.encode(atlas.rgb))

@@ -26,11 +26,7 @@ def cubes():
     options = {**SMALL, "leave_out": ["tcs"]}
     with warns("library-out-of-gamut"):
         library = uplift.build(**options, library=TCS)
-    return {
-        "smooth": uplift.build(**SMALL, prior="smooth"),
-        "learnt": uplift.build(**options),
-        "library": library,
-    }
+    return {"smooth": uplift.build(**SMALL, prior="smooth"), "learnt": uplift.build(**options), "library": library}
 
 
 def test_a_library_moves_answers_towards_its_spectra(cubes):
@@ -42,18 +38,6 @@ def test_a_library_moves_answers_towards_its_spectra(cubes):
     errors = {name: delta_e_spectra(light("A"), cube.reflectance(rgb), measured).mean() for name, cube in cubes.items()}
     assert errors["library"] < 0.95 * errors["learnt"] < 0.95 * errors["smooth"]
     assert not cubes["library"].data.atlas.names
-
-
-def test_prior_and_libraries_are_recorded(cubes):
-    recorded = {name: cube.data.provenance for name, cube in cubes.items()}
-    assert recorded["smooth"]["families"] == []
-    assert recorded["smooth"]["options"]["prior"] == "smooth"
-    assert recorded["learnt"]["libraries"] == []
-    (library,) = recorded["library"]["libraries"]
-    assert library["name"] == "tcs.txt"
-    names = [family["name"] for family in recorded["library"]["families"]]
-    assert "tcs" not in names
-    assert names[-1] == "tcs.txt"
 
 
 def test_a_build_with_a_library_is_repeated(cubes, tmp_path):

@@ -9,7 +9,7 @@ from benchmarks import read_reference
 from benchmarks.wavelengths import CHANNELS, errors_by_total, mean_error, run_trials
 from tests.helpers import raises
 from uplift.colorimetry import observer
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, UnknownNameError
 from uplift.scene.quadrature import UndefinedRule
 from uplift.scene.wavelengths import choose, choose_orders, grid, make_setup
 from uplift.scene.wavelengths.meyer import (
@@ -124,3 +124,5 @@ def test_impossible_orders_are_refused(setting_c):
             choose(setting_c, count=count, method="meyer")
     with raises(OptionError):
         choose_orders(setting_c, (3, 11, 1))
+    with raises(UnknownNameError, "unknown-channels"):
+        choose_orders(setting_c, (3, 2, 1), "rgb")

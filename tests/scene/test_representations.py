@@ -13,20 +13,16 @@ from hypothesis.extra.numpy import arrays
 from tests.conftest import MACBETH
 from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
-from uplift.colorimetry.observer import grid
 from uplift.lab.comparison.compare import make_scene
 from uplift.lab.study.moments import Technique
-from uplift.models import Sigmoid
-from uplift.models.model import evaluate
 from uplift.scene.representations import all_representations
 from uplift.scene.representations.composite import enhanced_riemann, fourier_coefficients, split_spikes, sun_composite
 from uplift.scene.representations.filters import Filter, resampling_matrix
-from uplift.scene.representations.models import fit_sigmoids, hero_wavelengths, linear_model, trigonometric_moments
+from uplift.scene.representations.models import hero_wavelengths, linear_model, trigonometric_moments
 from uplift.scene.representations.samples import (
     gauss_samples,
     hat_functions,
     point_samples,
-    riemann_sums,
     sample_points,
     wavelengths,
     xyz_weights,
@@ -84,13 +80,6 @@ def test_colour_is_linear_in_the_light_and_products_can_be_multiplied_again(ever
         np.testing.assert_allclose(again, (light_powers("A") * checker.surfaces**2) @ xyz_weights(), atol=0.01)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_number_in_the_name_is_the_storage_of_a_smooth_spectrum(every, name):
-    stored = every[name].storage(every[name].encode_surface(np.full((2, 401), 0.4)))
-    count = int(name[2:])
-    np.testing.assert_array_equal(stored, count**2 if name.startswith("LM") else count)
-
-
 RANDOM = np.random.default_rng(5).random((3, 401))
 
 
@@ -102,15 +91,6 @@ def test_point_samples_are_linear_interpolation_both_ways(count):
     np.testing.assert_allclose(taken, [np.interp(places, wavelengths(), row) for row in RANDOM], rtol=1e-12)
     back = np.array([np.interp(wavelengths(), places, row) for row in taken])
     np.testing.assert_allclose(samples.xyz(taken), back @ xyz_weights(), rtol=1e-12)
-
-
-@pytest.mark.parametrize("count", [4, 16])
-def test_riemann_sums_are_means_of_cells(count):
-    fine = np.repeat(RANDOM, 16 * count, axis=1)  # 401 · 16 · count samples fill the cells evenly
-    means = fine.reshape(len(RANDOM), count, -1).mean(axis=2)
-    np.testing.assert_allclose(riemann_sums(count).encode_surface(RANDOM), means, rtol=1e-12)
-    weights = np.repeat(xyz_weights(), 16 * count, axis=0).reshape(count, -1, 3).sum(axis=1) / (16 * count)
-    np.testing.assert_allclose(riemann_sums(count).weights, weights, rtol=1e-12)
 
 
 @pytest.mark.parametrize("count", [4, 8, 16])
@@ -140,14 +120,6 @@ def test_resampling_equals_the_listing_of_the_thesis(low_pass, count, up, down):
     spectrum = np.random.default_rng(8).random(81)
     expected = reference_conversion(low_pass.taps(up), up, down, count, spectrum)
     np.testing.assert_allclose(resampling_matrix(low_pass, count) @ spectrum, expected, atol=1e-12)
-
-
-@pytest.mark.parametrize(("b", "c"), [(1 / 3, 1 / 3), (1, 0), (0, 0.5), (-0.4, 1)])
-def test_pieces_of_the_mitchell_filter_meet_and_sum_to_one(b, c):
-    taps = Filter("mitchell", 21, (b, c)).taps(31)
-    scaled = taps / taps.sum() * len(taps) / 4
-    assert np.abs(np.diff(scaled)).max() < 0.05 * (1 + abs(b) + abs(c))
-    assert scaled[len(taps) // 2] == pytest.approx((6 - 2 * b) / 6, rel=0.02)
 
 
 TABLES = arrays(float, (2, 81), elements=st.floats(0, 100, width=32))
@@ -214,14 +186,6 @@ def test_moments_equal_the_integrals(checker):
     np.testing.assert_allclose(actual, exact, atol=2e-5)
 
 
-def test_fit_recovers_sigmoids_and_approaches_black_and_white():
-    known = np.array([[-1.0, 2.0, 0.5], [3.0, -1.0, -2.0], [0.3, 0.2, 0.1]])
-    table = np.concatenate([evaluate(Sigmoid(), known, grid()), np.zeros((1, 81)), np.ones((1, 81))])
-    fitted = evaluate(Sigmoid(), fit_sigmoids(Sigmoid(), table), grid())
-    np.testing.assert_allclose(fitted[:3], table[:3], atol=1e-6)
-    np.testing.assert_allclose(fitted[3:], table[3:], atol=0.01)
-
-
 def test_linear_model_of_all_components_is_exact(checker, light_powers):
     power, surfaces = checker.powers[:1], checker.surfaces[:5]
     model = linear_model(6, power, surfaces)  # five products and the light
@@ -229,20 +193,6 @@ def test_linear_model_of_all_components_is_exact(checker, light_powers):
     actual = model.xyz(model.multiply(light, model.encode_surface(surfaces)))
     np.testing.assert_allclose(actual, (power * surfaces) @ xyz_weights(), rtol=1e-6)
     np.testing.assert_allclose(model.basis.T @ model.basis, np.eye(6), atol=1e-12)
-
-
-@pytest.mark.parametrize("paths", [1, 8])
-def test_hero_wavelengths_are_a_quarter_apart_and_stratified(paths):
-    drawn = hero_wavelengths(paths).wavelengths(500)
-    assert drawn.shape == (500, 4 * paths)
-    assert drawn.min() >= 380
-    assert drawn.max() <= 780
-    low, high = np.tanh(0.0072 * (np.array([380, 780]) - 538))
-    shares = (np.tanh(0.0072 * (drawn - 538)) - low) / (high - low)
-    # Each row has equal numbers in each quarter, and so in each stratum of a quarter.
-    strata = np.floor(shares * 4 * paths + 1e-9).clip(0, 4 * paths - 1).astype(int)
-    quarters = np.sort(strata // paths, axis=1)
-    np.testing.assert_array_equal(quarters, np.tile(np.repeat(range(4), paths), (500, 1)))
 
 
 def test_hero_wavelengths_are_unbiased_and_variance_falls_with_paths(checker):

@@ -23,7 +23,6 @@ from uplift.lab.study.held_out import (
     local_linear,
     mismatch_centroids,
     mixtures,
-    spectrum_errors,
     split_records,
 )
 from uplift.lookup.refine import with_colours
@@ -63,18 +62,6 @@ def test_the_prior_does_not_know_the_atlas(monkeypatch):
     holdout(atlas, 1, dim=4, coefficients=4)
     holdout(atlas, 1, dim=4, coefficients=4, leave_out=("vs",))
     assert known == [("tcs",)] * 3 + [("vs",)] * 3
-
-
-def test_spectrum_errors_equal_their_definitions():
-    rng = np.random.default_rng(0)
-    predicted, measured = rng.random((3, 81)), rng.random((3, 81))
-    errors = spectrum_errors(predicted, measured, ("A", "FL11"))
-    for row in range(3):
-        assert errors.rms[row] == pytest.approx(np.sqrt(np.mean((predicted[row] - measured[row]) ** 2)))
-        for column, name in enumerate(("A", "FL11")):
-            expected = delta_e_spectra(observer.light(name), predicted[row], measured[row])
-            assert errors.delta_e[row, column] == pytest.approx(expected)
-    assert errors.means() == pytest.approx([errors.rms.mean(), *errors.delta_e.mean(axis=0)])
 
 
 def test_records_pool_splits_with_standard_errors():

@@ -15,7 +15,7 @@ from uplift.atlas import Atlas, read_atlas
 from uplift.colorimetry import observer
 from uplift.common.errors import AtlasError, OptionError
 from uplift.lab.study import complex_moments
-from uplift.lab.study.moments import ALL_ATLASES, MAX_MOMENTS, TECHNIQUES, Technique, fine_grid, study_moments
+from uplift.lab.study.moments import ALL_ATLASES, MAX_MOMENTS, TECHNIQUES, fine_grid, study_moments
 from uplift.models import Moments, duality, evaluate
 
 MIRRORED = [technique for technique in TECHNIQUES if technique.mirrored]
@@ -82,18 +82,6 @@ def test_mirrored_moments_are_those_of_cubes(technique, count):
     np.testing.assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=1e-10)
 
 
-def test_symmetric_spectrum_has_zero_odd_mirrored_moments():
-    """Its even moments equal those of the full circle."""
-    wavelengths = fine_grid()
-    even = bumps(5, wavelengths)
-    even = (even + even[:, ::-1]) / 2
-    mirrored = Technique(True, False).moments(even, wavelengths, 8)
-    whole = Technique(False, False).moments(even, wavelengths, 4)
-    np.testing.assert_allclose(mirrored[:, 1::2], 0, atol=1e-14)
-    signs = (-1) ** np.arange(5)  # the full circle starts half a turn earlier
-    np.testing.assert_allclose(mirrored[:, ::2] * signs, whole, rtol=0, atol=1e-13)
-
-
 @by_label(TECHNIQUES)
 def test_black_white_and_a_step_are_reconstructed(technique):
     extremes = np.stack([np.zeros(401), np.ones(401), (fine_grid() > 580).astype(float)])
@@ -137,15 +125,6 @@ def test_errors_agree_with_those_of_the_thesis(study):
         found = study.result(technique, 8)
         assert found.mean[0] == pytest.approx(thesis[technique, 8][0], abs=0.2)
         assert found.max[0] == pytest.approx(thesis[technique, 8][1], abs=0.35)
-
-
-def test_groups_partition_the_entries(study):
-    counts = [len(study.rows(group)) for group in study.groups]
-    assert counts[0] == sum(counts[1:]) == 396
-    worst = study.result(TECHNIQUES[0], 8)
-    home = study.result(TECHNIQUES[0], 8, study.atlases[worst.worst])
-    assert (home.worst, home.max[0]) == (worst.worst, worst.max[0])
-    assert study.errors[0, 8, worst.worst, 0] == worst.max[0]
 
 
 def test_invalid_studies_are_refused(repository):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import product
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -26,7 +25,7 @@ from uplift.lab.study.stability import (
     run,
     study_stability,
 )
-from uplift.lattice import Lattice, Status
+from uplift.lattice import Lattice
 
 
 def test_build_is_evaluated_over_its_realisable_nodes():
@@ -37,27 +36,6 @@ def test_build_is_evaluated_over_its_realisable_nodes():
     assert (result["unfitted"], result["stand_ins"], result["success"]) == (0, 0, 1)
     assert result["worst"] <= result["threshold"]
     assert lattice.points.tolist().count([result["r"], result["g"], result["b"]]) == 1
-
-
-def test_failed_nodes_are_counted_and_the_worst_is_reported(monkeypatch):
-    points = np.array([[0.0, 0, 0], [0.5, 0.5, 0.5], [1, 1, 1], [0, 1, 0]])
-    status = np.array([0, 0, 0, Status.UNFITTED])
-    data = SimpleNamespace(
-        lattice=SimpleNamespace(points=points),
-        points=SimpleNamespace(distance=np.array([2e-4, 1e-5, 3e-3, 0.5]), status=status),
-        sensor=SimpleNamespace(matrix=None),
-        provenance={"improvements": [{"tried": 3}]},
-    )
-    realisable = SimpleNamespace(contains=lambda rgb: np.array([True, True, True, False]))
-    monkeypatch.setattr(stability, "build", lambda *args, **options: SimpleNamespace(data=data))
-    monkeypatch.setattr(stability, "solid", lambda matrix: realisable)
-    record = run(RunConfig(), {})
-    assert record.pop("seconds") >= 0
-    assert record == {
-        **{"model": "moments", "coefficients": 9, "dim": 17, "space": "sRGB", "threshold": 1e-4, "atlas": NO_ATLAS},
-        **{"success": pytest.approx(1 / 3), "points": 4, "realisable": 3, "unfitted": 2, "stand_ins": 1},
-        **{"rounds": 0, "calls": 3, "worst": 3e-3, "r": 1, "g": 1, "b": 1},
-    }
 
 
 def test_study_runs_every_configuration_once_ordered_by_model(monkeypatch):

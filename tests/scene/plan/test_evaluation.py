@@ -1,21 +1,15 @@
-"""Colour errors against a slow oracle, and the choice among candidates."""
+"""Samples of pixels, colour errors against a slow oracle, and the choice among candidates."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from tests.io.texture.conftest import planes, write_exr
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.scene.plan.evaluation import (
-    WORST_DELTA_E,
-    ColourGroup,
-    ErrorSummary,
-    EvaluationSet,
-    GroupError,
-    Trial,
-    decide,
-)
+from uplift.scene.plan.context import sample_colours
+from uplift.scene.plan.evaluation import ColourGroup, ErrorSummary, EvaluationSet, GroupError, Trial, decide
 
 LIGHTS = ("D65", "FL11")
 
@@ -55,14 +49,6 @@ def test_errors_agree_with_a_slow_oracle(tests):
     assert error.quantile == max(part.quantile for part in error.parts)
 
 
-def test_reference_spectra_have_no_error_and_nan_has_the_largest(tests):
-    assert tests.error(tests.reflectances).quantile == pytest.approx(0, abs=1e-9)
-    broken = tests.reflectances.copy()
-    broken[3] = np.nan
-    error = tests.error(broken)
-    assert {part.largest for part in error.parts if part.group == "textures"} == {WORST_DELTA_E}
-
-
 @pytest.mark.parametrize(
     ("errors", "selected", "measured"), [((3.0, 0.9, 0.1), 1, 2), ((5, 2, 3), 1, 3)], ids=["sufficient", "none"]
 )
@@ -72,3 +58,41 @@ def test_the_first_sufficient_candidate_or_else_the_best_is_selected(errors, sel
     decision = decide("a", "A", "things", 1.0, trials)
     assert (decision.selected, len(decision.trials), len(list(trials))) == (selected, measured, len(errors) - measured)
     assert decision.within_limit == (errors[selected] <= 1)
+
+
+@pytest.fixture
+def image(tmp_path):
+    """A file of linear RGB (h, w, 3)."""
+    return lambda rgb, name="a.exr": write_exr(tmp_path / name, planes(np.asarray(rgb, np.float32)))
+
+
+def test_small_textures_are_sampled_completely(image, sensor):
+    rgb = np.array([[[0.1, 0.2, 0.3], [0.1, 0.2, 0.3], [0.5, 0.5, 0.5], [0.1, 0.2, 0.3]]])
+    found = sample_colours((image(rgb), image(rgb, "b.exr")), sensor, "auto", (4, 6))
+    for sample in (found.predicting, found.confirming):
+        np.testing.assert_allclose(sample.rgb, [[0.1, 0.2, 0.3], [0.5, 0.5, 0.5]], rtol=1e-6)
+        np.testing.assert_allclose(sample.share, [0.75, 0.25])
+    assert len(found.colour_bins) == 2
+
+
+def test_the_two_samples_of_a_large_texture_are_disjoint(image, sensor):
+    rgb = np.random.default_rng(1).random((100, 90, 3))
+    path = image(rgb)
+    found = sample_colours((path,), sensor, "auto", (300, 600))
+    first, second = (set(map(tuple, sample.rgb.tolist())) for sample in (found.predicting, found.confirming))
+    assert not first & second
+    assert 240 < len(first) < 360
+    assert 500 < len(second) < 700
+    assert first | second <= set(map(tuple, rgb.astype(np.float32).reshape(-1, 3).astype(float).tolist()))
+    for sample in (found.predicting, found.confirming):
+        assert sample.share.sum() == pytest.approx(1)
+        np.testing.assert_allclose(sample.share @ sample.rgb, 0.5, atol=0.06)  # equal probability
+    again = sample_colours((path,), sensor, "auto", (300, 600))
+    np.testing.assert_array_equal(again.predicting.rgb, found.predicting.rgb)
+
+
+def test_rare_colours_have_a_bin(image, sensor):
+    rgb = np.full((80, 80, 3), 0.25)
+    rgb[40, 40] = [0.9, 0.05, 0.1]
+    found = sample_colours((image(rgb),), sensor, "auto", (50, 50))
+    np.testing.assert_allclose(np.sort(found.colour_bins[:, 0]), [0.25, 0.9], rtol=1e-6)

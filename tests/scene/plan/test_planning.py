@@ -126,10 +126,8 @@ def test_changed_and_missing_sources_are_refused(plan_file):
     [
         (lambda values: values.pop("build"), "missing-key", "build"),
         (lambda values: values.update(format="uplift plan 2"), "invalid-value", "format"),
-        (lambda values: values.update(cells="some"), "invalid-value", "cells"),
         (lambda values: values["build"].update(dims=3), "unknown-option", "build: unknown option 'dims'"),
         (lambda values: values["build"].update(dim="x"), "option", "build: dim "),
-        (lambda values: values["build"].update(lights=[3]), "option", "build: lights "),
         (lambda values: values["build"].update(lights="D65"), "option", "build: lights "),
         (lambda values: values["scene"].update(textures=[3]), "invalid-value", "scene.textures[0]"),
         (lambda values: values["scene"]["textures"][0].pop("digest"), "missing-key", "scene.textures[0].digest"),
