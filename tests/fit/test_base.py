@@ -11,7 +11,7 @@ from uplift.fit.base import learn_base, match_spectra, moment_matrix
 from uplift.fit.entries import FittedEntries
 from uplift.fit.families import Family, shipped_library
 from uplift.fit.problem import Problem
-from uplift.models import Moments, Sigmoid, evaluate, reflectance
+from uplift.models import Moments, evaluate, reflectance
 
 LIGHTS = tuple(observer.light(name) for name in ("D65", "A", "FL2", "FL11", "LED-B3"))
 GRID = observer.grid()
@@ -107,14 +107,6 @@ def test_spectra_of_the_atlas_are_no_evidence_for_themselves(problem, sensor):
     rgb = np.random.default_rng(0).uniform(0.05, 0.9, (50, 3))
     found, smooth = (answers(problem, sensor, base, rgb) for base in (learnt, learn_base(problem)[0]))
     np.testing.assert_allclose(found, smooth, atol=0.06)
-
-
-@pytest.mark.parametrize("model", [Moments(3), Sigmoid()], ids=lambda model: model.name)
-def test_models_of_three_coefficients_have_no_freedom(model, sensor):
-    problem = Problem(sensor, model, LIGHTS)
-    learnt, _ = learn_base(problem, shipped_library())
-    rgb = np.random.default_rng(0).random((5, 3))
-    np.testing.assert_array_equal(learnt.coefficients(rgb), learn_base(problem)[0].coefficients(rgb))
 
 
 MODELS = [Moments(9), Moments(17), Moments(9, 380.0, 780.0, "vision")]

@@ -8,24 +8,20 @@ import numpy as np
 import pytest
 
 from tests.conftest import ATLASES
-from tests.helpers import raises
 from tools import ship_library
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
-from uplift.common.errors import UnknownNameError
 from uplift.fit.families import (
     FILE,
     LENGTH,
     MAX_POINTS,
     MAX_RELEVANCE,
     NUGGET,
-    STEPS,
     FamilySamples,
     average_close,
     families_with,
     krige_families,
     learn_relevance,
-    shipped_library,
 )
 
 RNG = np.random.default_rng(5)
@@ -47,24 +43,6 @@ def test_the_shipped_file_is_the_output_of_the_tool(tmp_path):
         for name in new.files:
             np.testing.assert_array_equal(new[name], shipped[name], err_msg=name)
     assert written.stat().st_size < 100_000
-
-
-def test_measured_families_are_the_shipped_atlases():
-    families = {family.name: family.measured for family in shipped_library()}
-    for name, atlases in ship_library.FAMILIES.items():
-        np.testing.assert_allclose(families[name], ship_library.measurements(atlases), atol=0.51 / STEPS)
-    for measured in families.values():
-        assert measured.min() >= 0
-        assert measured.max() <= 1
-
-
-def test_families_can_be_left_out():
-    names = [family.name for family in shipped_library()]
-    assert [family.name for family in shipped_library(["vs", "tcs"])] == [
-        name for name in names if name not in ("vs", "tcs")
-    ]
-    with raises(UnknownNameError, "unknown-library-family"):
-        shipped_library(["absent"])
 
 
 @pytest.mark.parametrize(("atlas", "families"), [("macbeth", ("checker",)), ("cie2017", ("cie2017",))])
@@ -114,16 +92,6 @@ def test_it_is_the_conditional_mean(sizes):
     np.testing.assert_allclose(kriging(lab, relevance), expected, atol=1e-12)
 
 
-def test_a_large_family_does_not_outweigh_a_small_one():
-    place = np.array([[50.0, 0, 0]])
-    small = FamilySamples(place.repeat(3, axis=0), np.full((3, 1), -1.0), np.ones(3), 5.0, 0.0)
-    large = FamilySamples(place.repeat(300, axis=0), np.full((300, 1), 1.0), np.ones(300), 5.0, 0.0)
-    both = krige_families([small, large])(place, np.ones(2))
-    assert abs(both.item()) < 0.01
-    same_family = FamilySamples(*map(np.concatenate, zip(small[:3], large[:3], strict=True)), 5.0, 0.0)
-    assert krige_families([same_family])(place, np.ones(1)).item() > 0.1
-
-
 def test_close_spectra_are_averaged_where_there_are_many():
     few = samples(20)
     locations, deviations, counts = average_close(few.locations, few.deviations)
@@ -162,10 +130,3 @@ def test_what_no_family_explains_keeps_relevances_near_1():
     assert distances(0.001) > 0.9
     assert distances(0.5) < 0.5
     assert distances(0.05, slice(0, 3)) < distances(0.05) - 0.1
-
-
-def test_without_entries_or_differences_relevances_are_1():
-    exact = PLAIN + PARTS.sum(axis=0)
-    unused = learn_relevance(LIGHTS, PLACES, PLAIN, 0 * PARTS, exact)
-    for learnt in (learn(PLAIN, slice(0, 0)), learn(exact), unused):
-        np.testing.assert_allclose(learnt, 1, atol=1e-12)

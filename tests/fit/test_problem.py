@@ -46,15 +46,6 @@ def test_the_nearest_colour_has_the_same_hue_and_luminance(sensor):
     assert nodes_of(lattice, sensor, 1e-4).unrealisable.size == 0  # all of sRGB is realisable
 
 
-def test_goals_are_targets_or_nearest_realisable_colours():
-    wide = observer.sensor("ITU-R BT.2020")
-    lattice = Lattice(observer.axis_nodes("srgb", 5))
-    nodes = nodes_of(lattice, wide, 1e-4)
-    expected = lattice.points.copy()
-    expected[nodes.unrealisable] = nodes.nearest
-    np.testing.assert_array_equal(nodes.goal(nodes.points[::-1]), expected[::-1])
-
-
 def test_a_query_reports_unrealisable_colours():
     cube = uplift.build(dim=5, space="ITU-R BT.2020")
     queried = np.array([[0.0, 1, 0], [0.5, 0.5, 0.5], [0.05, 0.9, 0.05], [0.4, 0.7, 0.4]])

@@ -41,12 +41,6 @@ def test_a_single_colour_is_unchanged_and_thickness_0_leaves_the_ground(two, rng
     np.testing.assert_allclose(mix(kind, two, [1, 1], Medium(0.0, surface, rule), ground), ground)
 
 
-@pytest.mark.parametrize("surface", SURFACES)
-def test_thick_paint_hides_the_ground(two, surface):
-    opaque = mix("pigment", two, [1, 1], Medium(surface=surface, scattering=SQUARE_ROOT), 0.0)
-    np.testing.assert_allclose(mix("pigment", two, [1, 1], Medium(1e6, surface, SQUARE_ROOT), WHITE), opaque)
-
-
 def test_paint_measured_on_white_and_black_round_trip(rng):
     layer = from_opaque(rng.uniform(0.2, 0.8, 5), SQUARE_ROOT).layer(1.0)
     white, black = OIL.apply(layer.over(1.0)), OIL.apply(layer.over(0.0))
@@ -96,13 +90,6 @@ def test_invalid_parts_raise(two, parts):
         mix("dye", two, parts, PLAIN, WHITE)
 
 
-def test_impossible_coats_raise(two):
-    with raises(OptionError):
-        make_coat("light", two, [1, 1], PLAIN)
-    with raises(ColourError):
-        make_coat("pigment", Ingredients(np.full((1, 5), 0.2), (np.full(5, 0.5),)), [1], PLAIN)
-
-
 def test_colours_darker_than_the_surface_trigger_a_warning(two):
     dark = Ingredients(np.stack([two.spectra[0], np.full(5, 0.03)]))
     with warns("warning"):
@@ -149,13 +136,6 @@ def test_painted_colours_are_those_of_the_coated_spectra(small_cube, image, tmp_
     assert json.loads(header["uplift.mix"]) == {"of": "red"}
 
 
-def test_opaque_paint_hides_the_image_and_a_coat_without_thickness_leaves_it(small_cube, image):
-    paint = Ingredients(small_cube.reflectance([[0.3, 0.2, 0.1]]))
-    for thickness, expected in ((None, np.broadcast_to([0.3, 0.2, 0.1], image.shape)), (0.0, image)):
-        coat = make_coat("pigment", paint, [1], Medium(thickness, scattering=SQUARE_ROOT))
-        np.testing.assert_allclose(overpainter(small_cube, coat, threads=1).paint(image), expected, atol=1e-5)
-
-
 def test_pixels_outside_are_mapped_before_and_after_with_warnings(small_cube, image, tmp_path):
     """A thick dye is saturated enough to leave the gamut."""
     dye = make_coat("dye", Ingredients(small_cube.reflectance([[0.9, 0.1, 0.02]])), [1], Medium(3.0))
@@ -171,11 +151,3 @@ def test_pixels_outside_are_mapped_before_and_after_with_warnings(small_cube, im
         convert(strict, tmp_path / "in.exr", tmp_path / "strict.exr")
     assert caught.value.path == tmp_path / "in.exr"
     assert not (tmp_path / "strict.exr").exists()
-
-
-@pytest.mark.parametrize(
-    ("options", "code"), [({"encoding": "srgb"}, "option"), ({"out_of_gamut": "away"}, "unknown-gamut-mapping")]
-)
-def test_invalid_options_of_painting_raise(small_cube, options, code):
-    with raises(OptionError, code):
-        overpainter(small_cube, None, **options)

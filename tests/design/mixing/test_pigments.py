@@ -139,13 +139,6 @@ def test_further_wavelengths_change_nothing_and_are_consistent(sensor, rng):
     np.testing.assert_allclose(found[:, 81:], assumed(reflectance)[:, columns], rtol=1e-12)
 
 
-def test_scattering_is_finite_and_bounded_and_that_of_grey_is_even(sensor):
-    found = dispersive(sensor)(np.stack([np.full(81, 1e-4), np.where(np.arange(81) < 40, 1e-4, 1), np.full(81, 0.2)]))
-    assert (found > 0).all()
-    assert found.max() < np.exp(0.25 * 0.99 / np.sqrt(0.02)) + 1e-9
-    np.testing.assert_allclose(found[2], 0.2**0.75, rtol=1e-12)
-
-
 DIFFUSE = Flux(np.array([0.6, 0.3]), np.array([1.1, 0.5]), np.array([0.8, 2.0]))
 GAMMA = np.sqrt(DIFFUSE.absorption * (DIFFUSE.absorption + 2 * DIFFUSE.backward))
 BEAMS = [Flux(np.array([0.4, 0.1]), np.array([0.7, 0.2]), np.array([0.9, 1.5]))]

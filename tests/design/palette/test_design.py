@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from itertools import product
 
 import numpy as np
 import pytest
@@ -16,8 +17,8 @@ from uplift.design.palette import design, illuminant, matrix, read_palette, unme
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.equations import SPACING, equations, unknowns
 from uplift.design.palette.palette import ColourGoal, MinDifference, Palette, SpectrumSpec
-from uplift.design.palette.plots import plot_matrix, plot_spectra
-from uplift.fit.bounded_least_squares import BoundedProblem, solve_bounded
+from uplift.design.palette.plots import plot_matrix
+from uplift.fit.bounded_least_squares import solve_bounded
 
 BLACK = np.zeros(3)
 
@@ -66,14 +67,6 @@ def at_random(sensor, draw):
     return Palette(sensor, lights, materials, tuple(goals), {"x": (BLACK, np.ones(3))}, **weights)
 
 
-def test_unbounded_solutions_are_those_of_the_pseudo_inverse():
-    """The minimum of least norm."""
-    draw = np.random.default_rng(1)
-    rows, values, wide = draw.random((4, 9)), draw.random(4), np.full(9, np.inf)
-    x = solve_bounded(BoundedProblem(rows, values, -wide, wide))
-    np.testing.assert_allclose(x, np.linalg.pinv(rows) @ values, atol=1e-12)
-
-
 def of_light(metamers, samples, rgb, **settings):
     """The palette of a light to be designed for the colours of given materials."""
     return dataclasses.replace(
@@ -93,9 +86,6 @@ def test_lights_are_designed_like_materials(metamers, model):
     found = design(of_light(metamers, paints, [screen @ (power * paint) for paint in paints]), model)
     assert matrix(found).delta_e.max() < 0.1
     assert found.powers.min() >= 0
-    rgb = [np.array([0.3, 0.2, 0.1])]
-    in_model = of_light(metamers, [np.linspace(0.2, 0.7, 81)], rgb, model_error=0.0, fit="factor-model")
-    assert matrix(design(in_model, model)).delta_e.max() < 0.1
 
 
 @pytest.mark.parametrize(
@@ -157,11 +147,6 @@ def test_materials_that_differ_too_little_are_reported(metamers, model):
     assert unmet.delta_e < 0.1
 
 
-def test_goals_of_zero_weight_are_not_missed(black, model):
-    idle = tuple(dataclasses.replace(wish, weight=0.0) for wish in black.goals)
-    assert unmet_goals(design(dataclasses.replace(black, goals=idle), model)) == ()
-
-
 DAY, GIVEN, NEW = (
     'lights.day.illuminant = "D65"\n',
     'materials.grey.rgb = "#808080"\n',
@@ -189,75 +174,31 @@ def test_all_results_are_finite(model, tmp_path, text):
     assert unmet_goals(found) == ()
 
 
-def guess_for(palette):
-    return np.random.default_rng(5).random(max(position.stop for position in unknowns(palette).values()))
-
-
-@pytest.fixture
-def guess(metamers):
-    return guess_for(metamers)
-
-
-def residuals(palette, model, x):
-    problem = equations(palette, model)
-    return problem.matrix @ x - problem.values
-
-
-def only(palette, **weights):
-    """The palette with only the given criteria."""
-    return dataclasses.replace(palette, **{"smoothness": 0.0, "model_error": 0.0} | weights)
-
-
-def test_colour_residuals_are_differences_to_the_target(metamers, model, guess):
-    where, screen = unknowns(metamers), screen_matrix(metamers.sensor)
-    found = []
-    for goal in metamers.goals:
-        power = metamers.light(goal.light).samples
-        target = guess[where["free", "coat"]] if goal.free else goal.rgb
-        found.append(screen @ (guess[where["material", goal.material]] * power) - target)
-    expected = np.concatenate(found) / np.sqrt(3)
-    np.testing.assert_allclose(residuals(only(metamers), model, guess), expected, atol=1e-12)
-
-
-def test_weights_scale_only_their_goal_and_zero_leaves_it_out(metamers, model, guess):
-    goals = [
-        dataclasses.replace(goal, weight=weight) for goal, weight in zip(metamers.goals, (1, 1, 7, 0), strict=True)
-    ]
-    weighted = residuals(only(metamers, goals=tuple(goals)), model, guess)
-    ratio = weighted / residuals(only(metamers), model, guess)[:9]
-    np.testing.assert_allclose(ratio, [*[1] * 6, *[7] * 3])
-
-
-def test_smoothness_is_the_second_difference_over_10_nm(metamers, model, guess):
-    palette = only(metamers, goals=(), smoothness=2.0)
-    where, step = unknowns(metamers), 5.0
-    expected = [
-        -np.diff(guess[where["material", name]], 2) * 2.0 * (SPACING / step) ** 2 / np.sqrt(79 * 6)
-        for name in ("fox", "moss")
-    ]
-    np.testing.assert_allclose(residuals(palette, model, guess), np.concatenate(expected), atol=1e-12)
-
-
-def test_model_error_residuals_are_differences_between_colours(metamers, model, guess):
-    """Also for a designed light on a given paint."""
-    paint = SpectrumSpec("paint", np.linspace(0.1, 0.9, 81))
-    palette = only(
-        metamers, lights=(*metamers.lights, SpectrumSpec("odd", None)), materials=(*metamers.materials, paint)
-    )
-    palette = dataclasses.replace(palette, model_error=3.0, goals=())
-    where, screen = unknowns(palette), screen_matrix(palette.sensor)
-    x = guess_for(palette)
-    expected = []
-    for material in palette.materials:
-        for light in palette.lights:
-            surface, power = material.samples, light.samples
-            if (surface is None) == (power is None):
-                continue
-            surface = x[where["material", material.name]] if surface is None else surface
-            power = x[where["light", light.name]] if power is None else power
-            obtained = model.rgb(model.light(power) * model.reflectance(surface))
-            expected.append(3.0 / np.sqrt(3) * (screen @ (power * surface) - obtained))
-    np.testing.assert_allclose(residuals(palette, model, x), np.concatenate(expected), atol=1e-10)
+def test_the_objective_is_the_weighted_sum_of_all_criteria(metamers, model):
+    """Eq. 18 and 20–22 written out for any spectra, with a light to be designed and goals of weights 7 and 0."""
+    pairs = zip(metamers.goals, (1, 1, 7, 0), strict=True)
+    goals = tuple(dataclasses.replace(goal, weight=weight) for goal, weight in pairs)
+    paint, odd = SpectrumSpec("paint", np.linspace(0.1, 0.9, 81)), SpectrumSpec("odd", None)
+    lights, materials = (*metamers.lights, odd), (*metamers.materials, paint)
+    weights = {"smoothness": 2.0, "model_error": 3.0}
+    palette = dataclasses.replace(metamers, lights=lights, materials=materials, goals=goals, **weights)
+    where, problem, screen = unknowns(palette), equations(palette, model), screen_matrix(palette.sensor)
+    x = np.random.default_rng(5).random(problem.matrix.shape[1])
+    power = {each.name: x[where["light", "odd"]] if each.designed else each.samples for each in lights}
+    surface = {each.name: x[where["material", each.name]] if each.designed else each.samples for each in materials}
+    expected = 0.0
+    for goal in goals:
+        target = x[where["free", "coat"]] if goal.free else goal.rgb
+        wrong = screen @ (surface[goal.material] * power[goal.light]) - target
+        expected += (goal.weight * wrong) @ (goal.weight * wrong) / 3
+    for spectrum in (power["odd"], surface["fox"], surface["moss"]):
+        expected += np.sum((2.0 * (SPACING / 5.0) ** 2 * np.diff(spectrum, 2)) ** 2) / (79 * 6)
+    for material, light in product(materials, lights):
+        if material.designed != light.designed:
+            one, other = surface[material.name], power[light.name]
+            wrong = screen @ (one * other) - model.rgb(model.light(other) * model.reflectance(one))
+            expected += 9.0 * wrong @ wrong / 3
+    assert np.sum((problem.matrix @ x - problem.values) ** 2) == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.fixture(scope="module")
@@ -273,17 +214,6 @@ def test_an_exported_atlas_has_the_designed_spectra(designed, tmp_path):
         assert back.names == ("fox", "moss")
         for entry, row in zip(back.entries, designed.reflectances, strict=False):
             np.testing.assert_array_equal(entry.values, row)
-
-
-def test_an_atlas_of_designs_constrains_a_cube(designed, tmp_path):
-    """The cube reproduces the colour of a designed material."""
-    write_designed(designed, tmp_path / "out.txt")
-    with warns("entry-crowded"):
-        cube = uplift.build(tmp_path / "out.txt", dim=3, coefficients=5)
-    assert cube.data.atlas.names == ("fox", "moss")
-    colour = designed.palette.sensor.rgb(designed.reflectances[0])
-    back = cube.data.sensor.rgb(cube.reflectance(colour))
-    np.testing.assert_allclose(back, colour, atol=1e-3)
 
 
 def test_materials_outside_the_range_of_atlases_are_left_out(designed, tmp_path):
@@ -313,8 +243,3 @@ def test_the_matrix_shows_every_colour(designed, tmp_path):
     for kind in (split.target[:2], split.obtained, split.factor):
         for code in hex_codes(kind.reshape(-1, 3)):
             assert bytes.fromhex(code[1:]) in drawn
-
-
-def test_spectra_are_drawn(designed, tmp_path):
-    plot_spectra(designed, tmp_path / "s.png")
-    assert imread(tmp_path / "s.png").shape[1] == 1000

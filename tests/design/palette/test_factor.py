@@ -8,8 +8,7 @@ import pytest
 from tests.conftest import ATLASES
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import delta_e
-from uplift.common.errors import OptionError
-from uplift.design.palette import illuminant, standard_model
+from uplift.design.palette import illuminant
 from uplift.design.palette.colours import exposure, screen_matrix
 from uplift.design.palette.factor import linear_product
 
@@ -54,12 +53,6 @@ def test_two_reflections_are_five_times_more_accurate_than_in_rgb(model, sensor,
 def test_the_build_illuminant_is_white_on_the_screen_and_the_flat_power_has_luminance_1(sensor):
     assert sensor.xyz(screen_matrix(sensor) @ np.ones(81))[1] == pytest.approx(1)
     np.testing.assert_allclose(screen_matrix(sensor) @ illuminant(sensor, "D65"), 1, atol=1e-12)
-
-
-@pytest.mark.parametrize("count", [2, 13])
-def test_counts_out_of_range_are_refused(sensor, count):
-    with pytest.raises(OptionError):
-        standard_model(sensor, count)
 
 
 def test_unsharpened_products_in_the_span_are_exact_and_commute(model):

@@ -245,25 +245,3 @@ def test_sliders_scale_their_light_exposure_scales_all_and_reset_restores(opened
     tab.evaluate("document.getElementById('reset').click()")
     assert np.abs(tab.canvas("picture")[..., :3] - expected_codes(view, np.eye(3)[view.start_light])).max() <= 1
     assert tab.errors == []
-
-
-def test_patches_are_colours_by_full_spectra_and_by_the_factor_model(opened, view):
-    tab = opened(view)
-    drag(tab, (20, -35))
-    mix = shares(position(tab), 3)
-    texts = tab.evaluate("[...document.querySelectorAll('[id^=mixed-][id$=text]')].map(found => found.textContent)")
-    factor = codes(view.material_coefficients * (mix @ view.light_coefficients) @ view.to_rgb.T)
-    full = codes(np.einsum("j,njk->nk", mix, view.colours))
-    halves = [[list(bytes.fromhex(half[1:7])) for half in text.split(" | ")] for text in texts]
-    assert np.abs(np.array([[each[0], each[-1]] for each in halves[1:]]) - np.stack([full, factor], axis=1)).max() <= 1
-    assert np.abs(np.array(halves[0][0]) - codes(mix @ view.white)).max() <= 1
-
-
-def test_names_highlight_materials_and_pointing_shows_names(opened, view):
-    tab = opened(view)
-    tab.evaluate("document.querySelector('[data-material=\"2\"]').click()")
-    assert ((tab.canvas("mask")[..., 3] == 0) == (view.labels == 3)).all()
-    x, y, width, height = box(tab, "#mask")
-    row, column = np.argwhere(view.labels == 2)[7]
-    tab.mouse("mouseMoved", x + (column + 0.5) * width / 56, y + (row + 0.5) * height / 40)
-    assert tab.evaluate("document.getElementById('pointed').textContent") == "material 1"
