@@ -49,8 +49,6 @@ SAME: dict[str, dict[str, str]] = {
     "16 threads of XLA": {"NPROC": "16"},
     "no threads in a product of XLA": {"XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false"},
     "3 devices": {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"},
-    "batches of 1024 and 64": {},
-    "batches of 4000 and 100": {},
 }
 """Environment variables of settings that must not change a byte."""
 APART: dict[str, dict[str, str]] = {
@@ -67,17 +65,15 @@ APART: dict[str, dict[str, str]] = {
 }
 """Environment variables of settings that must not change nodes."""
 PREFIXES = {"one core": ("taskset", "-c", "0")}
-BATCHES = {"batches of 1024 and 64": ("1024", "64"), "batches of 4000 and 100": ("4000", "100")}
-"""Commands before that of a setting, and rows of a large and of a small batch."""
+"""Commands before that of a setting."""
 
 
 @click.command()
 @click.option("--into", metavar="FOLDER", help="Build the cubes into a folder, and compare nothing.")
-@click.option("--batch", nargs=2, type=int, help="Rows of a large and of a small batch.")
-def main(into: str | None, batch: tuple[int, int] | None) -> None:
+def main(into: str | None) -> None:
     """Build under all settings and compare."""
     if into is not None:
-        build_cubes(Path(into), batch)
+        build_cubes(Path(into))
         return
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -87,8 +83,8 @@ def main(into: str | None, batch: tuple[int, int] | None) -> None:
         "determinism",
         "stability-determinism",
         cubes=list(CASES),
-        same=[select(row, "setting", "cubes", "different") for row in same],
-        apart=[select(row, "setting", "different_nodes", "measures", "status_changes") for row in apart],
+        same=same,
+        apart=apart,
         limits=dict(LIMITS),
     )
     failed = [row["setting"] for row in same if row["different"]]
@@ -97,13 +93,9 @@ def main(into: str | None, batch: tuple[int, int] | None) -> None:
     raise SystemExit(bool(failed))
 
 
-def build_cubes(folder: Path, batch: tuple[int, int] | None) -> None:
+def build_cubes(folder: Path) -> None:
     """Build the cubes of all cases; names of entries get their atlas as prefix."""
-    from uplift.fit import batch as batches
-
     warnings.simplefilter("ignore", uplift.UpliftWarning)
-    if batch:
-        batches.CPU_BATCH_ROWS = batch
     for number, (names, options) in enumerate(CASES.values()):
         atlases = [(name, uplift.read_atlas(name)) for name in names]
         entries = [replace(each, name=f"{name} {each.name}") for name, atlas in atlases for each in atlas.entries]
@@ -115,8 +107,6 @@ def run(name: str, variables: dict[str, str], folder: Path) -> Path:
     into = folder / name
     into.mkdir()
     command = [*PREFIXES.get(name, ()), sys.executable, "-m", "benchmarks.determinism", "--into", str(into)]
-    if name in BATCHES:
-        command += ["--batch", *BATCHES[name]]
     compiled = {"JAX_ENABLE_COMPILATION_CACHE": "false"}  # no code compiled under another setting
     subprocess.run(command, env=os.environ | compiled | variables, cwd=ROOT, check=True)
     return into
@@ -136,11 +126,6 @@ def measure(name: str, variables: dict[str, str], folder: Path) -> Row:
         "measures": {limit: max(each.measures[limit] for each in found) for limit in LIMITS},
         "status_changes": sum(each.stored_counts != each.rebuilt_counts for each in found),
     }
-
-
-def select(row: Row, *keys: str) -> Row:
-    """Return some of the values of a row."""
-    return {key: row[key] for key in keys}
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Emission tables: lamps left out, exactness, expected errors and cost, for docs/emission.md and its picture."""
+"""Emission tables: lamps left out, exactness, expected errors and cost, for docs/emission.md."""
 
 from __future__ import annotations
 
@@ -6,28 +6,24 @@ import re
 from collections.abc import Iterator, Mapping
 from functools import partial
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import DOCS, record
+from benchmarks import record
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer as observers
-from uplift.colorimetry.delta_e import delta_e_2000, lab_of
 from uplift.colorimetry.lights import Lamps
 from uplift.common.arrays import Array, Mask
 from uplift.fit.solver import solve
 from uplift.lab.timing import time_calls
 from uplift.lights.fit import nearest_lights
-from uplift.lights.lattice import DENOMINATOR, chromaticity, unit_xyz
+from uplift.lights.lattice import chromaticity, unit_xyz
 from uplift.lights.lookup import EmissionTable
 from uplift.lights.prior import fit_lamp_prior, relit_delta_e
 from uplift.models.minimum_norm import forward_map
 from uplift.models.sigmoid import Sigmoid
-from uplift.viz.chromaticity import draw_errors
-from uplift.viz.figure import GREY, INK, colour_map, new_figure, write_png
 
 FAMILIES = {
     "daylight": r"[BC]|I?D\d\d",
@@ -49,12 +45,11 @@ TABLE = "emission table"
 DIRECTIONS, STEPS = 720, 101
 COLOURS, RUNS = 200_000, 15
 NEAREST, THIRDS, WORST = 8, 3, 8
-PICTURE = DOCS / "emission" / "errors.png"
 Row = dict[str, Any]
 
 
 def main() -> None:
-    """Measure, draw and store."""
+    """Measure and store."""
     table, lamps = uplift.load_emission(), observers.lamps()
     surfaces = {label: on_grid(read_atlas(name), observers.grid()) for label, name in SURFACES.items()}
     radiometry, checker = table.data.radiometry, surfaces["ColorChecker"]
@@ -72,13 +67,10 @@ def main() -> None:
     power, expected = found["lamp"]
     errors = relit_delta_e(lamps.power, power, checker, radiometry).mean(axis=1)
     missed = np.linalg.norm(chromaticity(power @ radiometry) - uv, axis=1)
-    PICTURE.parent.mkdir(exist_ok=True)
-    draw_error_map(table, lamps.names, uv, errors, PICTURE)
     record(
         "emission",
         lamps=len(lamps),
         exact=len(table.lamp_names),
-        space=table.space,
         shape=table.data.lattice.shape,
         prior=table.data.provenance["prior"],
         same_colours=SAME_COLOURS,
@@ -94,7 +86,6 @@ def main() -> None:
             for part in np.array_split(np.argsort(expected, kind="stable"), THIRDS)
         ],
         exactness=list(exactness(table, spokes(table, DIRECTIONS, STEPS))),
-        mixtures=mixtures(table),
         lookups=list(lookups(COLOURS, RUNS)),
     )
 
@@ -137,12 +128,12 @@ def predict(lamps: Lamps, unknown: Mapping[str, Mask], **size: int) -> dict[str,
 
 
 def by_nearest(lamps: Lamps, unknown: Mask, radiometry: Array) -> dict[str, Array]:
-    """Return the power (L, N) of the nearest known lamp and the mean of the nearest ones, also moved to the colours."""
+    """Return the power (L, N) of the nearest known lamp and the mean of the nearest ones, moved to the colours."""
     uv = chromaticity(lamps.power @ radiometry)
     apart = np.where(unknown, np.inf, np.linalg.norm(uv[:, None] - uv, axis=-1))
     known = lamps.power[np.argsort(apart, axis=1, kind="stable")[:, :NEAREST]]
-    found = {"nearest lamp": known[:, 0], f"mean of the {NEAREST} nearest": known.mean(axis=1)}
-    return found | {f"{label}, moved": nearest_lights(power, uv, radiometry) for label, power in found.items()}
+    found = {"nearest lamp, moved": known[:, 0], f"mean of the {NEAREST} nearest, moved": known.mean(axis=1)}
+    return {label: nearest_lights(power, uv, radiometry) for label, power in found.items()}
 
 
 PBRT_SCALE = 2.0
@@ -219,25 +210,6 @@ def exactness(table: EmissionTable, uv: Array) -> Iterator[Row]:
         yield {"type": dtype, "colours": len(uv), "uv_error": apart.max(), "min_power": power.min()}
 
 
-def mixtures(table: EmissionTable) -> Row:
-    """Return how far answers are from mixtures of two wavelengths in equal parts: in u′v′, and ΔE00.
-
-    ΔE00 is relative to white of the luminance of the colour.
-    """
-    radiometry = table.data.radiometry
-    visible = radiometry[radiometry @ DENOMINATOR > 0]
-    single = visible / (visible @ DENOMINATOR)[:, None]
-    first, second = np.triu_indices(len(single))
-    xyz = (single[first] + single[second]) / 2
-    answer = table.spectrum_of_xyz(xyz) @ radiometry
-    white = table.xyz(np.ones(3)) * xyz[:, 1:2]
-    return {
-        "colours": len(xyz),
-        "uv_error": np.linalg.norm(chromaticity(answer) - chromaticity(xyz), axis=1).max(),
-        "delta_e": delta_e_2000(lab_of(xyz, white), lab_of(answer, white)).max(),
-    }
-
-
 def lookups(count: int, runs: int) -> Iterator[Row]:
     """Yield nanoseconds per colour of lights and of reflectances, and the ratio of their medians, by type."""
     rgb = np.random.default_rng(1).random((count, 3))
@@ -251,25 +223,6 @@ def lookups(count: int, runs: int) -> Iterator[Row]:
         light, reflectance = times
         row = {"type": dtype, "wavelengths": len(at), "colours": count, "light": light, "reflectance": reflectance}
         yield row | {"ratio": light.median / reflectance.median}
-
-
-def draw_error_map(table: EmissionTable, names: tuple[str, ...], uv: Array, errors: Array, path: Path) -> None:
-    """Draw the expected errors over u′v′, and the measured errors (L,) of lamps at u′v′ (L, 2)."""
-    figure = new_figure(11, 5.4)
-    left, right = figure.subplots(1, 2)
-    draw_errors(left, table)
-    corners = chromaticity(table.xyz(np.eye(3)[[0, 1, 2, 0]]))
-    left.plot(*corners.T, color=GREY, linewidth=0.7, linestyle="--")
-    left.set_title("expected by the table; points are its lamps")
-    largest = table.data.error.max()
-    points = right.scatter(
-        *uv.T, c=errors, s=16, cmap=colour_map(), vmin=0, vmax=largest, edgecolors=INK, linewidths=0.3
-    )
-    for row in np.argsort(errors)[::-1][:WORST]:
-        right.annotate(names[row], uv[row], (4, 4), textcoords="offset points", fontsize=7)
-    right.set(title="measured: each lamp left out", xlabel="u′", ylabel="v′")
-    figure.colorbar(points, ax=right, extend="max").set_label("mean ΔE00 of the ColorChecker")
-    write_png(figure, path, force=True)
 
 
 if __name__ == "__main__":

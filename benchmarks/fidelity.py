@@ -33,7 +33,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.colorimetry.sensor import Light
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array
 from uplift.cube import contents
 from uplift.fit.families import LENGTH, NUGGET, shipped_library
 from uplift.lab.chart.measure import select_methods
@@ -52,17 +52,13 @@ from uplift.lab.study.held_out import (
     spectrum_errors,
 )
 from uplift.lookup import Cube
-from uplift.report.measures import check_calibration, compute_smoothness
+from uplift.report.measures import check_calibration
 
 DIM, COARSE = 32, 16
 COUNTS = (9, 13, 17)
 SETS = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017")
 """Sets of at least 20 entries. The others are too small to split."""
 TESTED = ("macbeth", "cie2017", "rawtoaces")
-KNOWN = ("macbeth", "cie2017")
-"""Atlases of the cubes that are queried for other sets."""
-MIN_COLOURS = 10
-"""Fewer colours are not listed."""
 LIBRARY_SETS = tuple(name for names in FAMILIES.values() for name in names)
 PUBLISHED = ("otsu2018", "mallett2019", "smits1999")
 Row = dict[str, Any]
@@ -81,12 +77,9 @@ def main() -> None:
     }
     known = {(name, count): other_halves(name, dim=DIM, coefficients=count) for name in LARGE for count in (9, 17)}
     others = {
-        (atlas, name): [(build(atlas, dim=DIM, leave_out=shipped_families(name)), materials(name))]
-        for atlas in KNOWN
+        f"macbeth, queried for {name}": [(build("macbeth", dim=DIM, leave_out=shipped_families(name)), materials(name))]
         for name in LARGE
-        if name != atlas
     }
-    first = {f"{atlas}, queried for {name}": pairs for (atlas, name), pairs in others.items() if atlas == KNOWN[0]}
     record(
         "fidelity",
         dim=DIM,
@@ -94,18 +87,14 @@ def main() -> None:
         munsell=MUNSELL.exists(),
         entries=[row for name in TESTED for row in at_entries(name)],
         halves=[row for key, found in splits.items() for row in halves(*key, found)],
-        smoothness=[
-            neighbour_steps(name, count) for name in (None, "macbeth", "rawtoaces", *LARGE[2:]) for count in (9, 17)
-        ],
         light_splits=SPLITS,
         standard_errors=[
             *(quartiles(*key, pairs) for key, pairs in known.items()),
-            *(quartiles(label, 9, pairs) for label, pairs in first.items()),
+            *(quartiles(label, 9, pairs) for label, pairs in others.items()),
         ],
         light_errors=[
             {"atlas": name, "coefficients": count, "covered": covered(pairs)} for (name, count), pairs in known.items()
         ],
-        other_families=[row for key, pairs in others.items() for row in across(*key, pairs)],
     )
     record(
         "fidelity",
@@ -127,7 +116,6 @@ def main() -> None:
         library=[{"name": each.name, "spectra": len(each.measured)} for each in shipped_library()],
         unseen=[unseen(name, count) for name in sets for count in (9, 17)],
         atlases=[with_atlas(name) for name in sets if name not in FAMILIES["checker"]],
-        relevance=[relevance(name) for name in ("macbeth", "rawtoaces", "cie2017")],
         libraries=[row for name in LARGE for row in with_library(name)],
     )
 
@@ -159,13 +147,6 @@ def halves(name: str, count: int, splits: Splits) -> Iterator[Row]:
 def pooled(splits: Splits, method: str) -> Array:
     """Mean rms, then mean ΔE00 under each light, over the splits; splits of one set differ by one entry at most."""
     return np.mean([split.errors[method].means() for split in splits], axis=0)
-
-
-def neighbour_steps(name: str | None, count: int) -> Row:
-    """Return the rms difference between the spectra of neighbouring nodes."""
-    steps = compute_smoothness(build(name, dim=DIM, coefficients=count).data).differences
-    quantiles = {"mean": steps.mean(), "p99": np.quantile(steps, 0.99), "max": steps.max()}
-    return {"atlas": name or "none", "coefficients": count, **quantiles}
 
 
 def stated(pairs: Pairs, light: Light) -> tuple[Array, Array]:
@@ -200,19 +181,9 @@ def quartiles(label: str, count: int, pairs: Pairs) -> Row:
     }
 
 
-def covered(pairs: Pairs, rows: Mask | slice = slice(None)) -> dict[str, Array]:
+def covered(pairs: Pairs) -> dict[str, Array]:
     """Return, by light, the shares of errors within the standard error and within the error bound."""
-    return {name: stated(pairs, observer.light(name))[1][rows].mean(axis=0) for name in HELD_OUT_LIGHTS}
-
-
-def across(atlas: str, name: str, pairs: Pairs) -> Iterator[Row]:
-    """Yield the coverage of another set, of colours that are like the atlas and of those that are not."""
-    ((cube, some),) = pairs
-    unlike = cube.unlike_atlas(some.rgb)
-    for label, rows in {"like the atlas": ~unlike, "unlike the atlas": unlike}.items():
-        if rows.sum() >= MIN_COLOURS:
-            found = {"share": rows.mean(), "covered": covered(pairs, rows)}
-            yield {"atlas": atlas, "queried": name, "colours": label, **found}
+    return {name: stated(pairs, observer.light(name))[1].mean(axis=0) for name in HELD_OUT_LIGHTS}
 
 
 def compare_methods(name: str) -> Row:
@@ -305,12 +276,6 @@ def with_atlas(name: str) -> Row:
     ratios = found["learnt"] / found["smooth"]
     mean_errors = {key: each.mean() for key, each in found.items()}
     return {"set": name, **mean_errors, "ratio": ratios.mean(), "worst": ratios.max()}
-
-
-def relevance(name: str) -> Row:
-    """Return the relevance of the families as learnt from an atlas."""
-    families = build(name, dim=8, leave_out=family(name)).data.provenance["families"]
-    return {"atlas": name, "relevance": {each["name"]: each["relevance"] for each in families}}
 
 
 def with_library(name: str) -> Iterator[Row]:

@@ -24,8 +24,6 @@ from uplift.viz.figure import figure_text, new_figure, write_png
 
 ATLAS, DIM = "macbeth", 32
 IMPOSSIBLE = (("#4060a0", "A", "#5060a0"), ("#8a2a20", "A", "#8a4020"), ("#40a060", "A", "#50a050"))
-DISTANCES, NEIGHBOURS = (0, 4, 8, 16, 32, 64), 200
-"""Distances from a look in 8-bit codes, and colours of each."""
 PIXELS, SPP = 220, 256
 Row = dict[str, Any]
 
@@ -41,7 +39,6 @@ def main() -> None:
         dim=DIM,
         looks=list(looks(plain, looked)),
         entries=entries(plain, looked),
-        near=near(plain, looked),
         impossible=[impossible(*each) for each in IMPOSSIBLE],
         scene=render(plain, looked),
     )
@@ -66,20 +63,6 @@ def entries(plain: Cube, looked: Cube) -> Row:
     rgb = plain.data.atlas.rgb
     change = np.abs(looked.reflectance(rgb) - plain.reflectance(rgb)).max()
     return {"count": len(rgb), "change": {"spectra": change}}
-
-
-def near(plain: Cube, looked: Cube) -> list[Row]:
-    """Return how much colours around the looks change under FL11, by their distance."""
-    (screen,) = display_sensors(["FL11"], plain.observer)
-    rng, centres = np.random.default_rng(0), plain.encode(looked.data.atlas.rgb[looked.data.atlas.measured_count :])
-    found = []
-    for distance in DISTANCES:
-        steps = rng.normal(size=(NEIGHBOURS, 1, 3))
-        codes = centres + distance * steps / np.linalg.norm(steps, axis=-1, keepdims=True)
-        rgb = plain.decode(codes[((codes >= 0) & (codes <= 255)).all(axis=-1)])
-        one, other = (screen.rgb(cube.reflectance(rgb)) for cube in (plain, looked))
-        found.append({"codes": distance, "delta_e": delta_e_rgb(screen, one, other).mean()})
-    return found
 
 
 def impossible(rgb: str, light: str, wish: str) -> Row:

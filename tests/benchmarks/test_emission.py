@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import uplift
-from benchmarks.emission import FAMILIES, exactness, lamp_family, mixtures, planck, predict, spokes, unknown_lamps
+from benchmarks.emission import FAMILIES, exactness, lamp_family, planck, predict, spokes, unknown_lamps
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import Lamps
@@ -69,10 +69,6 @@ def test_exactness_is_measured_from_white_to_the_locus():
     assert double["uv_error"] < 1e-6
     assert single["uv_error"] < 1e-5
     assert min(double["min_power"], single["min_power"]) >= 0
-    mixed = mixtures(TABLE)
-    assert mixed["colours"] > 3000
-    assert 1e-6 < mixed["uv_error"] < 1e-4
-    assert mixed["delta_e"] < 0.1
     data = TABLE.data
     wrong = EmissionTable(replace(data, spectra=data.spectra * np.linspace(0.9, 1.1, 81, dtype=np.float32)))
     assert next(exactness(wrong, uv))["uv_error"] > 1e-3
