@@ -13,7 +13,6 @@ from tests.conftest import MACBETH
 from tests.io.texture.conftest import planes, write_exr
 from uplift.scene import plan
 from uplift.scene.plan.context import SearchGrid
-from uplift.scene.representations.samples import point_samples, riemann_sums
 
 SMALL = SearchGrid(coefficients=(5, 9), dims=(3, 5), reference=7, predicting=60, confirming=90)
 LIGHTS = ("D65", "FL11")
@@ -44,10 +43,6 @@ def kitchen(tmp_path_factory):
 def planned(kitchen):
     """The plan, and the steps that it took."""
     steps = []
-    with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
+    with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
-        patch.setattr(
-            "uplift.scene.plan.decisions.all_representations",
-            lambda lights, surfaces: [riemann_sums(8), point_samples(32)],
-        )
         return plan.plan(plan.read_scene_file(kitchen), SMALL, steps.append), steps

@@ -68,7 +68,6 @@ def test_command_lines_are_accepted(planned, tmp_path):
     commands_by_key = {
         **dict.fromkeys(("coefficients", "lattice"), "uplift build"),
         **dict.fromkeys(("wavelengths", "storage"), "uplift texture a.png -o b.exr"),
-        "representation": "",
     }
     lines = [f"{commands_by_key[each.key]} {trial.cli_args}" for each in plan.decisions for trial in each.trials]
     for line in (*commands(plan, path), *lines):

@@ -1,11 +1,10 @@
-"""The decisions of a plan: coefficients, lattice, wavelengths, contents of a pixel, and another representation.
+"""The decisions of a plan: coefficients, lattice, wavelengths, and contents of a pixel.
 
 Each function measures the candidates of one decision in order of cost, until no more are requested.
 """
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import product
@@ -15,7 +14,6 @@ import numpy as np
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.observer import AXES
-from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
 from uplift.common.progress import Progress
@@ -25,9 +23,7 @@ from uplift.lattice import Lattice
 from uplift.lookup import Cube
 from uplift.models import evaluate, reflectance
 from uplift.scene.plan.context import PlanContext
-from uplift.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet, Trial
-from uplift.scene.representations import Representation, all_representations
-from uplift.scene.representations.samples import STEP, wavelengths, xyz_weights
+from uplift.scene.plan.evaluation import EvaluationSet, Trial
 from uplift.scene.wavelengths import Sampling, choose, make_setup
 from uplift.viz.format import format_size
 
@@ -37,7 +33,7 @@ MAX_AXIS_RATIO = 2.0
 COUNTS = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, 32, 40)
 """Numbers of wavelengths to try before the whole grid."""
 FEW = 200
-"""Colours of each group that wavelengths are fitted to, and that representations are evaluated on."""
+"""Colours of each group that wavelengths are fitted to."""
 DIGITS = 2
 """Decimals of a wavelength in nm, so that the measured wavelengths are those of the command line."""
 DEPTHS: dict[str, np.dtype[Any]] = {"half": np.dtype(np.float16), "float": np.dtype(np.float32)}
@@ -150,43 +146,3 @@ def storage_trials(context: PlanContext, tests: EvaluationSet, cube: Cube, sampl
         choice = {"as": form, "depth": depth}
         cost = f"{format_size(size)} per pixel"
         yield Trial(f"{form}, {depth}", size, cost, storage.cli_args, choice, error, storage)
-
-
-def representation_trials(context: PlanContext, tests: EvaluationSet, limit: float, cube: Cube) -> list[Trial]:
-    """Representations for renderers that do not use the plan's wavelengths.
-
-    They are measured on the 1 nm grid. The cost is the floats per surface, then those per light.
-    """
-    few, nm, scene = tests.subsample(FEW), wavelengths(), context.scene
-    powers = np.stack([observer.illuminant_spd(light.name, step=STEP) for light in few.lights])
-    powers = powers / (powers @ xyz_weights()[:, 1:2])
-    groups = []
-    for group in few.groups:
-        spectra = [np.interp(nm, context.sensor.wavelengths, spectrum) for spectrum in group.reflectances]
-        groups.append(replace(group, reflectances=np.stack(spectra)))
-    named = zip(few.lights, powers, strict=True)
-    lights = tuple(Light(light.name, (power[:, None] * xyz_weights()).T) for light, power in named)
-    dense = EvaluationSet(tuple(groups), lights, few.quantile)
-    surfaces = cube.reflectance(dense.rgb, nm)
-    words = [word for path in scene.atlases for word in ("--atlas", str(path))]
-    words += [word for light in scene.lights for word in ("--light", light)]
-    cli_args = shlex.join(["uplift", "compare", *words, "--tolerance", f"{limit:.3g}"])
-    trials, representations = [], all_representations(powers, surfaces)
-    for done, each in enumerate(representations):
-        context.progress(Progress(f"representation {each.name}", done, len(representations)))
-        code = each.encode_surface(surfaces)
-        floats, light_floats = (float(each.storage(part).mean()) for part in (code, each.encode_light(powers)))
-        error = dense.error_of_xyz([_product_xyz(each, power, code, len(surfaces)) for power in powers])
-        cost = f"{floats:.4g} floats per surface, {light_floats:.4g} per light"
-        choice = {"representation": each.name, "family": each.family}
-        trials.append(Trial(each.name, floats + light_floats / 1000, cost, cli_args, choice, error))
-    return sorted(trials, key=lambda trial: trial.cost)
-
-
-def _product_xyz(representation: Representation, power: Array, surfaces: Any, count: int) -> Array:
-    """XYZ (count, 3) of a light on encoded surfaces; the worst where no spectrum has the code."""
-    light = representation.encode_light(np.broadcast_to(power, (count, len(power))))
-    try:
-        return representation.xyz(representation.multiply(light, surfaces))
-    except UpliftError:
-        return np.full((count, 3), WORST_DELTA_E)

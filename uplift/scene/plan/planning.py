@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.observer import DEFAULT_OBSERVER
 from uplift.common.errors import PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.scene_colours import Images
@@ -22,7 +21,6 @@ from uplift.scene.plan.decisions import (
     Storage,
     coefficient_trials,
     lattice_trials,
-    representation_trials,
     storage_trials,
     wavelength_trials,
 )
@@ -36,12 +34,11 @@ DECISIONS = {
     "lattice": ("Lattice", "lattice points that the textures need", 0.55),
     "wavelengths": ("Wavelengths", "wavelengths", 0.9),
     "storage": ("Texture pixel", "bytes per pixel", 1.0),
-    "representation": ("Alternative representation", "floats per surface", 0.9),
 }
 """Title, unit of the cost, and share of the tolerance that the chain may use up to each decision.
 
 Errors of independent origin add up like their squares. That leaves 0.4, 0.38, 0.71 and 0.44 of the tolerance to each
-decision alone: most to the wavelengths, as every ray pays for them. A representation takes their place.
+decision alone: most to the wavelengths, as every ray pays for them.
 """
 MIN_SAVING = 1e6
 """Bytes that a sparse cube must save, as it cannot answer other colours."""
@@ -163,10 +160,6 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     sampling: Sampling = wavelengths.trial.result
     pixel = decided("storage", storage_trials(context, tests, cube, sampling))
     storage: Storage = pixel.trial.result
-    decisions = [coefficients, lattice, wavelengths, pixel]
-    if scene.observer == DEFAULT_OBSERVER:  # the only one that representations support
-        limit = DECISIONS["representation"][-1] * scene.tolerance
-        decisions.append(decided("representation", representation_trials(context, tests, limit, cube)))
 
     progress(Progress("final build", 0, 1))
     final_build = build_final(context, options)
@@ -183,7 +176,7 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     expected_error = planned.standard_error(textures.rgb)
     return Plan(
         scene=scene,
-        decisions=tuple(decisions),
+        decisions=(coefficients, lattice, wavelengths, pixel),
         options=options,
         sampling=sampling,
         storage=storage,
