@@ -191,14 +191,12 @@ def test_numbers_out_of_range_are_refused(forged, name):
     [
         ("nodes", lambda array: array / 2),
         ("nodes", lambda array: array[::-1]),
-        ("nodes", lambda array: np.array(0.5)),
         ("status", with_value(Status.ABSENT)),
         ("entry", with_value(23)),
         ("sensor.power", lambda array: 0 * array),
         ("sensor.cmfs", lambda array: 2 * array[::-1]),
         ("sensor.xyz_to_rgb", lambda array: array[[0, 0, 0]]),
         ("sensor.decoding", lambda array: array[::-1]),
-        ("sensor.wavelengths", lambda array: array[::-1]),
     ],
 )
 def test_arrays_that_break_lookups_are_refused(data, forged, name, change):
@@ -209,15 +207,12 @@ def test_arrays_that_break_lookups_are_refused(data, forged, name, change):
 PHASE = {"start": 380.0, "end": 780.0, "warp": "none"}
 MODELS = [
     {"name": "spline"},
-    {"count": 9},
-    {"name": "moments", "count": 9},
     {"name": "moments", "count": 8, "phase": PHASE},
     {"name": "moments", "count": 99, "phase": PHASE},
     {"name": "moments", "count": 9, "phase": {**PHASE, "start": 800.0}},
     {"name": "moments", "count": 9, "phase": {**PHASE, "warp": "bent"}},
     {"name": "sigmoid", "start": 380.0, "end": 780.0},
     {"name": "sigmoid", "start": 380.0, "end": 380.0},
-    {"name": "sigmoid", "start": None, "end": 780.0},
 ]
 
 
@@ -225,15 +220,6 @@ MODELS = [
 def test_unknown_models_are_refused(data, tmp_path, model):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(model=model, entry_model=model))
     refused(path, "cube-invalid")
-
-
-@pytest.mark.parametrize("phase", [{**PHASE, "start": 400.0}, {**PHASE, "warp": "vision"}, None])
-def test_models_of_entries_that_do_not_extend_that_of_nodes_are_refused(data, tmp_path, phase):
-    def change(tensors, metadata):
-        metadata["entry_model"] = {"name": "moments", "count": 17, "phase": phase} if phase else MODELS[-2]
-        tensors["atlas.entry_coefficients"] = np.full((23, 17 if phase else 3), 0.1)
-
-    refused(forge(data, tmp_path / "cube", change), "cube-invalid")
 
 
 @pytest.fixture
@@ -256,14 +242,10 @@ def test_metadata_that_are_missing_or_of_another_type_are_named(refused_metadata
     [
         {"options": "dim 8"},
         {"atlases": [{}]},
-        {"atlases": ["macbeth.txt"]},
-        {"atlases": [{"name": 3, "digest": "0"}]},
-        {"left_out": "grey"},
         {"improvements": [{"step": "a", "tried": 1.0, "mended": 1}]},
         {"improvements": [{"step": "a", "tried": -1, "mended": 1}]},
         {"looks": [{"name": "a", "rgb": [0, 0, 0], "weight": 1, "lights": [{}] * (MAX_LIGHTS + 1)}]},
         {"scene": "photo.png"},
-        {"filled": 1},
     ],
 )
 def test_provenance_of_another_type_is_refused(refused_metadata, provenance):
@@ -275,10 +257,8 @@ def test_provenance_of_another_type_is_refused(refused_metadata, provenance):
     ("key", "value"),
     [
         *(("threshold", value) for value in (0, 5e-324, 1e-13, 0.2, -1e-4)),
-        ("dim", 8.0),
         ("dim", 7),
         ("entries", ["grey"] * 23),
-        ("features", ["debug", 3]),
         ("features", ["camera"]),
         ("model", {"name": "moments", "count": 9.0, "phase": PHASE}),
         ("\x1b]0;title\x07", 1),

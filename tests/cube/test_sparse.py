@@ -71,9 +71,7 @@ CHANGES = {
     "unsorted": points(lambda numbers: numbers[::-1]),
     "twice": with_last(0),
     "beyond": with_last(6**3),
-    "signed": points(lambda numbers: numbers.astype(np.int32)),
     "missing": lambda tensors, metadata: tensors.pop("points"),
-    "shorter": lambda tensors, metadata: tensors.update(rgb=tensors["rgb"][:-1]),
     "absent": lambda tensors, metadata: tensors.update(status=np.full_like(tensors["status"], Status.ABSENT)),
     "no feature": lambda tensors, metadata: metadata["features"].remove("sparse"),
     "no cell": without_a_cell,
@@ -85,7 +83,3 @@ CHANGES = {
 def test_forged_files_are_refused(data, tmp_path, change):
     with raises(CubeFileError, "cube-invalid"):
         read(forge(data, tmp_path / "forged.uplift", change))
-
-
-def test_an_unchanged_sparse_file_is_read(data, tmp_path):
-    assert not read(forge(data, tmp_path / "true.uplift", lambda *_: None)).points.present.all()

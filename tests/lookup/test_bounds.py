@@ -40,13 +40,6 @@ def test_the_likely_region_is_the_ellipse_of_the_covariance(small_cube):
     np.testing.assert_allclose(squares, lab_errors(small_cube.data, FL11).likely_radius ** 2)
 
 
-def test_without_an_atlas_nothing_is_likely(plain_cube):
-    found = bounds(plain_cube, np.array([[0.3, 0.4, 0.2]]), FL11)
-    assert found.covariance is None
-    assert found.likely(0) is None
-    assert found.outline(0).shape == (120, 2)
-
-
 def test_colours_outside_the_space_are_answered(plain_cube):
     rgb = np.array([[0.5, 0.5, 0.5], [-0.05, 0.4, 0.3]])
     found = bounds(plain_cube, rgb, FL11, divisions=1)

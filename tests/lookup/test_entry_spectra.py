@@ -52,11 +52,6 @@ def test_an_entry_is_answered_with_all_its_coefficients(small_cube, data, mode):
     np.testing.assert_allclose(extended(data, data.atlas.rgb), own, rtol=0, atol=1e-4)
 
 
-def test_coefficients_of_an_entry_are_those_stored(small_cube, data):
-    for count, stored in ((9, data.atlas.coefficients), (17, data.entry_spectra.coefficients)):
-        np.testing.assert_allclose(small_cube.coefficients(data.atlas.rgb, count), stored, rtol=0, atol=1e-7)
-
-
 def test_spectra_in_boxes_mix_entry_and_lattice(small_cube, data):
     """One colour at a time, by the definition of docs/mathematics.md, 8."""
     at, own = data.sensor.wavelengths, data.entry_spectra

@@ -53,12 +53,6 @@ def test_only_the_points_that_the_colours_need_are_filled(sparse):
         )
 
 
-def test_standard_errors_of_filled_points_are_the_largest_of_the_cube(small_cube):
-    assert small_cube.fill_missing(RGB) is small_cube
-    sparse = Cube(with_absent_points(small_cube.data, near_black(small_cube.data)))
-    assert sparse.fill_missing().standard_error([1, 1, 1]) == pytest.approx(sparse.data.points.standard_error.max())
-
-
 def test_a_cube_of_another_rgb_space_is_refused(plain_cube):
     wide = replace(plain_cube.data, sensor=replace(plain_cube.data.sensor, space="ITU-R BT.2020"))
     with raises(ColourError, "rgb-space-mismatch"):

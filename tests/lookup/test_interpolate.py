@@ -54,11 +54,6 @@ def test_coefficients_are_those_stored_at_a_point_and_trilinear_in_a_cell(cube):
     np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6)
 
 
-def test_spectra_are_as_exact_as_the_lattice(cube):
-    assert cube.data.points.distance.max() <= cube.data.threshold / 100
-    assert miss(cube, random_colours(), "spectra").max() <= cube.data.points.distance.max() + 1e-9
-
-
 def test_refined_spectra_and_multipliers_have_the_colour(small_cube):
     rgb, data = random_colours(200), small_cube.data
     assert miss(small_cube, rgb, "refined").max() <= 2 * TOLERANCE

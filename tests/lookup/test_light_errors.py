@@ -81,15 +81,6 @@ def test_the_likely_region_holds_95_percent_of_the_other_halves(halves, sensor):
     assert min(shares) > 0.9
 
 
-def test_error_bounds_are_larger_than_standard_errors_except_at_entries(small_cube):
-    rgb = np.random.default_rng(2).random((50, 3))
-    own = small_cube.data.atlas.rgb
-    for light in (None, "A", LIGHTS[0], "FL11"):
-        assert (small_cube.error_bound(rgb, light) > small_cube.standard_error(rgb, light)).all()
-        at_entries = small_cube.error_bound(own, light)
-        np.testing.assert_allclose(at_entries, small_cube.standard_error(own, light), atol=1e-6)
-
-
 def test_an_entry_has_its_own_error(small_cube, sensor):
     data, light = small_cube.data, observer.light("FL11")
     np.testing.assert_allclose(small_cube.standard_error(data.atlas.rgb), data.atlas.error, atol=1e-12)

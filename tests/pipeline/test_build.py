@@ -122,13 +122,6 @@ def test_entries_have_more_coefficients_than_nodes():
     np.testing.assert_allclose(more.sensor.rgb(spectra), more.atlas.rgb, atol=1e-6)
 
 
-def test_dim_auto_records_the_chosen_lattice():
-    cube = uplift.build(greys(one=0.2, other=0.24), dim="auto")
-    options = cube.data.provenance["options"]
-    assert options["dim"] == cube.data.lattice.dim
-    np.testing.assert_array_equal(observer.axis_nodes(options["axis"], options["dim"]), cube.data.lattice.nodes)
-
-
 @pytest.fixture(scope="session")
 def in_order():
     return quietly(MACBETH, dim=5).data

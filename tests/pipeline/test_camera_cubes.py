@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 import pytest
 
@@ -11,10 +9,10 @@ import uplift
 from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.camera import CAMERA
-from uplift.common.errors import ColourError, OutputError
+from uplift.common.errors import ColourError
 from uplift.cube import digest
 from uplift.io.export.coeff import write_coeff
-from uplift.lookup import Cube, query, query_xyz
+from uplift.lookup import query, query_xyz
 from uplift.pipeline.rebuild import rebuild
 
 NIKON = "Nikon 5100 (NPL)"
@@ -62,10 +60,3 @@ def test_xyz_are_not_taken_for_raw_values(cube, tmp_path):
     with raises(ColourError, "camera-without-xyz"):
         write_coeff(cube.data, tmp_path / "table.coeff", res=2)
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("sensitivities", [np.full((81, 3), -1.0), np.ones((80, 3)), np.zeros((81, 3))])
-def test_files_with_invalid_sensitivities_are_refused(cube, tmp_path, sensitivities):
-    sensor = dataclasses.replace(cube.data.sensor, sensitivities=sensitivities)
-    with raises(OutputError, "cube-unreadable"):
-        Cube(dataclasses.replace(cube.data, sensor=sensor)).save(tmp_path / "bad.uplift")

@@ -47,17 +47,6 @@ def test_a_plan_is_printed_written_and_built(run, here):
     assert "leave out --dim, --light." in error
 
 
-def test_other_files_are_refused_as_plans(refuse, here):
-    (here / "deep.json").write_text("[" * 100_000)
-    for name, code in (
-        ("wood.exr", "file-unreadable"),
-        ("there.json", "file-not-found"),
-        ("deep.json", "invalid-json"),
-    ):
-        error = refuse("build", "--plan", name)
-        assert (error.code, error.where) == (code, name)
-
-
 def test_the_page_fits_and_is_accessible(planned, tmp_path):
     check_page(page(planned[0], tmp_path / "kitchen.plan.json"), tmp_path)
 

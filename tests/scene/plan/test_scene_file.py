@@ -6,7 +6,7 @@ import pytest
 
 from tests.helpers import raises
 from uplift.common.errors import PlanFileError
-from uplift.scene.plan import SceneFile, read_scene_file
+from uplift.scene.plan import read_scene_file
 
 
 @pytest.fixture
@@ -21,12 +21,6 @@ def read(tmp_path):
         return read_scene_file(path)
 
     return read
-
-
-def test_textures_are_the_only_required_key(read, tmp_path):
-    scene = read('textures = ["a.png"]')
-    assert scene == SceneFile(tmp_path / "scene.toml", (tmp_path / "a.png",))
-    assert (scene.tolerance, scene.quantile, scene.lights[0]) == (1.0, 0.975, "D65")
 
 
 def test_all_keys_are_read(read, tmp_path):
