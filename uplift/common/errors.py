@@ -53,13 +53,9 @@ class Diagnostic(Exception):  # noqa: N818
     @property
     def where(self) -> str:
         """Location as ``path:line: entry 'name'``, as far as it is known; empty if nothing is."""
-        place = "" if self.path is None else str(self.path)
-        if self.line is not None:
-            place += f":{self.line}"
-        parts = [place] if place else []
-        if self.entry is not None:
-            parts.append(f"entry '{self.entry}'")
-        return ": ".join(parts)
+        place = ":".join(str(part) for part in (self.path, self.line) if part is not None)
+        entry = "" if self.entry is None else f"entry '{self.entry}'"
+        return ": ".join(part for part in (place, entry) if part)
 
     def __str__(self) -> str:
         """One line: location, problem, hint, as `describe` of the library's own hint."""

@@ -7,6 +7,7 @@ one to finish wins.
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import stat
 import time
@@ -19,34 +20,16 @@ from uplift.common.errors import OutputError, UpliftError
 if TYPE_CHECKING:
     from uplift.common.arrays import StrPath  # which imports numpy
 
-__all__ = [
-    "atomic_write",
-    "check_folder",
-    "check_output",
-    "check_outputs",
-    "check_regular",
-    "read_bytes",
-    "remove_stale",
-    "remove_temporaries",
-    "write_text",
-]
-
 DAY = 86_400.0
 """Seconds without a change after which a temporary file belongs to a writer that was killed."""
-READ = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-"""Opening a pipe, or reading a file of the kernel, must not wait."""
 _TEMPORARIES: set[Path] = set()
 """Temporary files that this process is writing."""
 
 
 def check_regular(path: StrPath, error: type[UpliftError], *, hint: str) -> None:
     """Check that a path is a regular file, which ends and can be read twice; raise ``error`` otherwise."""
-    try:
+    with _reading(path, error, hint):
         mode = os.stat(path).st_mode
-    except (FileNotFoundError, NotADirectoryError) as cause:
-        raise error("no such file", code="file-not-found", path=path, hint=hint) from cause
-    except (OSError, ValueError) as cause:
-        raise _unreadable(path, error, hint, cause) from cause
     if not stat.S_ISREG(mode):
         kind = "a folder" if stat.S_ISDIR(mode) else "a device or a pipe"
         raise error(f"must be a file, got {kind}", code="not-a-regular-file", path=path, hint=hint)
@@ -55,21 +38,23 @@ def check_regular(path: StrPath, error: type[UpliftError], *, hint: str) -> None
 def read_bytes(path: StrPath, error: type[UpliftError], *, limit: int, hint: str) -> bytes:
     """Read a regular file of at most ``limit`` bytes; raise ``error`` otherwise."""
     check_regular(path, error, hint=hint)
-    try:
-        with open(os.open(path, READ), "rb") as file:
-            data = file.read(limit + 1)
-    except (OSError, ValueError) as cause:
-        raise _unreadable(path, error, hint, cause) from cause
-    if data is None:
-        raise _unreadable(path, error, hint, OSError("it has no content yet"))
+    with _reading(path, error, hint), open(path, "rb") as file:
+        data = file.read(limit + 1)
     if len(data) > limit:
         raise error(f"must not exceed {limit:,} bytes", code="file-unreadable", path=path, hint=hint)
     return data
 
 
-def _unreadable(path: StrPath, error: type[UpliftError], hint: str, cause: Exception) -> UpliftError:
-    reason = getattr(cause, "strerror", None) or cause  # a null byte in the path has none
-    return error(f"cannot be read: {reason}", code="file-unreadable", path=path, hint=hint)
+@contextlib.contextmanager
+def _reading(path: StrPath, error: type[UpliftError], hint: str) -> Iterator[None]:
+    """Translate the errors of the system."""
+    try:
+        yield
+    except (FileNotFoundError, NotADirectoryError) as cause:
+        raise error("no such file", code="file-not-found", path=path, hint=hint) from cause
+    except (OSError, ValueError) as cause:  # a null byte in the path is a ValueError
+        reason = getattr(cause, "strerror", None) or cause
+        raise error(f"cannot be read: {reason}", code="file-unreadable", path=path, hint=hint) from cause
 
 
 def check_outputs(
@@ -97,30 +82,28 @@ def check_output(path: StrPath, *, inputs: Iterable[StrPath | None] = (), force:
     if os.fspath(path) == "-":
         hint = "give a file name, or ./- for a file of this name"
         raise OutputError("stands for standard output, which cannot hold a file", path=path, hint=hint)
-    path, status = Path(path), None
+    path = Path(path)
+    refused = functools.partial(OutputError, path=path, hint="choose another name")
     try:
         status = path.stat()
     except FileNotFoundError:
-        pass
+        status = None
     except (OSError, ValueError) as error:  # no permission, too long, with NUL, or a loop of links
-        reason = getattr(error, "strerror", None) or error
-        raise OutputError(f"cannot be written: {reason}", path=path, hint="choose another name") from error
+        raise refused(f"cannot be written: {getattr(error, 'strerror', None) or error}") from error
     if status is not None:
         existing = (each for each in inputs if each is not None and os.path.exists(each))
         if any(os.path.samestat(status, os.stat(each)) for each in existing):
-            problem = "is read as input and must not be replaced"
-            raise OutputError(problem, code="output-is-input", path=path, hint="choose another name")
+            raise refused("is read as input and must not be replaced", code="output-is-input")
         if not stat.S_ISREG(status.st_mode):
-            problem, hint = "is not a regular file", "name a file to write to"
-            raise OutputError(problem, code="not-a-regular-file", path=path, hint=hint)
+            raise refused("is not a regular file", code="not-a-regular-file")
         if not force:
             hint = "pass force=True to replace it, or choose another name"
-            raise OutputError("exists already", code="file-exists", path=path, hint=hint)
+            raise refused("exists already", code="file-exists", hint=hint)
     folder = path.resolve().parent
     if not folder.is_dir():
-        raise OutputError(f"the folder {folder} does not exist", path=path, hint="create it first")
+        raise refused(f"the folder {folder} does not exist", hint="create it first")
     if not os.access(folder, os.W_OK):
-        raise OutputError(f"no permission to write in {folder}", path=path, hint="choose another folder")
+        raise refused(f"no permission to write in {folder}", hint="choose another folder")
     return path
 
 

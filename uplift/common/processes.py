@@ -11,18 +11,13 @@ import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing.connection import Connection
-from types import FrameType
 from typing import Any, TypeVar
 
 from uplift.common.files import remove_temporaries
 
-__all__ = ["ChildError", "call_in_child", "tied_processes"]
-
 Result = TypeVar("Result")
 GRACE = 5.0
 """Seconds that a child may take to exit after its answer."""
-ENDED = 1
-"""Exit code of a worker whose parent ended."""
 
 
 class ChildError(Exception):
@@ -47,7 +42,8 @@ def call_in_child(function: Callable[..., Result], *arguments: Any, seconds: flo
         child.join(GRACE)
     except (EOFError, OSError) as lost:
         child.join(GRACE)
-        raise ChildError(_crash(child.exitcode)) from lost
+        code = child.exitcode or 0
+        raise ChildError(f"crashed: signal {-code}" if code < 0 else f"crashed: exit code {code}") from lost
     finally:
         ours.close()
         if child.is_alive():
@@ -69,10 +65,6 @@ def _answer(pipe: Connection, function: Callable[..., object], arguments: tuple[
         pipe.send((function(*arguments), None))
     except Exception as error:
         pipe.send((None, error))
-
-
-def _crash(code: int | None) -> str:
-    return f"crashed: signal {-code}" if code is not None and code < 0 else f"crashed: exit code {code}"
 
 
 @contextlib.contextmanager
@@ -98,9 +90,8 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
 def _tie(reader: Connection) -> None:
     """End this worker with its parent, and not by the Ctrl-C that the terminal sends to all processes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    for name in ("SIGTERM", "SIGHUP"):
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), _end)
+    for name in {"SIGTERM", "SIGHUP"} & {each.name for each in signal.Signals}:  # SIGHUP is not on Windows
+        signal.signal(signal.Signals[name], lambda number, frame: _end(128 + number))
     threading.Thread(target=_wait, args=(reader,), daemon=True).start()
 
 
@@ -108,10 +99,9 @@ def _wait(reader: Connection) -> None:
     """Wait until the parent closes the pipe."""
     with contextlib.suppress(EOFError, OSError):
         reader.recv_bytes()
-    remove_temporaries()
-    os._exit(ENDED)
+    _end(1)
 
 
-def _end(number: int, frame: FrameType | None) -> None:
+def _end(code: int) -> None:
     remove_temporaries()
-    os._exit(128 + number)
+    os._exit(code)

@@ -7,17 +7,6 @@ import math
 import re
 from typing import Any
 
-__all__ = [
-    "check_values",
-    "format_value",
-    "json_escapes",
-    "parse_float",
-    "parse_json",
-    "parse_whole",
-    "printable",
-    "shorten",
-]
-
 MAX_LENGTH = 40
 """Characters of a received value in a message."""
 _UNPRINTABLE = re.compile(
@@ -42,17 +31,8 @@ def printable(text: str) -> str:
 
 def json_escapes(text: str) -> str:
     """Escape the same characters in JSON text, which keeps its meaning. Line breaks between values stay."""
-    return text if text.isprintable() else _UNPRINTABLE.sub(_json_escape, text)
-
-
-def _json_escape(match: re.Match[str]) -> str:
-    code = ord(match[0])
-    if match[0] in "\n\r\t":  # between values; within strings the encoder has escaped them
-        return match[0]
-    if code < 0x10000:
-        return f"\\u{code:04x}"
-    high, low = divmod(code - 0x10000, 0x400)
-    return f"\\u{0xD800 + high:04x}\\u{0xDC00 + low:04x}"
+    # Within strings the encoder has escaped line breaks and tabs.
+    return _UNPRINTABLE.sub(lambda match: match[0] if match[0] in "\n\r\t" else json.dumps(match[0])[1:-1], text)
 
 
 def format_value(value: object) -> str:
@@ -92,8 +72,6 @@ def parse_whole(text: str) -> int:
 MAX_DEPTH = 32
 """Deepest nesting of tables and lists."""
 TOO_DEEP = f"tables and lists must not nest more than {MAX_DEPTH} levels deep"
-MAX_VALUES = 2_000_000
-"""Values and keys of a file, tables and lists included."""
 
 
 def parse_json(text: str) -> Any:
@@ -107,17 +85,13 @@ def parse_json(text: str) -> Any:
 
 
 def check_values(value: object) -> None:
-    """Raise `ValueError` if parsed values nest too deeply for recursive code, are too many, or have lone surrogates."""
-    level, count = [value], 0
+    """Raise `ValueError` if parsed values nest too deeply for recursive code or have lone surrogates."""
+    level = [value]
     for _ in range(MAX_DEPTH + 1):
-        count += len(level)
-        if count > MAX_VALUES:
-            raise ValueError(f"must not have more than {MAX_VALUES:,} values")
         children: list[Any] = []
         for each in level:
             if isinstance(each, dict):
-                children += each.keys()
-                children += each.values()
+                children += [*each.keys(), *each.values()]
             elif isinstance(each, list):
                 children += each
             elif isinstance(each, str):

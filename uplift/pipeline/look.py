@@ -5,18 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from uplift.colorimetry.observer import illuminant_spd
 from uplift.colorimetry.srgb import is_number, parse_colour
 from uplift.common.arrays import StrPath
-from uplift.common.errors import LookError, UpliftError, unknown_name
+from uplift.common.errors import LookError, UpliftError
 from uplift.common.text import format_value, shorten
-
-if TYPE_CHECKING:
-    from uplift.common.spec_file import SpecFile
 
 MAX_TARGET = 2.0
 """Limit of the linear sRGB of a target: brighter colours are typing errors."""
@@ -43,7 +38,7 @@ class Look:
         Weight of the targets, above 0 and at most 1; the rest is the colour that is expected without the look.
     name : str, optional
         Name of the look, by default made of its colour.
-    path, line : optional
+    path : path-like, optional
         Where the look is written, for errors.
 
     Raises
@@ -62,9 +57,10 @@ class Look:
     weight: float = 1.0
     name: str = ""
     path: StrPath | None = field(default=None, compare=False)
-    line: int | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.name, str):
+            raise LookError(f"the name of a look must be text, got {format_value(self.name)}", path=self.path)
         object.__setattr__(self, "name", self.name or f"look {format_rgb(self.rgb)}")
         if not self.lights:
             raise look_error(self, "must name at least one light", hint="add FL11 = '#70392a'")
@@ -93,7 +89,7 @@ def about(look: Look, problem: str) -> str:
 
 def look_error(look: Look, problem: str, code: str | None = None, hint: str = "") -> LookError:
     """Make an error with the name and location of a look."""
-    return LookError(about(look, problem), code=code, path=look.path, line=look.line, hint=hint)
+    return LookError(about(look, problem), code=code, path=look.path, hint=hint)
 
 
 def format_rgb(rgb: WrittenRgb) -> str:
@@ -128,7 +124,7 @@ def read_looks(path: StrPath) -> tuple[Look, ...]:
     Raises
     ------
     LookError
-        A file that cannot be read, or a value that does not fit, with its line.
+        A file that cannot be read, or a value that does not fit.
 
     Examples
     --------
@@ -143,37 +139,14 @@ def read_looks(path: StrPath) -> tuple[Look, ...]:
     from uplift.common.spec_file import read_toml  # imports pydantic
 
     file = read_toml(path, LookError)
-    for key in file.values:
-        if key != TABLE:
-            hint = unknown_name(key, (TABLE,), "key").hint or EXAMPLE
-            file.fail((key,), "unknown key", code="unknown-key", hint=hint)
     tables = file.values.get(TABLE, [])
-    if not isinstance(tables, list) or not all(isinstance(each, dict) for each in tables):
-        file.fail((TABLE,), f"must be tables, got {format_value(tables)}", code="invalid-value", hint=EXAMPLE)
-    if not 0 < len(tables) <= MAX_LOOKS:
-        file.fail((), f"must have 1 to {MAX_LOOKS} looks, got {len(tables)}", code="no-looks", hint=EXAMPLE)
-    return tuple(_look(file, number, table) for number, table in enumerate(tables))
-
-
-def _look(file: SpecFile, number: int, table: dict[str, Any]) -> Look:
-    place = (TABLE, number)
-
-    def fail(key: str, problem: str, code: str, hint: str) -> None:
-        file.fail((*place, key) if key else place, problem, code=code, hint=hint)
-
-    if "rgb" not in table:
-        fail("", "required key 'rgb' is missing", "missing-key", "add rgb = '#8a2a20'")
-    if not isinstance(table.get("name", ""), str):
-        problem = f"must be text in quotes, got {format_value(table['name'])}"
-        fail("name", problem, "invalid-value", "write name = 'brick'")
-    options = {key: table[key] for key in ("weight", "name") if key in table}
-    lights = {key: value for key, value in table.items() if key not in ("rgb", "weight", "name")}
-    for light, target in lights.items():
-        if isinstance(target, dict):
-            hint = f'quote names with a dot, such as "{light}.1"'
-            fail(light, "must be a colour, got a table", "invalid-value", hint)
-        try:
-            illuminant_spd(light)
-        except UpliftError as error:
-            fail(light, error.problem, error.code, error.hint or EXAMPLE)
-    return Look(table["rgb"], lights, **options, path=file.path, line=file.line(place))
+    is_list = isinstance(tables, list) and all(isinstance(each, dict) for each in tables)
+    if set(file.values) != {TABLE} or not is_list or not 0 < len(tables) <= MAX_LOOKS:
+        file.fail((), f"must have 1 to {MAX_LOOKS} [[look]] tables and no other keys", code="no-looks", hint=EXAMPLE)
+    looks = []
+    for number, table in enumerate(tables):
+        if "rgb" not in table:
+            file.fail((TABLE, number, "rgb"), "required key is missing", code="missing-key", hint=EXAMPLE)
+        options = {key: table.pop(key) for key in ("rgb", "weight", "name") if key in table}
+        looks.append(Look(lights=table, **options, path=file.path))
+    return tuple(looks)

@@ -191,5 +191,5 @@ def _warn_of_missed(looks: Sequence[Look], records: Sequence[Mapping[str, Any]])
             code, problem = "look-not-reached", "the coefficients of its spectrum do not reach it"
             hint = "use more entry_coefficients"
         text = about(look, f"{problem}: {', '.join(shown)}")
-        warning = UpliftWarning(text, code=code, hint=hint, path=look.path, line=look.line)
+        warning = UpliftWarning(text, code=code, hint=hint, path=look.path)
         warnings.warn(warning, stacklevel=STACK_LEVEL)

@@ -43,26 +43,26 @@ TEXTURES = "textures = 'a.png'\n"
 
 
 @pytest.mark.parametrize(
-    ("text", "line", "key"),
+    ("text", "key"),
     [
-        ("lights = ['D65']", None, "textures"),
-        ("\ntextures = [", 2, ""),
-        (TEXTURES + "\nlight = 'A'", 3, "light"),
-        ("textures = 'x.*.png'", 1, "textures"),
-        ('textures = ["x\\u0000*"]', 1, "textures[0]"),
-        (TEXTURES + "lights = ['D65', 'FL99']", 2, "lights[1]"),
-        (TEXTURES + "tolerance = nan", 2, "tolerance"),
-        (TEXTURES + "quantile = 97.5", 2, "quantile"),
-        (TEXTURES + "encoding = 'gamma'", 2, ""),
-        (TEXTURES + '"a\\nb" = 3', None, "a\nb"),
-        (TEXTURES + "illuminant = 'D66'", 2, "illuminant"),
+        ("lights = ['D65']", "textures"),
+        ("\ntextures = [", ""),
+        (TEXTURES + "\nlight = 'A'", "light"),
+        ("textures = 'x.*.png'", "textures"),
+        ('textures = ["x\\u0000*"]', "textures[0]"),
+        (TEXTURES + "lights = ['D65', 'FL99']", "lights[1]"),
+        (TEXTURES + "tolerance = nan", "tolerance"),
+        (TEXTURES + "quantile = 97.5", "quantile"),
+        (TEXTURES + "encoding = 'gamma'", ""),
+        (TEXTURES + '"a\\nb" = 3', "a\nb"),
+        (TEXTURES + "illuminant = 'D66'", "illuminant"),
     ],
 )
-def test_an_invalid_file_is_refused_with_line_and_key(read, text, line, key):
+def test_an_invalid_file_is_refused_with_its_key(read, text, key):
     with raises(PlanFileError) as caught:
         read(text)
     error = caught.value
-    assert (error.path.name, error.line) == ("scene.toml", line)
+    assert error.path.name == "scene.toml"
     assert error.problem.startswith(key)
     assert len(error.problem) < 500
     assert "\n" not in str(error)
