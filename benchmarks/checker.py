@@ -26,8 +26,6 @@ VARIANT = "scalar_spectral"
 """The spectral variant that does not need LLVM."""
 OF_SURFACES = {"type": "direct", "bsdf_samples": 1, "emitter_samples": 0}
 """Integrator for uniform illumination, where only the wavelengths are random."""
-OF_LIGHTS = {"type": "direct", "bsdf_samples": 0, "emitter_samples": 1}
-"""Integrator for environments."""
 CIE_Y_INTEGRAL = 106.856895
 """Mitsuba divides by it, so that a constant radiance of 1 has Y = 1."""
 Reflectances = list[dict[str, Any]]
@@ -162,14 +160,7 @@ def regular_spectrum(wavelengths: Array, values: Array) -> dict[str, Any]:
     }
 
 
-def render(
-    emitter: dict[str, Any],
-    reflectances: Reflectances,
-    layout: Layout,
-    spp: int,
-    seed: int,
-    integrator: dict[str, Any] = OF_SURFACES,
-) -> Array:
+def render(emitter: dict[str, Any], reflectances: Reflectances, layout: Layout, spp: int, seed: int) -> Array:
     """Return XYZ (height, width, 3) of the chart under an emitter, from straight above, a unit a pixel."""
     import mitsuba as mi
 
@@ -192,7 +183,7 @@ def render(
     }
     scene = {
         "type": "scene",
-        "integrator": integrator,
+        "integrator": OF_SURFACES,
         "light": emitter,
         "camera": camera,
         "background": square({"type": "uniform", "value": BACKGROUND}, [0, 0, -1e-3], [width, height, 1]),

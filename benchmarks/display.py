@@ -112,7 +112,6 @@ PICTURE = DOCS / "display" / "ways.png"
 TIMED = 1 << 16
 """Colours, all of them outside."""
 RUNS = 7
-FAMILIES = ("R", "YR", "Y", "GY", "G", "BG", "B", "PB", "P", "RP")
 
 
 def main() -> None:
@@ -128,7 +127,6 @@ def main() -> None:
         runs=RUNS,
         timed=TIMED,
         methods=[{"name": name, **errors(found, rgb), "ns": cost(name)} for name, rgb in mapped.items()],
-        families=families(found, mapped),
     )
 
 
@@ -144,20 +142,6 @@ def errors(found: Chips, mapped: Array) -> dict[str, Any]:
         name: {"mean": each.mean(), "p95": np.percentile(each, 95), "largest": each.max()}
         for name, each in values.items()
     }
-
-
-def families(found: Chips, mapped: dict[str, Array]) -> list[dict[str, Any]]:
-    """Return the mean hue shift by the hue of the chips."""
-    names = np.array([hue.lstrip("0123456789.") for hue in found.hues])
-    shifts = {method: found.hue_shift(rgb) for method, rgb in mapped.items()}
-    return [
-        {
-            "hue": name,
-            "chips": int((names == name).sum()),
-            **{method: shift[names == name].mean() for method, shift in shifts.items()},
-        }
-        for name in FAMILIES
-    ]
 
 
 def cost(method: str) -> Spread:

@@ -17,7 +17,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb, rgb_to_lab
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
-from uplift.design.mixing import Ingredients, Medium, dispersive, make_coat, optics, overpainter
+from uplift.design.mixing import Ingredients, Medium, dispersive, make_coat
 from uplift.design.mixing.coats import ramp
 from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, Pigment, PowerOfReflectance, Scattering, from_opaque
 from uplift.design.mixing.theories import Mixer, mixers, spectral_models
@@ -32,9 +32,7 @@ ARTISTS = ("#002185", "#fcd200")
 """Cobalt blue and Hansa yellow, as Mixbox's table has them."""
 GREEN_MARGIN = 0.01
 """Excess of G over R and B, in linear RGB, that counts as green."""
-INDICES = (1.33, 1.48, 1.5, 1.66)
-"""Water, light oil, glass and linseed oil, heavy oil."""
-MIXTURES, PIXELS = 20_000, 1_000_000
+MIXTURES = 20_000
 RUNS = 5
 CHECKED = 20
 PAIRS = {
@@ -329,22 +327,6 @@ def mixture_times(cube: Cube) -> Iterator[Row]:
         yield {"mixer": mixer.title, "rgb": _ns(partial(mixer.mix, rgb, parts), MIXTURES), "spectra": spectral}
 
 
-def pixel_times(cube: Cube) -> list[Row]:
-    """Return nanoseconds of a coat over an image, and of a layer."""
-    spectrum, scattering = cube.reflectance(colour(cube, "red")), dispersive(cube.data.sensor)
-    coat = make_coat("pigment", Ingredients(spectrum[None]), [1], Medium(0.5, scattering=scattering))
-    brush = overpainter(cube, coat, threads=1)
-    image = np.random.default_rng(0).random((PIXELS, 3)).astype(np.float32)
-    grounds = cube.reflectance(image[:MIXTURES])
-    _check(brush.paint(image)[:CHECKED], cube.data.sensor.rgb(coat.over(grounds[:CHECKED])), 1e-5)
-    paint, thickness = from_opaque(spectrum[None], scattering), np.linspace(0.01, 3, MIXTURES)
-    layer = _ns(lambda: paint.mix([1]).layer(thickness).over(grounds), MIXTURES)
-    return [
-        {"operation": "coat over a painting, RGB to RGB", "ns": _ns(lambda: brush.paint(image), PIXELS)},
-        {"operation": "Kubelka–Munk layer on a ground, 81 wavelengths", "ns": layer},
-    ]
-
-
 def _check(found: Array, expected: Any, tolerance: float) -> None:
     """Raise `RuntimeError` unless what is timed gives the expected results."""
     if not np.allclose(found, expected, rtol=0, atol=tolerance):
@@ -358,16 +340,6 @@ def _ns(function: Callable[[], object], count: int) -> Spread:
     return cpu.scaled(1e9 / count)
 
 
-def surface(index: float) -> Row:
-    """Return the reflectance at normal incidence (9.3), for diffuse light (10.9), and for diffuse light from inside."""
-    return {
-        "index": index,
-        "perpendicular": float(optics.fresnel_reflectance(index)),
-        "diffuse": float(optics.diffuse_reflectance(index)),
-        "internal": float(optics.internal_reflectance(index)),
-    }
-
-
 def main() -> None:
     """Measure, draw and store."""
     cube, smooth = uplift.load(CUBES / "moments-16-macbeth.uplift"), uplift.load()
@@ -376,12 +348,9 @@ def main() -> None:
         "mixing",
         **criteria(cube),
         **compare_scattering(smooth, cube),
-        surfaces=[surface(index) for index in INDICES],
         runs=RUNS,
         mixtures=MIXTURES,
-        pixels=PIXELS,
         mixture_times=list(mixture_times(cube)),
-        pixel_times=pixel_times(cube),
     )
 
 

@@ -16,7 +16,6 @@ from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
 
 PICTURES = DOCS / "moments"
 FLOATS = (3, 5, 9, 13, 16)
-DEFAULT_FLOATS = 9
 Pair = list[float]
 """Mean and largest error."""
 Errors = Mapping[tuple[Technique, int], Pair]
@@ -45,8 +44,6 @@ def main() -> None:
             for count in counts
         ],
         lights=[under_lights(study, floats, one) for floats in FLOATS for one in TECHNIQUES],
-        by_atlas=[by_atlas(study, group) for group in study.groups],
-        worst=[{"floats": floats, "worst": worst_entries(study, floats)} for floats in FLOATS],
     )
 
 
@@ -89,21 +86,6 @@ def under_lights(study: MomentsStudy, floats: int, technique: Technique) -> dict
     _, *delta_e, rms = pairs(study, technique, max_moments(technique, floats))
     errors = dict(zip(REPORT_LIGHTS, delta_e, strict=True))
     return {"floats": floats, "technique": technique.short, "errors": errors, "rms": rms}
-
-
-def by_atlas(study: MomentsStudy, group: str) -> dict[str, Any]:
-    """Return the errors of an atlas with the default number of floats."""
-    errors = {one.short: pairs(study, one, max_moments(one, DEFAULT_FLOATS), group)[0] for one in TECHNIQUES}
-    return {"atlas": group, "entries": len(study.rows(group)), "errors": errors}
-
-
-def worst_entries(study: MomentsStudy, floats: int) -> dict[str, Any]:
-    """Return the entry with the largest ΔE76 of each technique."""
-    results = {one.short: study.result(one, max_moments(one, floats)) for one in TECHNIQUES}
-    return {
-        key: {"name": study.names[row], "atlas": study.atlases[row], "error": float(largest[0])}
-        for key, (_, largest, row) in results.items()
-    }
 
 
 if __name__ == "__main__":

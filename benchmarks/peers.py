@@ -25,7 +25,6 @@ from benchmarks import ROOT
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.common.errors import UpliftError
 from uplift.common.processes import ChildError, call_in_child
 from uplift.lab.chart.method import stopwatch
 from uplift.lab.timing import Spread, spread
@@ -215,44 +214,4 @@ def colour_science(runs: int) -> list[Peer]:
     return [Peer(tool, "sigmoid", 3, len(target), cpu, **answer, notes=notes)]
 
 
-def scipy_least_squares(runs: int) -> list[Peer]:
-    """Time scipy, a node at a time: multipliers with the exact Jacobian, and moments with numeric differences."""
-    from scipy.optimize import least_squares
-
-    model, points = Moments(9), 32
-    target = lattice().points[np.random.default_rng(16).choice(DIM**3, points, replace=False)]
-    basis, weights = model.basis(sensor().wavelengths), sensor().matrix
-
-    def residual(multipliers: Array, rgb: Array) -> Array:
-        return weights @ model.to_reflectance(basis @ multipliers) - rgb
-
-    def jacobian(multipliers: Array, rgb: Array) -> Array:
-        return (weights * model.derivative(basis @ multipliers)) @ basis
-
-    def residual_of_moments(moments: Array, rgb: Array) -> Array:
-        try:
-            return residual(model.from_storage(moments), rgb)
-        except UpliftError:  # numbers that are not moments are farther than any colour
-            return np.ones(3)
-
-    def in_multipliers() -> Array:
-        grey = np.zeros(model.count)
-        return np.stack([least_squares(residual, grey, jacobian, args=(rgb,)).x for rgb in target])
-
-    def in_moments() -> Array:
-        grey = model.to_storage(np.zeros(model.count))
-        return np.stack([least_squares(residual_of_moments, grey, args=(rgb,)).x for rgb in target])
-
-    tool, rows = f"scipy {version('scipy')} `least_squares`", []
-    for solve, least, notes in (
-        (in_multipliers, 0.95, "in p, exact Jacobian; every point from grey"),
-        (in_moments, 0.5, "in c, numeric differences; every point from grey"),
-    ):
-        solution, cpu = measured(solve, points, runs)
-        multipliers = model.from_storage(solution) if solve is in_moments else solution
-        answer = judge_multipliers(model, multipliers, target, least=least)
-        rows.append(Peer(tool, "moments", model.count, points, cpu, **answer, notes=notes))
-    return rows
-
-
-TOOLS = (ours, ceres, colour_science, scipy_least_squares)
+TOOLS = (ours, ceres, colour_science)

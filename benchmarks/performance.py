@@ -133,20 +133,10 @@ def time_processes() -> list[Row]:
 
 
 def time_lookups(cube: Any) -> list[Row]:
-    """Time every mode with numpy in both types, on one thread and on two, and for colours near those of the atlas."""
+    """Time every mode with numpy in both types, on one thread and on two."""
     rng = np.random.default_rng(1)
     random = product(COLOURS, ("float64", "float32"), (1, 2))
-    rows = [_lookup(cube, what, rng.random((COLOURS[what], 3)), dtype, threads) for what, dtype, threads in random]
-    for what, count in COLOURS.items():
-        row = _lookup(cube, what, near_entries(cube, count, rng), "float64", 1)
-        rows.append(row | {"what": f"{what}, colours near entries"})
-    return rows
-
-
-def near_entries(cube: Any, count: int, rng: np.random.Generator) -> Any:
-    """Draw linear RGB (n, 3) around the colours of the atlas entries, most of them in entry boxes."""
-    rgb = cube.data.atlas.rgb
-    return np.clip(rgb[rng.integers(len(rgb), size=count)] + rng.normal(0, 1e-3, (count, 3)), 0, 1)
+    return [_lookup(cube, what, rng.random((COLOURS[what], 3)), dtype, threads) for what, dtype, threads in random]
 
 
 def _lookup(cube: Any, what: str, rgb: Any, dtype: str, threads: int) -> Row:
@@ -162,14 +152,12 @@ def _lookup(cube: Any, what: str, rgb: Any, dtype: str, threads: int) -> Row:
 
 
 def time_bulk(cube: Any) -> list[Row]:
-    """Time JAX: spectra and coefficients of random colours, and spectra of colours near those of the atlas."""
-    rng = np.random.default_rng(1)
-    random, painted = rng.random((BULK, 3)), near_entries(cube, BULK, rng)
+    """Time JAX: spectra and coefficients of random colours."""
+    random = np.random.default_rng(1).random((BULK, 3))
     return [
         _bulk(cube, "spectra", random, 1),
         _bulk(cube, "spectra", random, 2),
         _bulk(cube, "spectra, float32 queries", random.astype(np.float32), 2),
-        _bulk(cube, "spectra, colours near entries", painted, 2),
         _bulk(cube, "coefficients", random, 2),
     ]
 

@@ -1,4 +1,4 @@
-"""Rates of textures in Mitsuba: evaluation, and rendering of a scene, for docs/render.md.
+"""Rates of textures in Mitsuba, rendering a scene, for docs/render.md.
 
 Every variant is measured in a child process, as an LLVM too old for Mitsuba ends it. All textures take turns in every
 round; a ratio is that of the CPU times of one round.
@@ -11,7 +11,6 @@ import tempfile
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,21 +25,11 @@ REFERENCE = "Mitsuba's bitmap"
 SIZE = 512
 """Rows and columns of the texture and of the image."""
 SPP = 8
-SAMPLES = 1 << 22
 ROUNDS = 5
 LIMIT = 3600
 """Seconds after which a variant counts as hung."""
 DEPTHS = (2, 5)
 PLAIN, ATLAS = (str(CUBES / f"moments-16{suffix}.uplift") for suffix in ("", "-macbeth"))
-
-
-@dataclass(frozen=True)
-class Work:
-    """What is measured: a name, the number of samples, and a function of a texture and a seed."""
-
-    name: str
-    samples: int
-    run: Callable[[Any, int], Callable[[], None]]
 
 
 def main() -> None:
@@ -54,7 +43,7 @@ def main() -> None:
             rows.append({"variant": variant, "work": None})
     import mitsuba
 
-    figures = {"size": SIZE, "samples": SAMPLES, "rounds": ROUNDS, "reference": REFERENCE}
+    figures = {"size": SIZE, "rounds": ROUNDS, "reference": REFERENCE}
     record("render-rates", mitsuba=mitsuba.__version__, **figures, rows=rows)
 
 
@@ -69,16 +58,16 @@ def measure(variant: str) -> list[dict[str, Any]]:
     register()
     with tempfile.TemporaryDirectory() as folder:
         textures = {name: mitsuba.load_dict(texture) for name, texture in _textures(Path(folder)).items()}
-    return [row for work in _works() for row in _rows(variant, work, textures)]
+    return [row for depth in DEPTHS for row in _rows(variant, depth, textures)]
 
 
-def _rows(variant: str, work: Work, textures: dict[str, Any]) -> Iterator[dict[str, Any]]:
+def _rows(variant: str, depth: int, textures: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    runs = {name: _rendering(texture, depth) for name, texture in textures.items()}
     seconds: dict[str, list[float]] = {name: [] for name in textures}
     for seed in range(ROUNDS + 1):
-        for name, texture in textures.items():
-            run = work.run(texture, seed)
+        for name, run in runs.items():
             begin = time.process_time()
-            run()
+            run(seed)
             if seed:  # the first compiles
                 seconds[name].append(time.process_time() - begin)
     reference = np.array(seconds[REFERENCE])
@@ -86,9 +75,9 @@ def _rows(variant: str, work: Work, textures: dict[str, Any]) -> Iterator[dict[s
         ratios = reference / each
         yield {
             "variant": variant,
-            "work": work.name,
+            "work": f"rendering, path depth {depth}",
             "texture": name,
-            "ns": 1e9 * float(np.median(each)) / work.samples,
+            "ns": 1e9 * float(np.median(each)) / (SIZE * SIZE * SPP),
             "rate": float(np.median(ratios)),
             "lowest": float(ratios.min()),
             "highest": float(ratios.max()),
@@ -128,47 +117,18 @@ def _image(size: int) -> Any:
     return (tiles * (1 - 0.1 * rng.random((size, size, 1)))).astype(np.float32)
 
 
-def _works() -> Iterator[Work]:
-    yield Work("evaluation at random places", SAMPLES, _evaluation)
-    for depth in DEPTHS:
-        yield Work(f"rendering, path depth {depth}", SIZE * SIZE * SPP, _rendering(depth))
-
-
-def _evaluation(texture: Any, seed: int) -> Callable[[], None]:
+def _rendering(texture: Any, depth: int) -> Callable[[int], None]:
+    """Return a function of a seed that renders the scene."""
     import drjit as dr
     import mitsuba as mi
 
-    generator = mi.PCG32(SAMPLES, initstate=seed)
-    si = dr.zeros(mi.SurfaceInteraction3f, SAMPLES)
-    si.uv = mi.Point2f(generator.next_float32(), generator.next_float32())
-    si.wavelengths = mi.Spectrum([380 + 400 * generator.next_float32() for _ in range(4)])
-    dr.eval(si.uv, si.wavelengths)
-    dr.sync_thread()
+    scene = mi.load_dict(_scene(texture, SIZE, depth))
 
-    def run() -> None:
-        dr.eval(dr.sum(dr.sum(texture.eval(si))))
+    def run(seed: int) -> None:
+        dr.eval(mi.render(scene, spp=SPP, seed=seed))
         dr.sync_thread()
 
     return run
-
-
-def _rendering(depth: int) -> Callable[[Any, int], Callable[[], None]]:
-    scenes: dict[int, Any] = {}
-
-    def start(texture: Any, seed: int) -> Callable[[], None]:
-        import drjit as dr
-        import mitsuba as mi
-
-        if id(texture) not in scenes:
-            scenes[id(texture)] = mi.load_dict(_scene(texture, SIZE, depth))
-
-        def run() -> None:
-            dr.eval(mi.render(scenes[id(texture)], spp=SPP, seed=seed))
-            dr.sync_thread()
-
-        return run
-
-    return start
 
 
 def _scene(texture: Any, size: int, depth: int) -> dict[str, Any]:

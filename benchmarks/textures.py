@@ -1,4 +1,4 @@
-"""Accuracy, speed and memory of spectral textures, for docs/textures.md and its picture."""
+"""Accuracy, speed and memory of spectral textures, for docs/textures.md."""
 
 from __future__ import annotations
 
@@ -12,13 +12,10 @@ import numpy as np
 import OpenEXR
 
 import uplift
-from benchmarks import CUBES, DOCS, MACBETH, record
+from benchmarks import CUBES, MACBETH, record
 from benchmarks.performance import UPLIFT
 from benchmarks.pictures import Picture, colour, pictures
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_2000, delta_e_rgb, lab
-from uplift.colorimetry.gamut import SRGB
-from uplift.colorimetry.srgb import to_display_codes
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.io import texture
 from uplift.io.mitsuba.texture_file import multipliers_of_rounded
@@ -26,7 +23,6 @@ from uplift.io.texture.uplifter import PixelEncoding
 from uplift.lab.timing import time_process
 from uplift.lookup import Cube
 from uplift.models import Moments, evaluate
-from uplift.viz.figure import new_figure, write_png
 
 FORMS: tuple[tuple[str, PixelEncoding, str], ...] = (
     ("spectrum_half", texture.Spectrum(), "half"),
@@ -114,48 +110,6 @@ def fewer_wavelengths(
     }
 
 
-LIGHTS = {"A": "tungsten", "FL11": "three-band fluorescent", "HP1": "high-pressure sodium"}
-DETAIL = (slice(0, 300), slice(60, 460))
-"""Rows and columns of the detail."""
-
-
-def draw_relit(cube: Cube, picture: Picture, path: Path) -> dict[str, float]:
-    """Write the figure, and return the mean ΔE00 between both methods by light."""
-    spectra = _spectra(cube, picture)
-    rgb = np.clip(picture.linear(), 0, 1)[DETAIL]
-    sensor = cube.data.sensor
-    figure = new_figure(10.2, 4.5)
-    panels = figure.subplots(2, len(LIGHTS) + 1)
-    _show(panels[0, 0], sensor.rgb(spectra), "D65, from the texture's spectra")
-    _show(panels[1, 0], rgb, "the image")
-    errors = {}
-    for (above, below), (name, what) in zip(panels[:, 1:].T, LIGHTS.items(), strict=True):
-        light = observer.light(name)
-        spectral = spectra @ light.xyz.T  # no adaptation, as of a camera balanced for daylight
-        colour = light.white @ sensor.xyz_to_rgb.T
-        product = (rgb * colour) @ np.linalg.inv(sensor.xyz_to_rgb).T
-        errors[name] = float(delta_e_2000(lab(spectral, light.white), lab(product, light.white)).mean())
-        _show(above, spectral @ sensor.xyz_to_rgb.T / colour.max(), f"{name}, {what}")
-        _show(below, rgb * colour / colour.max(), f"{name}, RGB × RGB: ΔE00 {errors[name]:.1f}")
-    write_png(figure, path, force=True)
-    return errors
-
-
-def _spectra(cube: Cube, picture: Picture) -> Array:
-    """Return the spectra (h, w, N) of the texture, read by OpenEXR."""
-    with tempfile.TemporaryDirectory() as folder:
-        uplifter = texture.prepare(cube)
-        texture.convert(uplifter, picture.path, Path(folder) / "texture.exr")
-        channels = OpenEXR.File(str(Path(folder) / "texture.exr"), separate_channels=True).channels()
-        return np.stack([channels[name].pixels[DETAIL] for name in uplifter.channels], axis=-1).astype(float)
-
-
-def _show(axes: Any, linear: Array, title: str) -> None:
-    axes.imshow(to_display_codes(linear, SRGB).astype(np.uint8))
-    axes.set_title(title, fontsize=9, loc="left")
-    axes.set_axis_off()
-
-
 FEW = ("--wavelengths", "400:700:10")
 JOBS: tuple[tuple[int, tuple[str, ...], int], ...] = (
     (2048, (), 3),
@@ -204,17 +158,16 @@ def time_textures(cube: Path, size: int, options: tuple[str, ...], runs: int) ->
 
 
 def main() -> None:
-    """Measure, draw and store."""
+    """Measure and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     # First: a process started from a large one counts the memory of its parent as its own.
     speed = [time_textures(CUBES / "moments-16-macbeth.uplift", *job) for job in JOBS]
     cube, images = uplift.build(MACBETH, dim=32), list(pictures())
-    relighting = draw_relit(cube, images[0], DOCS / "textures" / "relit.png")
     with tempfile.TemporaryDirectory() as folder:
         target = Path(folder) / "texture.exr"
         found = list(round_trips(cube, images, target))
         fewer = [fewer_wavelengths(cube, images, target, *grid) for grid in GRIDS]
-    record("textures", relighting=relighting, round_trips=found, wavelengths=fewer, speed=speed)
+    record("textures", round_trips=found, wavelengths=fewer, speed=speed)
 
 
 if __name__ == "__main__":

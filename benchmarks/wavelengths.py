@@ -14,15 +14,13 @@ from benchmarks import ATLASES, DOCS, MACBETH, read_reference, record
 from uplift.atlas import on_grid
 from uplift.colorimetry.delta_e import delta_e_1976, lab
 from uplift.common.arrays import Array
-from uplift.scene.quadrature import QuadratureRule, UndefinedRule, gauss_rule
+from uplift.scene.quadrature import QuadratureRule, UndefinedRule
 from uplift.scene.wavelengths import METHODS, ColourErrors, choose, grid, make_setup
 from uplift.scene.wavelengths import meyer as paper
 from uplift.scene.wavelengths.sampling import RenderSetup, evaluate
 from uplift.viz.figure import GREY, INK, STYLE, new_figure, style_axes, write_png
 
 CHANNELS = ("A", "C1", "C2")
-STEPS = {"100 steps of 3.9 nm": paper.POINTS, "1 nm": np.arange(380.0, 771.0), "5 nm": np.arange(380.0, 771.0, 5)}
-"""Grids of the sums from 380 to 770 nm."""
 OPTIMISED, FITTED = "optimised", "fitted"
 OTHERS = ("meyer", "uniform", "bins")
 """Methods that are not fitted to materials."""
@@ -103,7 +101,6 @@ def compare_meyer(setup: RenderSetup, opponent: paper.ChannelSpace) -> Row:
     ]
     return {
         "opponent": matrices(setup, opponent),
-        "summation": {name: summation(setup, space, points, expected) for name, points in STEPS.items()},
         "weight_factor": factor,
         "nodes": [node_row(key, order, rule, expected.get((key, str(order)))) for key, order, rule in orders],
         "weights": weights,
@@ -131,16 +128,6 @@ def node_row(channel: str, order: int, rule: QuadratureRule | UndefinedRule, exp
     if isinstance(rule, QuadratureRule):
         return row | compared(expected[0], rule.nodes) | {"undefined": None}
     return row | {"printed": expected and expected[0], "ours": None, "difference": None, "undefined": rule.reason}
-
-
-def summation(
-    setup: RenderSetup, space: paper.ChannelSpace, points: Array, expected: Mapping[tuple[str, str], Nodes]
-) -> float:
-    """Return the largest difference from the printed wavelengths with sums over ``points``, in nm."""
-    functions = space.matrix @ np.stack([np.interp(points, setup.wavelengths, cmf) for cmf in setup.cmfs.T])
-    rules = {key: gauss_rule(points, functions[space.channels.index(key[0])], int(key[1])) for key in expected}
-    differences = [rule.nodes - expected[key][0] for key, rule in rules.items() if isinstance(rule, QuadratureRule)]
-    return float(np.abs(np.concatenate(differences)).max())
 
 
 def four_wavelengths(

@@ -1,4 +1,4 @@
-"""Programs of pages whose computations nothing else tests: matrices of cameras, closed cells, the scan, skies."""
+"""Programs of pages whose computations nothing else tests: matrices of cameras, closed cells, the scan."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ RENDERED = render_docs.pages()
 
 @pytest.mark.parametrize("name", pages())
 def test_every_program_can_be_imported(name):
-    if name in ("render", "render-rates", "environment", "look-cubes", "showcase"):
+    if name in ("render", "render-rates", "look-cubes", "showcase"):
         need(MITSUBA)
     assert callable(importlib.import_module(f"benchmarks.{name.replace('-', '_')}").main)
 

@@ -10,11 +10,9 @@ from tests.parts import MITSUBA, need
 
 need(MITSUBA)
 
-from benchmarks import environment
 from benchmarks import render as demo
 from benchmarks.checker import Layout, chart, measured_spectra, start_mitsuba
-from uplift.colorimetry.observer import lamps, light
-from uplift.lights.lookup import load_emission
+from uplift.colorimetry.observer import light
 
 LAYOUT, SPP = Layout(patch=4, gap=2), 32
 
@@ -52,14 +50,3 @@ def test_cube_with_atlas_has_less_than_half_the_error_of_mitsuba(painted, render
             renders.delta_e[name, method][~painted.outside].mean() for method in (demo.ATLAS, demo.MITSUBA)
         )
         assert cube < mitsuba / 2
-
-
-def test_skies_are_mixtures_of_their_lights():
-    known = lamps()
-    for sky in environment.SKIES:
-        power = sky.power().reshape(-1, known.power.shape[1])
-        basis = np.array([known.power[known.names.index(name)] for name in sky.lamp_names])
-        weights, *_ = np.linalg.lstsq(basis.T, power.T, rcond=None)
-        assert weights.min() > -1e-9
-        np.testing.assert_allclose(weights.T @ basis, power, atol=1e-8)
-        assert load_emission().contains(load_emission().rgb(power)).all()
