@@ -23,14 +23,7 @@ PIXELS = 320  # pixels of a picture along u′
 WAVELENGTHS = (460, 480, 490, 500, 510, 520, 540, 560, 580, 600, 620, 700)
 FADED = 0.35  # opacity of colours below names
 MARGIN = 0.012  # u′v′ between the lamps and the edge of their window
-LAMP: dict[str, Any] = {
-    "linestyle": "none",
-    "marker": "o",
-    "markersize": 4.5,
-    "markerfacecolor": "white",
-    "markeredgecolor": INK,
-    "markeredgewidth": 0.8,
-}
+LAMP: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 4.5, "mfc": "white", "mec": INK, "mew": 0.8}
 
 
 @dataclass(frozen=True)

@@ -90,9 +90,9 @@ def _facts(cube: Cube) -> dict[str, str]:
 def _swatches(cube: Cube) -> Markup:
     names = cube.atlas_names[:MAX_SWATCHES]
     rgb: Array = cube.data.atlas.rgb[:MAX_SWATCHES]
+    swatch, codes = Markup("<span title='{}' style='{}{}'></span>"), hex_codes(rgb, cube.data.sensor)
     swatches = Markup().join(
-        Markup("<span title='{}' style='{}{}'></span>").format(printable(name), SWATCH, code)
-        for name, code in zip(names, hex_codes(rgb, cube.data.sensor), strict=True)
+        swatch.format(printable(name), SWATCH, code) for name, code in zip(names, codes, strict=True)
     )
     more = len(cube.atlas_names) - len(names)
     return swatches + escape(f" and {more} more" if more else "")

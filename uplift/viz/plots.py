@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +13,7 @@ from uplift.colorimetry.gamut import SRGB, Gamut
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, StrPath
 from uplift.lookup import Bounds, Cube, QueryResult
 from uplift.lookup.light_errors import LIKELY
 from uplift.viz.figure import (
@@ -32,50 +31,43 @@ from uplift.viz.figure import (
 MAX_LEGEND = 12  # largest number of lines with a legend
 
 
-def plot_spectra(
-    cube: Cube, results: Sequence[QueryResult], path: str | os.PathLike[str], *, force: bool = False
-) -> None:
+def plot_spectra(cube: Cube, results: Sequence[QueryResult], path: StrPath, *, force: bool = False) -> None:
     """Plot reflectances over wavelength as PNG, SVG or PDF, each in its own colour."""
     figure = new_figure(7.2, 4.0)
     axes = figure.subplots()
-    for result in results:
-        codes = "".join(f"{round(code):02x}" for code in cube.encode(result.rgb).tolist())
-        colour = tuple(to_display_codes(result.rgb, cube.data.sensor) / 255)
-        axes.plot(result.wavelengths, result.reflectance, color="0.25", linewidth=3.4, solid_capstyle="round")
-        axes.plot(
-            result.wavelengths,
-            result.reflectance,
-            color=colour,
-            linewidth=2.4,
-            label=figure_text(result.entry or f"#{codes}"),
-        )
+    codes = cube.encode(np.array([each.rgb for each in results])).round().astype(np.uint8)
+    for result, code in zip(results, codes, strict=True):
+        label = result.entry or f"#{code.tobytes().hex()}"
+        _plot_curve(axes, result.wavelengths, result.reflectance, to_display_codes(result.rgb, cube.data.sensor), label)
     style_spectrum_axes(axes)
-    if len(results) <= MAX_LEGEND:
-        axes.legend(frameon=False)
-    write_figure(figure, path, force=force)
+    _write_curves(figure, len(results), path, force)
 
 
 def plot_lights(
-    lights: Sequence[tuple[Array, Array, Array]],
-    gamut: Gamut,
-    path: str | os.PathLike[str],
-    *,
-    force: bool = False,
+    lights: Sequence[tuple[Array, Array, Array]], gamut: Gamut, path: StrPath, *, force: bool = False
 ) -> None:
     """Plot spectral powers over wavelength as PNG, SVG or PDF, each in its own colour."""
     figure = new_figure(7.2, 4.0)
     axes = figure.subplots()
     for rgb, wavelengths, power in lights:
-        colour = tuple(to_display_codes(np.clip(rgb / max(rgb.max(), 1e-300), 0, 1), gamut) / 255)
+        brightest = np.clip(rgb / max(rgb.max(), 1e-300), 0, 1)
         label = " ".join(f"{value:.4g}" for value in rgb)
-        axes.plot(wavelengths, power, color="0.25", linewidth=3.4, solid_capstyle="round")
-        axes.plot(wavelengths, power, color=colour, linewidth=2.4, label=figure_text(label))
+        _plot_curve(axes, wavelengths, power, to_display_codes(brightest, gamut), label)
     axes.set(xlabel="wavelength / nm", ylabel="power")
     axes.set_ylim(bottom=0)
     axes.margins(x=0.01)
     style_axes(axes)
-    if len(lights) <= MAX_LEGEND:
-        axes.legend(frameon=False)
+    _write_curves(figure, len(lights), path, force)
+
+
+def _plot_curve(axes: Any, wavelengths: Array, values: Array, codes: Array, label: str) -> None:
+    axes.plot(wavelengths, values, color="0.25", linewidth=3.4, solid_capstyle="round")
+    axes.plot(wavelengths, values, color=tuple(codes / 255), linewidth=2.4, label=figure_text(label))
+
+
+def _write_curves(figure: Any, count: int, path: StrPath, force: bool) -> None:
+    if count <= MAX_LEGEND:
+        figure.axes[0].legend(frameon=False)
     write_figure(figure, path, force=force)
 
 
@@ -91,7 +83,7 @@ class Strip:
     codes: Array
 
 
-def plot_strips(strips: Sequence[Strip], path: str | os.PathLike[str], *, force: bool = False) -> None:
+def plot_strips(strips: Sequence[Strip], path: StrPath, *, force: bool = False) -> None:
     """Plot strips of colour below one another as PNG, SVG or PDF."""
     figure = new_figure(WIDTH, len(strips) * (HEIGHT + TITLE_HEIGHT) + 0.1)
     for axes, strip in zip(figure.subplots(len(strips), 1, squeeze=False)[:, 0], strips, strict=True):
@@ -108,9 +100,7 @@ MARGIN = 0.06  # space around a region, as a share of its size
 MIN_EXTENT = 5.0  # smallest extent of an axis in a* or b*
 
 
-def plot_bounds(
-    cube: Cube, blocks: Sequence[Sequence[Bounds]], path: str | os.PathLike[str], *, force: bool = False
-) -> None:
+def plot_bounds(cube: Cube, blocks: Sequence[Sequence[Bounds]], path: StrPath, *, force: bool = False) -> None:
     """Plot the region of each colour under each light, as PNG, SVG or PDF: a row per colour, a column per light."""
     panels = [(found, row) for found in blocks for row in range(len(found[0].xyz))][:MAX_COLOURS]
     names = [each.light.name for each in panels[0][0]]

@@ -89,14 +89,10 @@ def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array)
         end = (corner[0] + size[0] * is_left, corner[1])
         text.set(position=end, horizontalalignment="right" if is_left else "left")
         text.xy = end
-        _join(axes, np.clip(anchor, corner, corner + size), anchor)
-
-
-def _join(axes: Any, end: Array, start: Array) -> None:
-    if np.linalg.norm(end - start) > _MAX_DISTANCE:
-        style = {"arrowstyle": "-", "color": GREY, "linewidth": 0.5}
-        units = {"xycoords": "figure points", "textcoords": "figure points"}
-        axes.annotate("", end, start, arrowprops=style, zorder=1, **units)
+        nearest = np.clip(anchor, corner, corner + size)
+        if np.linalg.norm(nearest - anchor) > _MAX_DISTANCE:
+            style = {"arrowstyle": "-", "color": GREY, "linewidth": 0.5}
+            axes.annotate("", nearest, anchor, "figure points", "figure points", style, zorder=1)
 
 
 DISTANCES = (6.0, 9.0, 14.0, 20.0, 28.0, 38.0)  # points between a marker and its label

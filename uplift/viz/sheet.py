@@ -9,9 +9,9 @@ and the frequent regular nodes are inconspicuous.
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry.srgb import decode, encode
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array, Mask, StrPath
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write, check_output
 from uplift.cube.data import CubeData
@@ -30,17 +30,13 @@ from uplift.viz.format import pluralise
 
 TEXT_GREY = 0.75  # linear grey of the text
 DPI = 64  # A power of two: division is exact, so the canvas of the text has the size of the sheet
-STYLE: dict[str, Any] = {
-    "family": "DejaVu Sans",  # comes with matplotlib
-    "va": "center_baseline",
-    "usetex": False,
-    "parse_math": False,
-}
+# The font comes with matplotlib.
+STYLE: dict[str, Any] = {"family": "DejaVu Sans", "va": "center_baseline", "usetex": False, "parse_math": False}
 
 Image = NDArray[np.float32]
 
 
-def write_sheet(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
+def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
     """Write the contact sheet of a cube: linear RGB in a single-part ``.exr``, or sRGB in a ``.png``.
 
     Panels show lattice RGB, fitting distance, status, standard error (of cubes with an atlas) and round (with debug
@@ -49,31 +45,10 @@ def write_sheet(data: CubeData, path: str | os.PathLike[str], *, force: bool = F
     check_sheet(path, force=force)
     sheet = compose(data)
     image = _draw_text(sheet.image, sheet.labels)
-    WRITERS[_suffix(path)](image, data, Path(path), force)
-
-
-def check_sheet(path: str | os.PathLike[str], *, force: bool = False) -> None:
-    """Check that `write_sheet` can write a file, before long work."""
-    if _suffix(path) not in WRITERS:
-        raise OutputError(
-            "the name of a sheet must end in .exr or .png",
-            code="unknown-suffix",
-            path=path,
-            hint="name the file .exr or .png",
-        )
-    check_output(path, force=force)
-
-
-def _suffix(path: str | os.PathLike[str]) -> str:
-    return Path(path).suffix.lower()
-
-
-def _write_exr(image: Image, data: CubeData, path: Path, force: bool) -> None:
-    channels = {letter: image[..., i] for i, letter in enumerate("RGB")}
-    exr.write_parts([exr.make_part("sheet", exr.attributes(data), channels)], path, force=force)
-
-
-def _write_png(image: Image, data: CubeData, path: Path, force: bool) -> None:
+    if Path(path).suffix.lower() == ".exr":
+        channels = {letter: image[..., i] for i, letter in enumerate("RGB")}
+        exr.write_parts([exr.make_part("sheet", exr.attributes(data), channels)], path, force=force)
+        return
     from matplotlib.image import imsave
 
     codes = np.rint(255 * encode(image)).astype(np.uint8)
@@ -82,7 +57,12 @@ def _write_png(image: Image, data: CubeData, path: Path, force: bool) -> None:
         imsave(temporary, codes, format="png", metadata={"Software": "uplift"})
 
 
-WRITERS = {".exr": _write_exr, ".png": _write_png}
+def check_sheet(path: StrPath, *, force: bool = False) -> None:
+    """Check that `write_sheet` can write a file, before long work."""
+    if Path(path).suffix.lower() not in (".exr", ".png"):
+        problem, hint = "the name of a sheet must end in .exr or .png", "name the file .exr or .png"
+        raise OutputError(problem, code="unknown-suffix", path=path, hint=hint)
+    check_output(path, force=force)
 
 
 def _draw_text(image: Image, labels: tuple[Label, ...]) -> Image:
@@ -124,62 +104,31 @@ class Sheet:
     labels: tuple[Label, ...]
 
 
-@dataclass(frozen=True)
 class Layout:
     """Positions in pixels from the top left, for a number of panels with ``dim`` tiles each."""
 
-    dim: int
-    panels: int
-
-    @property
-    def columns(self) -> int:
-        """Tiles per row of a panel."""
-        return math.ceil(math.sqrt(self.dim))
-
-    @property
-    def rows(self) -> int:
-        """Rows of tiles in a panel."""
-        return math.ceil(self.dim / self.columns)
-
-    @property
-    def scale(self) -> int:
-        """Width of a node in pixels."""
-        return max(1, round(PANEL / (self.columns * self.dim)))
-
-    @property
-    def pitch(self) -> int:
-        """Distance from tile to tile."""
-        return self.dim * self.scale + GAP
-
-    @property
-    def panel(self) -> tuple[int, int]:
-        """Width and height of a panel's tiles."""
-        return self.columns * self.pitch - GAP, self.rows * self.pitch - GAP
-
-    @property
-    def em(self) -> int:
-        """Height of the text; all spacing around it is a multiple."""
-        return max(13, self.panel[0] // 48)
-
-    @property
-    def panels_per_row(self) -> int:
-        """Panels per row of the sheet."""
-        return PANELS_PER_ROW[self.panels]
-
-    @property
-    def block(self) -> tuple[int, int]:
-        """Distance from panel to panel: title, tiles, legend and spacing."""
-        return self.panel[0] + 3 * self.em, self.panel[1] + (5 + 2 * LINES) * self.em
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """Width and height of the sheet."""
-        down = math.ceil(self.panels / self.panels_per_row)
-        return self.panels_per_row * self.block[0] + self.em, down * self.block[1] + 4 * self.em
+    def __init__(self, dim: int, panels: int) -> None:
+        self.dim = dim
+        self.columns = math.ceil(math.sqrt(dim))  # tiles per row of a panel
+        self.rows = math.ceil(dim / self.columns)
+        self.scale = max(1, round(PANEL / (self.columns * dim)))  # width of a node
+        self.pitch = dim * self.scale + GAP  # distance from tile to tile
+        self.panel = (
+            self.columns * self.pitch - GAP,
+            self.rows * self.pitch - GAP,
+        )  # width and height of a panel's tiles
+        self.em = max(13, self.panel[0] // 48)  # height of the text; all spacing around it is a multiple
+        # Distance from panel to panel: title, tiles, legend and spacing
+        self.block = self.panel[0] + 3 * self.em, self.panel[1] + (5 + 2 * LINES) * self.em
+        self.across = PANELS_PER_ROW[panels]
+        self.size = (
+            self.across * self.block[0] + self.em,
+            math.ceil(panels / self.across) * self.block[1] + 4 * self.em,
+        )
 
     def origin(self, panel: int) -> tuple[int, int]:
         """Return the top left pixel of a panel's tiles."""
-        row, column = divmod(panel, self.panels_per_row)
+        row, column = divmod(panel, self.across)
         return 2 * self.em + column * self.block[0], 7 * self.em + row * self.block[1]
 
     def tile(self, panel: int, blue: int) -> tuple[int, int]:
@@ -187,6 +136,12 @@ class Layout:
         row, column = divmod(blue, self.columns)
         x, y = self.origin(panel)
         return x + column * self.pitch, y + row * self.pitch
+
+    def keys(self, panel: int) -> Iterator[tuple[int, int]]:
+        """Yield the top left pixels of keys below a panel: the left column, then the right one."""
+        x, y = self.origin(panel)
+        for half, line in product(range(2), range(LINES)):
+            yield x + half * self.panel[0] // 2, y + self.panel[1] + (1 + 2 * line) * self.em
 
 
 def compose(data: CubeData) -> Sheet:
@@ -202,7 +157,7 @@ def compose(data: CubeData) -> Sheet:
             _paint(image, layout.tile(number, blue), large)
         x, y = layout.origin(number)
         labels.append(Label(x, y - em, panel.title, 1.2 * em))
-        for key, (left, top) in zip(panel.keys, _key_positions(layout, number), strict=False):
+        for key, (left, top) in zip(panel.keys, layout.keys(number), strict=False):
             width = em if len(key.colours) == 1 else 6 * em  # a square, or a strip for a ramp
             strip = key.colours[np.arange(width) * len(key.colours) // width]
             _paint(image, (left, top), np.broadcast_to(strip, (em, width, 3)))
@@ -214,15 +169,6 @@ def _paint(image: NDArray[np.float32], corner: tuple[int, int], patch: Array) ->
     x, y = corner
     height, width = patch.shape[:2]
     image[y : y + height, x : x + width] = patch
-
-
-def _key_positions(layout: Layout, number: int) -> Iterator[tuple[int, int]]:
-    """Yield the top left pixels of keys below a panel: the left column, then the right one."""
-    x, y = layout.origin(number)
-    width, height = layout.panel
-    for index in range(2 * LINES):
-        half, line = divmod(index, LINES)
-        yield x + half * width // 2, y + height + (1 + 2 * line) * layout.em
 
 
 def _heading(data: CubeData, layout: Layout) -> Label:
@@ -280,10 +226,8 @@ def panels(data: CubeData) -> tuple[Panel, ...]:
     if data.points.round is not None:
         quantities.append(_round_panel(data.points.round, data.points.round[data.points.present] < 0))
     present = data.points.present[:, None]
-    return tuple(
-        replace(panel, colours=np.where(present, panel.colours, panel.colours.dtype.type(BACKGROUND)))
-        for panel in quantities
-    )
+    background = [np.where(present, each.colours, each.colours.dtype.type(BACKGROUND)) for each in quantities]
+    return tuple(replace(panel, colours=colours) for panel, colours in zip(quantities, background, strict=True))
 
 
 def _rgb_panel(data: CubeData) -> Panel:
@@ -297,13 +241,8 @@ def _distance_panel(data: CubeData) -> Panel:
     within = np.clip(data.points.distance / data.threshold, 10.0**-DECADES, 1)
     over = data.points.distance > data.threshold
     low, high = data.threshold / 10**DECADES, data.threshold
-    keys = (
-        Key(_ramp(KEY_STEPS), f"{low:g} or less to {high:g}, logarithmic"),
-        Key(
-            HIGHLIGHT,
-            f"over the threshold: {_count(over)}; largest distance {data.points.distance.max():.2g}",
-        ),
-    )
+    exceeding = f"over the threshold: {_count(over)}; largest distance {data.points.distance.max():.2g}"
+    keys = Key(_ramp(KEY_STEPS), f"{low:g} or less to {high:g}, logarithmic"), Key(HIGHLIGHT, exceeding)
     return Panel("Fitting distance", _highlight_where(over, 1 + np.log10(within) / DECADES), keys)
 
 
@@ -320,10 +259,7 @@ def _error_panel(errors: NDArray[np.float32], light: str) -> Panel:
 
 def _round_panel(rounds: NDArray[np.int16], not_fitted: Mask) -> Panel:
     none, last = rounds < 0, max(int(rounds.max()), 0)
-    keys = (
-        Key(_ramp(KEY_STEPS), f"0 to {last}"),
-        Key(HIGHLIGHT, f"fitted in no round: {_count(not_fitted)}"),
-    )
+    keys = Key(_ramp(KEY_STEPS), f"0 to {last}"), Key(HIGHLIGHT, f"fitted in no round: {_count(not_fitted)}")
     return Panel("Round", _highlight_where(none, rounds / max(last, 1)), keys)
 
 
