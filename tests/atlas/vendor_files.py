@@ -93,12 +93,12 @@ class Vendor:
 
 
 def archive(text: str) -> bytes:
-    """Return an archive of parts, each below a line with its name."""
+    """Return an archive of parts, each below a line with its name; their lines become one, as programs write them."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as parts:
         for part in re.split(r"^=== ", text, flags=re.MULTILINE)[1:]:
             name, _, content = part.partition("\n")
-            parts.writestr(name, content.strip())
+            parts.writestr(name, content.replace("\n", ""))
     return buffer.getvalue()
 
 
