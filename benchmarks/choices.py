@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from uplift.lab.study.held_out import CENTROID, HALF, LOCAL_LINEAR, NO_ATLAS
+from uplift.lab.study.held_out import HALF, LOCAL_LINEAR, NO_ATLAS
 
 CHOSEN_ON = ("rawtoaces", "babelcolor", "pmc", "tcs", "vs")
 SHIPPED = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017", "tcs", "vs")
@@ -38,7 +38,7 @@ CHOICES = (
     Choice(
         "local-linear regression: regressors, criterion and ridge",
         ("rawtoaces", "cie2017"),
-        (LOCAL_LINEAR, CENTROID),
+        (LOCAL_LINEAR,),
     ),
 )
 

@@ -39,15 +39,12 @@ from uplift.fit.families import LENGTH, NUGGET, shipped_library
 from uplift.lab.chart.measure import select_methods
 from uplift.lab.chart.method import make_task
 from uplift.lab.study.held_out import (
-    CENTROID,
     HALF,
     LOCAL_LINEAR,
-    NEIGHBOURS,
     NO_ATLAS,
     SIGMOID,
     HoldoutSplit,
     holdout,
-    mismatch_centroids,
     random_halves,
     spectrum_errors,
 )
@@ -89,8 +86,8 @@ def main() -> None:
         halves=[row for key, found in splits.items() for row in halves(*key, found)],
         light_splits=SPLITS,
         standard_errors=[
-            *(quartiles(*key, pairs) for key, pairs in known.items()),
-            *(quartiles(label, 9, pairs) for label, pairs in others.items()),
+            *(coverage(*key, pairs) for key, pairs in known.items()),
+            *(coverage(label, 9, pairs) for label, pairs in others.items()),
         ],
         light_errors=[
             {"atlas": name, "coefficients": count, "covered": covered(pairs)} for (name, count), pairs in known.items()
@@ -101,7 +98,6 @@ def main() -> None:
         "held-out",
         lights=list(HELD_OUT_LIGHTS),
         splits=SPLITS,
-        neighbours=NEIGHBOURS,
         choices=[asdict(choice) for choice in CHOICES],
         sets=[compare_methods(name) for name in SETS],
     )
@@ -165,19 +161,17 @@ def stated(pairs: Pairs, light: Light) -> tuple[Array, Array]:
     return found, (found[0] <= found[1:]).T
 
 
-def quartiles(label: str, count: int, pairs: Pairs) -> Row:
-    """Return the coverage under the light of the nodes, overall and by quartile of the standard error."""
-    found, within = stated(pairs, observer.light(pairs[0][0].data.error_illuminant))
+def coverage(label: str, count: int, pairs: Pairs) -> Row:
+    """Return the coverage under the light of the nodes."""
+    found, _ = stated(pairs, observer.light(pairs[0][0].data.error_illuminant))
     overall = check_calibration(*found)
     assert overall is not None
-    by_size = np.array_split(found[1].argsort(kind="stable"), 4)
     return {
         "atlas": label,
         "coefficients": count,
         "all": [overall.actual, overall.predicted],
         "within_error": overall.within_error,
         "within_bound": overall.within_bound,
-        "quartiles": [within[rows].mean(axis=0) for rows in by_size],
     }
 
 
@@ -194,7 +188,6 @@ def compare_methods(name: str) -> Row:
         OURS: pooled(learnt, HALF),
         OURS_SMOOTH: pooled(smooth, HALF),
         LOCAL_LINEAR: pooled(learnt, LOCAL_LINEAR),
-        CENTROID: pooled(learnt, CENTROID),
         ALONE: pooled(learnt, NO_ATLAS),
         ALONE_SMOOTH: pooled(smooth, NO_ATLAS),
         SIGMOID: pooled(learnt, SIGMOID),
@@ -203,12 +196,10 @@ def compare_methods(name: str) -> Row:
     for method, answers in published(some).items():
         found[method] = spectrum_errors(answers, some.measured).means()
     means = {method: float(np.mean(values[1:])) for method, values in found.items()}
-    kept, held_out = random_halves(len(some.rgb), 0)
-    centroids = mismatch_centroids(SENSOR, some.measured[kept], some.rgb[held_out], [SENSOR.light])
     rows = [
         {
             "method": method,
-            "rms": None if np.isnan(values[0]) else values[0],
+            "rms": values[0],
             "mean": means[method],
             "errors": as_record(values)["errors"],
             "best": means[method] == min(means.values()),
@@ -216,8 +207,7 @@ def compare_methods(name: str) -> Row:
         }
         for method, values in found.items()
     ]
-    without = np.isnan(centroids[:, 0, 0]).mean()
-    return {"set": name, "spectra": len(some.rgb), "without_metamer": without, "rows": rows}
+    return {"set": name, "spectra": len(some.rgb), "rows": rows}
 
 
 @cache

@@ -139,8 +139,7 @@ def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, s
     with cubes of moments and of sigmoids that have no atlas, and the predicted and the actual standard errors.
     The prior does not know the families of its library that contain spectra of the atlas.
 
-    Two plain baselines know the same half: a local-linear regression of reflectance on RGB, and the centroid of the
-    colours that mixtures of the known materials have under a light (Zhang, Funt & Mirzaei 2016).
+    A plain baseline knows the same half: a local-linear regression of reflectance on RGB.
 
     \b
     Examples:

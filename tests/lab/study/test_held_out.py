@@ -18,11 +18,8 @@ from uplift.lab.study import held_out
 from uplift.lab.study.held_out import (
     HoldoutSplit,
     SpectrumErrors,
-    centroid,
     holdout,
     local_linear,
-    mismatch_centroids,
-    mixtures,
     split_records,
 )
 from uplift.lookup.refine import with_colours
@@ -121,26 +118,3 @@ def test_local_linear_has_the_least_leave_one_out_error_and_the_queried_colours(
     found = local_linear(data, some, rgb)
     np.testing.assert_allclose(found, predict(some, rgb, best), atol=1e-12)
     np.testing.assert_allclose(data.sensor.rgb(found), rgb, atol=1e-6)
-
-
-def test_centroid_of_a_tetrahedron_and_of_a_flat_body():
-    corners = np.concatenate([np.zeros((1, 3)), np.eye(3)])
-    np.testing.assert_allclose(centroid(corners), [0.25] * 3)
-    np.testing.assert_allclose(centroid(np.concatenate([corners, [[0.1, 0.1, 0.1]]])), [0.25] * 3)
-    np.testing.assert_allclose(centroid(np.eye(3)), [1 / 3] * 3)
-
-
-def test_mixtures_have_the_colour_and_their_centroid_too(sensor, known):
-    colours = sensor.rgb(known[:10])
-    rgb = colours.mean(axis=0)
-    corners, weights = mixtures(colours, rgb)
-    assert len(corners) >= 4
-    np.testing.assert_allclose(np.einsum("vk,vkc->vc", weights, colours[corners]), rgb + 0 * corners[:, :3], atol=1e-9)
-    own = mismatch_centroids(sensor, known[:10], rgb[None], [sensor.light])
-    np.testing.assert_allclose(own[0, 0], sensor.xyz(rgb), atol=1e-6)
-
-
-def test_colours_that_no_mixture_has_are_nan(sensor):
-    grey = np.linspace(0.2, 0.6, 6)[:, None] * np.ones(len(sensor.wavelengths))
-    red = np.array([[0.6, 0.1, 0.1]])
-    assert np.isnan(mismatch_centroids(sensor, grey, red, [observer.light("A")])).all()

@@ -1,22 +1,21 @@
-"""Errors on held-out measurements: cubes and plain baselines that know half of an atlas predict the other half."""
+"""Errors on held-out measurements: cubes and a plain baseline that know half of an atlas predict the other half."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations, product
+from itertools import product
 from typing import Any
 
 import numpy as np
-from scipy.spatial import ConvexHull, Delaunay, QhullError
 from scipy.spatial.distance import cdist
 
 from uplift.atlas import Atlas, resample
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_2000, delta_e_spectra, lab, rgb_to_lab
+from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS, SCENE_LIGHTS
-from uplift.colorimetry.sensor import Light, Sensor
+from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
@@ -30,15 +29,15 @@ from uplift.report.measures import check_calibration
 MIN_ENTRIES = 8
 """Fewest entries within the RGB space of an atlas that is split."""
 HALF, NO_ATLAS, SIGMOID = "half the atlas", "without an atlas", "sigmoid"
-LOCAL_LINEAR, CENTROID = "local-linear regression", "centroid of mismatch"
-"""Names of cubes and of baselines, which know the same half of the atlas."""
+LOCAL_LINEAR = "local-linear regression"
+"""Names of cubes, and of a baseline that knows the same half of the atlas."""
 
 
 @dataclass(frozen=True, eq=False)
 class SpectrumErrors:
     """Errors of n predicted spectra.
 
-    ``rms`` (n,): root mean square over wavelength; NaN for a method that predicts colours only.
+    ``rms`` (n,): root mean square over wavelength.
     ``delta_e`` (n, L): ΔE00 under L lights.
     """
 
@@ -54,7 +53,7 @@ class SpectrumErrors:
 class HoldoutSplit:
     """One split of an atlas and the errors on its held-out half of n entries.
 
-    ``errors``: errors by the name of the cube or baseline.
+    ``errors``: errors by the name of the cube or of the baseline.
     ``actual`` (n,): ΔE00 of the cube with half the atlas, under its reference illuminant.
     ``predicted``, ``bound`` (n,): standard errors and error bounds that this cube predicts, if it has any.
     """
@@ -100,7 +99,7 @@ def random_halves(count: int, seed: int) -> tuple[Indices, Indices]:
 
 
 def _evaluate(cubes: dict[str, Cube], known: Array, measured: Array) -> HoldoutSplit:
-    """Predict reflectances (n, N) by cubes, and by baselines that know others (E, N)."""
+    """Predict reflectances (n, N) by cubes, and by a baseline that knows others (E, N)."""
     cube = cubes[HALF]
     sensor = cube.data.sensor
     rgb = np.clip(sensor.rgb(measured), 0, 1)
@@ -108,7 +107,7 @@ def _evaluate(cubes: dict[str, Cube], known: Array, measured: Array) -> HoldoutS
     errors = {name: spectrum_errors(spectra, measured) for name, spectra in predicted.items()}
     light = observer.light(cube.data.error_illuminant, sensor.observer)
     return HoldoutSplit(
-        errors | baseline_errors(cube.data, known, measured),
+        errors | {LOCAL_LINEAR: spectrum_errors(local_linear(cube.data, known, rgb), measured)},
         delta_e_spectra(light, predicted[HALF], measured),
         cube.standard_error(rgb),
         cube.error_bound(rgb),
@@ -127,29 +126,13 @@ def split_records(splits: Sequence[HoldoutSplit]) -> list[dict[str, Any]]:
     records: list[dict[str, Any]] = []
     for method in splits[0].errors:
         rms, *delta_e = np.mean([split.errors[method].means() for split in splits], axis=0).tolist()
-        record = {"cube": method, "colours": len(splits[0].actual), "rms": None if np.isnan(rms) else rms}
+        record = {"cube": method, "colours": len(splits[0].actual), "rms": rms}
         records.append(record | dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True)))
     # Over all splits together; small atlases have no standard errors.
     parts = [(split.actual, split.predicted, split.bound) for split in splits if split.predicted is not None]
     found = check_calibration(*(np.concatenate(part) for part in zip(*parts, strict=True))) if parts else None
     records[0]["standard_error"] = found and found.to_json()
     return records
-
-
-def baseline_errors(data: CubeData, known: Array, measured: Array) -> dict[str, SpectrumErrors]:
-    """Predict measured reflectances (n, N) from known ones (E, N) by `local_linear` and `mismatch_centroids`.
-
-    A colour without a centroid, as no mixture of known materials has it, has the error of the regression.
-    """
-    rgb = np.clip(data.sensor.rgb(measured), 0, 1)
-    lights = [observer.light(name) for name in HELD_OUT_LIGHTS]
-    linear = spectrum_errors(local_linear(data, known, rgb), measured)
-    centroids = mismatch_centroids(data.sensor, known, rgb, lights)
-    pairs = zip(lights, centroids.swapaxes(0, 1), strict=True)
-    delta_e = [delta_e_2000(lab(measured @ light.xyz.T, light.white), lab(xyz, light.white)) for light, xyz in pairs]
-    without = np.isnan(centroids[:, :1, 0])
-    of_centroids = np.where(without, linear.delta_e, np.stack(delta_e, axis=1))
-    return {LOCAL_LINEAR: linear, CENTROID: SpectrumErrors(np.full(len(measured), np.nan), of_centroids)}
 
 
 BANDWIDTHS = (7.0, 10.0, 14.0, 20.0, 28.0, 40.0, 80.0, 1e4)
@@ -197,52 +180,3 @@ def regress(sensor: Sensor, known: Array, rgb: Array, width: float, ridge: float
     matrix = weighted.mT @ terms + ridge * np.diag([0.0, 1, 1, 1])
     first = np.linalg.solve(matrix, np.broadcast_to(np.eye(4)[:, :1], (len(rgb), 4, 1)))
     return np.asarray((weighted @ first)[:, :, 0] @ known)
-
-
-NEIGHBOURS = 14
-"""Nearest measurements that metamers are mixed from."""
-FLAT = 1e-12
-"""Least volume of a tetrahedron of colours whose mixtures are determined."""
-
-
-def mismatch_centroids(sensor: Sensor, known: Array, rgb: Array, lights: Sequence[Light]) -> Array:
-    """Predict XYZ (n, L, 3) of linear RGB (n, 3) under other lights by centroids of metamer mismatch bodies.
-
-    The body of a colour holds the colours, under another light, of all metamers of known materials (E, N). Sets of some
-    hundred measurements have hardly any metamers, so metamers are mixtures: of the nearest measurements, black and
-    white. The corners of a body are mixtures of four of them. Colours that no mixture has are NaN.
-
-    Zhang, Funt & Mirzaei 2016, "Metamer mismatching in practice versus theory", JOSA A 33(3), A238–A247.
-    """
-    distance = cdist(rgb_to_lab(sensor, rgb), rgb_to_lab(sensor, sensor.rgb(known)))
-    nearest = np.argsort(distance, axis=1, kind="stable")[:, :NEIGHBOURS]
-    ends = np.stack([np.zeros(known.shape[1]), np.ones(known.shape[1])])
-    found = np.full((len(rgb), len(lights), 3), np.nan)
-    for row, (colour, neighbours) in enumerate(zip(rgb, nearest, strict=True)):
-        pool = np.concatenate([known[neighbours], ends])
-        corners, weights = mixtures(sensor.rgb(pool), colour)
-        if len(corners):
-            relit = np.stack([pool @ light.xyz.T for light in lights])
-            found[row] = [centroid(body) for body in np.einsum("vk,lvkc->lvc", weights, relit[:, corners])]
-    return found
-
-
-def mixtures(colours: Array, rgb: Array) -> tuple[Indices, Array]:
-    """Rows (V, 4) of linear RGB (P, 3), and the weights (V, 4) of their mixtures that have linear RGB (3,)."""
-    corners = np.array(list(combinations(range(len(colours)), 4)))
-    matrix = np.pad(colours[corners].mT, ((0, 0), (0, 1), (0, 0)), constant_values=1.0)
-    corners, matrix = (array[np.abs(np.linalg.det(matrix)) > FLAT] for array in (corners, matrix))
-    weights = np.linalg.solve(matrix, np.broadcast_to(np.append(rgb, 1.0)[:, None], (len(matrix), 4, 1)))[..., 0]
-    possible = (weights >= 0).all(axis=1)
-    return corners[possible], weights[possible]
-
-
-def centroid(points: Array) -> Array:
-    """Compute the centroid (3,) of the convex hull of points (n, 3); their mean if the hull is flat."""
-    try:
-        hull = points[ConvexHull(points).vertices]
-        tetrahedra = hull[Delaunay(hull).simplices]
-    except QhullError:
-        return np.asarray(points.mean(axis=0))
-    volumes = np.abs(np.linalg.det(tetrahedra[:, 1:] - tetrahedra[:, :1]))
-    return np.asarray(volumes @ tetrahedra.mean(axis=1) / volumes.sum())
