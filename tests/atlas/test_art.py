@@ -71,18 +71,6 @@ def test_equivalent_notations(save, change):
     assert entry.values.tolist() == [0.5, 0.25, 0.125, 0.0625]
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ('"a grey card"', "a grey card"),
-        ('"grey" and "card"', '"grey" and "card"'),
-        ('""grey""', '"grey"'),
-    ],
-)
-def test_descriptions(save, text, expected):
-    assert read_atlas(save(PLAIN.replace("a grey card", text))).entries[0].description == expected
-
-
 def test_latin_1_is_the_fallback_of_utf_8(save):
     text = PLAIN.replace("A. Person", "Anežka Tódová".replace("ž", "z"))
     assert read_atlas(save(text.encode("latin-1"))).entries[0].measured_by == "Anezka Tódová"

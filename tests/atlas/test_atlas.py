@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from types import SimpleNamespace
-from xml.etree import ElementTree
 
 import colour
 import numpy as np
@@ -31,7 +30,6 @@ GREY = Entry("grey", [380, 780], [0.5, 0.5])
 ATLAS = Atlas((RED, GREY), (SkippedEntry("lamp", "emits"),), (Source("a.txt", "00"),))
 GRID = np.arange(380.0, 785.0, 5.0)
 NM = np.array([400.0, 550.0, 700.0])
-DISTRIBUTION = SimpleNamespace(name="red", wavelengths=NM, values=np.array([0.1, 0.2, 0.9]))
 
 
 def test_an_atlas_is_a_sequence_with_names():
@@ -47,13 +45,6 @@ def test_an_atlas_is_a_sequence_with_names():
         ATLAS["gray"]
     with pytest.raises(IndexError):
         ATLAS[2]
-
-
-def test_html_has_a_row_with_swatch_name_and_plot_per_entry():
-    table = ElementTree.fromstring(Atlas((Entry("<b>&", GREY.wavelengths, GREY.values), RED))._repr_html_())
-    rows = table.findall("tr")
-    assert [row.findall("td")[1].text for row in rows] == ["<b>&", "red"]
-    assert len(rows[1].find(".//polyline").get("points").split()) == 81
 
 
 @pytest.mark.parametrize(
@@ -73,11 +64,6 @@ def test_entries_from_python_are_validated(name, wavelengths, values):
         Entry(name, wavelengths, values)
 
 
-def test_entries_are_read_only():
-    with pytest.raises(ValueError, match="read-only"):
-        RED.values[0] = 1
-
-
 def test_distributions_of_colour_science(tmp_path):
     checker = colour.SDS_COLOURCHECKERS["ColorChecker N Ohta"]
     spectra = from_distributions(checker)
@@ -89,12 +75,6 @@ def test_distributions_of_colour_science(tmp_path):
     several = from_distributions(colour.MultiSpectralDistributions(values, NM, labels=["red", "blue"]))
     assert several.names == ("red", "blue")
     assert several["blue"].values.tolist() == [0.8, 0.3, 0.05]
-
-
-def test_any_class_with_the_attributes_of_a_distribution():
-    assert from_distributions({"a": DISTRIBUTION, 2: DISTRIBUTION}).names == ("a", "2")
-    assert from_distributions(DISTRIBUTION).names == ("red",)
-    assert from_distributions({}).names == ()
 
 
 @pytest.mark.parametrize(

@@ -40,8 +40,7 @@ def test_files_without_an_atlas_raise(save, content, code):
 
 
 @pytest.mark.parametrize(
-    ("path", "code"),
-    [("none.txt", "file-not-found"), (".", "not-a-regular-file"), ("a\0b", "file-unreadable")],
+    ("path", "code"), [("none.txt", "file-not-found"), (".", "not-a-regular-file"), ("a\0b", "file-unreadable")]
 )
 def test_unreadable_files_raise(path, code):
     with raises(AtlasError, code):
@@ -212,14 +211,6 @@ def test_faults_report_file_and_line(save, text, line, code):
     with raises(AtlasError, code) as caught:
         read_atlas(path)
     assert caught.value.where.startswith(f"{path}:{line}")
-
-
-def test_percent_out_of_range(save):
-    path = save(WIDE.replace("0.9", "900"), "table.csv")
-    with raises(AtlasError, "atlas") as caught:
-        read_atlas(path, measured="percent")
-    assert caught.value.where.endswith("table.csv:2: entry 'red'")
-    assert "9 at 700 nm" in caught.value.problem
 
 
 def test_endless_cells_and_numbers_raise(save):

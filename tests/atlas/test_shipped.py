@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import runpy
-from pathlib import Path
 
 import pytest
 
 from tests.atlas.atlas_texts import ATLASES
 from tests.helpers import raises, warns
 from uplift.atlas import read_atlas, shipped_atlases
-from uplift.atlas.sources import find_atlas_file
 from uplift.common.errors import AtlasError
 
 SHIPPED = {
@@ -74,9 +72,3 @@ def test_hint_names_the_nearest_shipped_atlas(empty_folder, path):
         read_atlas(path)
     assert caught.value.where == path
     assert "'macbeth'" in caught.value.hint
-
-
-def test_relative_paths_start_in_the_folder(empty_folder):
-    (empty_folder / "macbeth.txt").write_text("name,380,780\nwhite,1,1\n")
-    assert find_atlas_file("macbeth", empty_folder) == shipped_atlases()[2].path
-    assert Path(find_atlas_file("macbeth.txt", empty_folder)) == empty_folder / "macbeth.txt"

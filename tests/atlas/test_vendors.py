@@ -39,12 +39,6 @@ def test_labels_of_wavelengths(save, label):
     assert (entry.name, entry.wavelengths.tolist(), entry.values.tolist()) == ("grey", [400, 550, 700], [0.1, 0.2, 0.3])
 
 
-def test_the_content_is_described(tmp_path):
-    (source,) = read_atlas(LAYOUTS["babelcolor"].save(MACBETH, tmp_path)).sources
-    assert source.notes[1] == "not used: No., L*, a*, b*"
-    assert source.notes[2].startswith("6 of 6 spectra descended")
-
-
 ROW = "name,400,500,600,700\n"
 SETS = "\nBEGIN_DATA_FORMAT\nID SPEC_400 SPEC_700\nEND_DATA_FORMAT\nBEGIN_DATA\na 1 1\nEND_DATA\n"
 
@@ -92,10 +86,6 @@ def test_scale_given_by_the_caller(save):
 def test_other_quantities_are_refused(save, text):
     with raises(AtlasError, "wrong-quantity"):
         read_atlas(save(text))
-
-
-def test_reflectance_with_transmittance_is_read(save):
-    assert len(read_atlas(save("# Reflectance and transmittance of leaves\n" + ROW + "a,0.2,0.3,0.4,0.5\n"))) == 1
 
 
 def test_transmittances_of_cxf_are_skipped(tmp_path):

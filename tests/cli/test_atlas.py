@@ -38,15 +38,6 @@ def test_json_has_the_colours_under_the_sensor(ask):
     assert (answer["sources"][0]["name"], answer["skipped"]) == ("macbeth.txt", [])
 
 
-def test_csv_has_the_clipped_values(run):
-    rows = list(csv.DictReader(io.StringIO(run("atlas", ATLASES / "rawtoaces.txt", "--format", "csv").stdout)))
-    assert len(rows) == 190
-    clipped = [row for row in rows if row["warnings"]]
-    assert [row["name"] for row in clipped] == ["patch085", "patch089", "patch114", "patch125", "patch128"]
-    assert clipped[0]["warnings"] == "1.4394 at 780 nm clipped to 1"
-    assert {row["in_gamut"] for row in rows} == {"true", "false"}
-
-
 def test_skipped_entries_are_listed(run, home):
     text = Path(MACBETH).read_text(encoding="utf-8")
     (home / "lamps.txt").write_text(text.replace("reflectance spectrum", "emission spectrum"), encoding="utf-8")
@@ -85,18 +76,3 @@ def test_shipped_atlases_are_listed_without_a_file(run, ask):
         assert all(value == str(atlas[key]) for key, value in row.items())
         assert all(value in " ".join(text.split()) for value in row.values())
         assert "https://opensource.org/licenses/BSD-3-Clause" in text  # not broken between lines
-
-
-def test_names_of_shipped_atlases_work_where_no_file_has_them(run, home):
-    expected = run("atlas", MACBETH).stdout
-    result = run("atlas", "macbeth")
-    assert (result.stdout, result.stderr) == (expected, "")
-    result = run("atlas", "macbeth.txt")
-    assert result.stdout == expected
-    (warning,) = warning_lines(result)
-    assert warning.startswith("macbeth.txt: ")
-    (home / "macbeth.txt").write_text("name,380,780\n[bold]white,1,1\n")
-    result = run("atlas", "macbeth.txt")
-    assert "[bold]white" in result.stdout
-    assert "1 entries, 0 out of the sRGB gamut, 0 skipped" in result.stdout
-    assert result.stderr == ""

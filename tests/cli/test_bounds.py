@@ -45,14 +45,6 @@ def test_the_likely_difference_is_the_error_bound_in_all_formats(run, ask, cubes
     assert float(row["error_bound"]) == pytest.approx(bound)
 
 
-def test_bounds_of_many_colours(run):
-    text = run("bounds", "-", "--format", "csv", input=COLOURS).stdout
-    rows = list(csv.DictReader(io.StringIO(text)))
-    assert [row["light"] for row in rows] == 2 * ["A", "FL11", "HP1"]
-    assert all(0 < float(row["largest"]) <= float(row["outer"]) for row in rows)
-    assert all(float(row["a*_min"]) < float(row["a*"]) < float(row["a*_max"]) for row in rows)
-
-
 def test_table_and_plot(run, home):
     text = run("bounds", "0.2,0.3,0.4", "--light", "D65", "--plot", "bounds.png").stdout
     row = text.splitlines()[-1].split()

@@ -63,10 +63,3 @@ def test_format_follows_the_suffix_of_out(run, home, cube):
 def test_wrong_usage(misuse, home, cube, arguments, option):
     assert option in misuse("export", cube, *arguments)
     assert [path.name for path in home.iterdir()] == [cube]
-
-
-def test_invalid_input_is_an_error(refuse, home, cube):
-    assert refuse("export", "missing.uplift", "-o", "cube.csv").code == "cube-not-found"
-    assert refuse("export", cube, "-o", "cube.coeff", "--res", "1").code == "option"
-    assert refuse("export", cube, "-o", "missing/cube.csv").code == "output"
-    assert [path.name for path in home.iterdir()] == [cube]

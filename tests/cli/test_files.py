@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from uplift_cli.main import main
 
 from tests.io.texture.conftest import planes, write_exr
 
@@ -29,7 +26,6 @@ LINKS = {
     "palette.png": "palette.toml",
 }
 """Other names of inputs, with suffixes of outputs."""
-NAMES = {"not UTF-8": os.fsdecode(b"\xff\xfe"), "255 bytes": "x" * 248, "a newline": "a\nb\x1b[2J"}
 
 
 @pytest.fixture
@@ -99,22 +95,3 @@ def test_nothing_is_written_if_one_output_exists(refuse, home, inputs, words):
 def test_outputs_differ(refuse, inputs):
     words = "palette palette.toml --plot a.png --plot-spectra ./a.png --force"
     assert refuse(*words.split()).code == "duplicate-output"
-
-
-@pytest.mark.parametrize("name", NAMES.values(), ids=NAMES)
-def test_any_name_of_a_file(home, cubes, macbeth, name):
-    shutil.copy(cubes / "moments-8.uplift", f"{name}.uplift")
-    shutil.copy(macbeth, f"{name}.txt")
-    lines = ("info {}.uplift", "info {}.uplift --format json", "atlas {}.txt", "query 0 0 0 --plot {}.png", "query {}")
-    for line in (
-        *lines,
-        "export {}.uplift -o {}.csv",
-        "slices {}.uplift --plot {}.png",
-        "texture {}.png -o t.exr",
-        "{}",
-    ):
-        result = CliRunner().invoke(main, [word.replace("{}", name) for word in line.split()])
-        assert result.exit_code in (0, 2), result.exception
-        errors = [line for line in result.stderr.splitlines() if not line.startswith("warning: ")]
-        assert len(errors) == (result.exit_code != 0)
-        assert all(line.isprintable() for line in result.output.splitlines())

@@ -28,12 +28,6 @@ def test_xyz_wavelengths_and_plot(run, home):
     assert (home / "white.png").exists()
 
 
-def test_colours_from_standard_input(run):
-    text = run("lights", "query", "-", input="1,1,1\n3000,10,10").stdout
-    assert [line.split()[:3] for line in text.splitlines()[1:]] == [["1", "1", "1"], ["3000", "10", "10"]]
-    assert len(json.loads(run("lights", "query", "-", "--format", "json", input="1,1,1\n3,1,1").stdout)) == 2
-
-
 def test_colours_that_no_light_has(run):
     assert "--out-of-gamut clip" in run("lights", "query", "-1", "1", "-1", code=2).stderr
     assert "round trip" in run("lights", "query", "-1", "1", "-1", "--out-of-gamut", "clip").stdout
@@ -53,13 +47,6 @@ def test_a_table_of_measured_lamps_is_built_and_queried(run, home):
     found = json.loads(run("lights", "query", *words, *map(str, 5 * rgb / rgb.max())).stdout)
     assert np.array(found["power"]) / max(found["power"]) == pytest.approx(power / power.max(), abs=1e-4)
     assert json.loads(run("lights", "info", "x.uplift", "--format", "json").stdout)["lamps"][0] == "bulb"
-
-
-def test_the_default_name_is_that_of_the_lamps(run, home):
-    (home / "mine-emission.uplift").write_text("mine")
-    (home / "mine.csv").write_text("# spectral irradiance\nname,400,500,600,700\nbulb,1,2,3,4\n")
-    assert "mine-emission.uplift" in run("lights", "build", "--atlas", "mine.csv", code=2).stderr
-    assert (home / "mine-emission.uplift").read_text() == "mine"
 
 
 def test_facts_picture_and_page(run, home):
@@ -114,13 +101,6 @@ def test_commands_that_need_a_cube_name_the_commands_of_lights(refuse, home, wor
     error = refuse(*words)
     assert error.code == "not-a-cube"
     assert "uplift lights" in hint_for(error)
-
-
-def test_check_names_the_commands_of_lights(run, home):
-    uplift.load_emission().save(home / "lights.uplift")
-    found = json.loads(run("check", "lights.uplift", "--format", "json", code=1).stdout)
-    assert found[0]["failures"] == ["not-a-cube"]
-    assert "uplift lights" in found[0]["error"]["hint"]
 
 
 @pytest.mark.parametrize("words", [("query", "1", "1", "1"), ("texture", "in.png", "-o", "out.exr")])

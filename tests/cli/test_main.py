@@ -30,16 +30,6 @@ from uplift.common.text import printable
 from .conftest import warning_lines
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_help_has_a_sentence_and_examples(run, name):
-    usage, sentence, *rest = run(name, "--help").stdout.split("\n\n")
-    assert usage.startswith(f"Usage: main {name} ")
-    assert sentence.strip().endswith(".")
-    (examples,) = [part for part in rest if part.startswith("  Examples:\n")]
-    lines = examples.replace("\\\n", "").splitlines()[1:]
-    assert all(f"uplift {name} " in f"{line} " for line in lines)
-
-
 def test_help_lists_every_command_under_a_heading(run):
     lines = run("--help").stdout.splitlines()
     for name in COMMANDS:

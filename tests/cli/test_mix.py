@@ -41,15 +41,6 @@ def test_a_colour_mixed_with_itself_is_unchanged(ask, kind, options):
     assert ask("mix", kind, "2:#c8a070", "1:#c8a070", *options)["hex"] == "#c8a070"
 
 
-def test_table_has_mixture_ramp_and_spectrum(run):
-    lines = run("mix", f"2:{BLUE}", YELLOW, "--wavelengths", "450,550", "--steps", 3).stdout.splitlines()
-    assert lines[0] == f"pigment     2 of {BLUE}, 1 of {YELLOW}"
-    starts = ("linear RGB  0.", "hue         550 nm, purity 0.", "encoded     HSV 0.3")
-    assert all(line.startswith(start) for line, start in zip(lines[1:4], starts, strict=True))
-    assert lines[4].endswith(YELLOW)
-    assert lines[7].startswith("   450 nm")
-
-
 def test_entries_by_name_have_their_measured_spectra(ask, cubes, macbeth):
     cube = ("--cube", cubes / "moments-8-macbeth.uplift")
     from_cube, measured = (

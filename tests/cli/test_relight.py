@@ -24,13 +24,6 @@ def test_a_page_of_own_images_with_a_cube(ask, home, cubes, wood):
     assert (home / "relit.html").read_text(encoding="utf-8").count("<section") == 2
 
 
-def test_own_images_have_no_atlas_unless_given(run, home, wood):
-    result = run("relight", wood, "--light", "FL11")
-    assert "without atlas" in result.stdout
-    assert "macbeth" not in result.stdout
-    assert (home / "relit.png").is_file()
-
-
 def test_the_sample_is_relit_with_its_atlas(run, home):
     result = run("relight", "--light", "HP1")
     assert "with macbeth" in result.stdout

@@ -47,22 +47,6 @@ def test_another_atlas_tests_unseen_colours(run, repository, cube):
     assert re.search(r"68 % within \d\.\d\d under A, predicted \d\.\d\d", summary)
 
 
-def test_a_cube_without_an_atlas(run, cubes, home):
-    result = run("report", cubes / "sigmoid-8.uplift", *SMALL)
-    assert result.stdout == "sigmoid-8.html: 0 nodes over the threshold\n"
-
-
-def test_atlases_are_searched_for_in_given_folders(run, refuse, home, monkeypatch, cube):
-    monkeypatch.setattr("uplift.pipeline.rebuild.shipped_atlases", tuple)
-    (home / "there").mkdir()
-    shutil.move(home / "macbeth.txt", home / "there")
-    error = refuse("report", cube)
-    assert (error.code, error.where) == ("atlas-not-found", cube)
-    run("report", cube, *SMALL, "--atlas-dir", "there")
-    (home / "there" / "macbeth.txt").write_text("Entry ID: changed\n")
-    assert refuse("report", cube, "--atlas-dir", "there", "--force").code == "atlas-changed"
-
-
 def test_invalid_input_is_an_error_and_nothing_is_written(refuse, home, cube):
     (home / "text.uplift").write_text("not a cube")
     (home / "old.html").write_text("old")
@@ -74,10 +58,3 @@ def test_invalid_input_is_an_error_and_nothing_is_written(refuse, home, cube):
     assert refuse("report", cube, "--atlas", "none.txt").code == "file-not-found"
     assert refuse("report", cube, "-o", "nowhere/page.html").code == "output"
     assert {path.name for path in home.iterdir()} == before
-
-
-def test_a_broken_write_leaves_nothing(run, home, cube, monkeypatch):
-    monkeypatch.setattr("pathlib.Path.write_text", lambda *_, **__: (_ for _ in ()).throw(OSError("disk full")))
-    result = run("report", cube, *SMALL, code=2)
-    assert "cannot be written: disk full" in result.stderr
-    assert not (home / "macbeth-8.html").exists()

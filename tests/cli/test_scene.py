@@ -57,14 +57,6 @@ def test_queries_of_other_colours_are_errors_unless_filled(run, refuse, scene):
     assert run("query", "--cube", scene, "--fill-missing", 0.001, 0.002, 0.001).stderr == ""
 
 
-def test_reports_cover_the_stored_nodes(ask, scene, macbeth):
-    found = ask("report", scene, "--atlas-dir", macbeth.parent)
-    assert found["failures"]["over_threshold"] == 0
-    assert found["round_trip"]["delta_e_2000"]["spectra"]["max"] < 1e-3
-    assert len(found["atlas"]["absent"]) + len(found["entries"]) == 23
-    assert found["atlas"]["absent"]
-
-
 def test_exports_of_all_colours_are_errors_unless_filled(run, refuse, scene, home):
     error = refuse("export", scene, "--format", "c")
     assert error.code == "sparse-cube"

@@ -64,17 +64,6 @@ def test_default_atlases_are_those_of_the_working_folder_or_the_shipped_ones(row
     assert {row["atlas"] for row in rows("moments", "--max-moments", 0)} == {"all", "tcs"}
 
 
-def test_few_entries_are_drawn_and_files_replaced_only_with_force(run, refuse, home):
-    (home / "greys.csv").write_text("name,400,500,600,700\ngrey,0.5,0.5,0.5,0.5\n")
-    args = ("study", "moments", "--atlas", "greys.csv", "--max-moments", 0, "-o", home)
-    (home / "moments-worst.png").write_text("mine")
-    assert refuse(*args).code == "file-exists"
-    assert (home / "moments-worst.png").read_text() == "mine"
-    assert not (home / "moments.png").exists()
-    run(*args, "--force")
-    assert matplotlib.image.imread(home / "moments-worst.png").size
-
-
 @pytest.mark.parametrize(
     ("options", "code"),
     [

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
-
 import matplotlib.image
 import numpy as np
 import pytest
@@ -47,23 +44,6 @@ def test_errors_follow_from_the_printed_wavelengths_and_weights(answer, macbeth)
         assert stated["max"] == pytest.approx(errors.max(), abs=0.05)
         assert stated["worst"] == atlas.names[int(errors.argmax())]
     assert found["errors"]["all lights"]["max"] == max(found["errors"][k]["max"] for k in ("D65", "FL11"))
-
-
-def test_weights_to_rgb_map_the_illuminant_to_white(answer):
-    found = answer("--count", 10, "--light", "D65", "--space", "ITU-R BT.2020")
-    white = np.array(found["powers"]["D65"]) @ found["to_rgb"]
-    np.testing.assert_allclose(white, 1, atol=5e-3)
-
-
-def test_csv_and_table_have_the_same_numbers(choose):
-    rows = list(csv.DictReader(io.StringIO(choose("--count", 5, "--light", "FL2", "--format", "csv"))))
-    assert list(rows[0]) == ["wavelength", "X", "Y", "Z", "r", "g", "b", "power FL2"]
-    table = choose("--count", 5, "--light", "FL2")
-    assert len(rows) == 5
-    for row in rows:
-        assert f"{float(row['wavelength']):.1f}" in table
-        assert f"{float(row['power FL2']):.4f}" in table
-    assert "all lights" not in table
 
 
 def test_plot(choose, home):

@@ -10,7 +10,6 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid
 from uplift.fit.problem import nodes_of
 from uplift.lattice import Lattice, Status
-from uplift.lookup import query
 from uplift.models import reflectance
 
 SPACES = ("P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
@@ -44,12 +43,3 @@ def test_the_nearest_colour_has_the_same_hue_and_luminance(sensor):
     assert outside.max() < 0
     assert outside.min() > -1e-3
     assert nodes_of(lattice, sensor, 1e-4).unrealisable.size == 0  # all of sRGB is realisable
-
-
-def test_a_query_reports_unrealisable_colours():
-    cube = uplift.build(dim=5, space="ITU-R BT.2020")
-    queried = np.array([[0.0, 1, 0], [0.5, 0.5, 0.5], [0.05, 0.9, 0.05], [0.4, 0.7, 0.4]])
-    found = list(query(cube, queried))
-    expected = solid(cube.data.sensor.matrix).contains(queried)
-    assert [answer.realisable for answer in found] == expected.tolist()
-    assert expected.tolist() == [False, True, False, True]

@@ -44,11 +44,6 @@ LATTICE = Lattice(np.linspace(0, 1, 6))
 atlases = arrays(float, st.tuples(st.integers(1, 12), st.just(3)), elements=st.floats(0, 1), unique=True)
 
 
-def nearest_points(rgb):
-    apart = np.linalg.norm(LATTICE.points[None] - rgb[:, None], axis=-1)
-    return apart.argmin(axis=1)
-
-
 @given(atlases)
 def test_all_corners_of_the_cells_of_entries_are_seeds(rgb):
     corners, _ = LATTICE.corners(rgb)
@@ -62,16 +57,6 @@ def test_seeds_do_not_depend_on_the_order_of_the_atlas(rgb, random):
     here, there = seed(LATTICE, rgb), seed(LATTICE, rgb[order])
     owners = dict(zip(here.points, here.entry, strict=True))
     assert owners == {point: order[entry] for point, entry in zip(there.points, there.entry, strict=True)}
-
-
-def test_a_single_entry_owns_the_eight_corners_nearest_first():
-    rgb = np.array([[0.33, 0.5, 0.71]])
-    seeds = seed(LATTICE, rgb)
-    apart = np.linalg.norm(LATTICE.points[seeds.points] - rgb, axis=1)
-    assert len(seeds.points) == 8
-    assert (np.diff(apart) >= 0).all()
-    assert seeds.primary.tolist() == [True] + 7 * [False]
-    assert seeds.points[0] == nearest_points(rgb)[0]
 
 
 def test_the_nearer_of_two_entries_owns_the_primary_point():
@@ -117,13 +102,6 @@ def test_the_share_of_the_entry_falls_from_near_to_far_corners(prior):
         shares.extend(share)
     assert (np.array(shares) == 0).sum() >= 5
     assert ((np.array(shares) > 0) & (np.array(shares) < 1)).sum() >= 4
-
-
-def test_all_other_points_start_from_the_prior(prior):
-    seeds = seed(LATTICE, RGB)
-    points = np.setdiff1d(np.arange(LATTICE.size), seeds.points)
-    start = initial_guess(points, LATTICE.points[points], prior, seeds, ENTRIES, FULL_ENTRY)
-    np.testing.assert_array_equal(start, prior(LATTICE.points[points]))
 
 
 @pytest.mark.parametrize(("nugget", "share"), [(0.0, 0.5), (0.03, 0.55), (0.3, 1.0), (2.0, 1.0)])

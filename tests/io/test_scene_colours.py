@@ -13,9 +13,7 @@ import uplift
 from tests.conftest import ATLASES, MACBETH
 from tests.helpers import near_black, raises, with_absent_points
 from tests.io.texture.conftest import PHOTO, WAVELENGTHS, planes, write_exr
-from uplift.colorimetry import observer
-from uplift.colorimetry.gamut import conversion
-from uplift.common.errors import ColourError, OptionError, TextureError, UpliftWarning
+from uplift.common.errors import ColourError, UpliftWarning
 from uplift.cube import AtlasTable, digest
 from uplift.io.scene_colours import Images
 from uplift.lattice import Status
@@ -43,15 +41,6 @@ def photo_colours(scene_cube):
 def points_of(cube, *paths, encoding="auto", out_of_gamut="clip"):
     data = cube.data
     return Images(paths, encoding, out_of_gamut).required_points(data.entry_boxes, data.sensor, lambda done: None)
-
-
-def test_images_in_another_space_are_converted(small_cube, tmp_path):
-    path = write_exr(tmp_path / "a.exr", planes(np.broadcast_to(np.array([0.6, 0.3, 0.2], "f4"), (2, 2, 3))))
-    images, sensor = Images((path,), space="lin_p3d65"), small_cube.data.sensor
-    (found,) = images.colours(path, sensor)
-    expected = conversion(observer.primaries("P3-D65"), sensor) @ [0.6, 0.3, 0.2]
-    np.testing.assert_allclose(found[0], expected, rtol=0, atol=1e-5)
-    assert images.describe()[0]["space"] == "lin_p3d65"
 
 
 def test_points_are_those_of_the_complete_cube(scene_cube, macbeth_cube):
@@ -136,31 +125,6 @@ def test_all_images_of_a_scene_are_read_and_decoded(plain_cube, tmp_path):
         points = points_of(plain_cube, light, tmp_path / "grey.png", encoding=encoding)
         corners, _ = plain_cube.data.lattice.corners(np.array([[0, 1, 0], [value] * 3]))
         np.testing.assert_array_equal(np.flatnonzero(points), np.unique(corners))
-
-
-@pytest.mark.parametrize(
-    ("content", "options", "code"),
-    [
-        (None, {}, "file-not-found"),
-        ("not an image", {}, "unreadable-image"),
-        ({"Z": np.ones((2, 2), np.float32)}, {}, "texture"),
-        (None, {"encoding": "log"}, "option"),
-        (None, {"out_of_gamut": "squash"}, "unknown-gamut-mapping"),
-    ],
-)
-def test_invalid_images_and_options_are_refused(plain_cube, tmp_path, content, options, code):
-    path = tmp_path / "image.exr"
-    if isinstance(content, str):
-        path.write_text(content)
-    elif content is not None:
-        write_exr(path, content)
-    with raises(OptionError if options else TextureError, code):
-        points_of(plain_cube, path, **options)
-
-
-def test_a_scene_without_images_is_refused():
-    with raises(OptionError, "scene-without-colours"):
-        uplift.build(scene=[], dim=4)
 
 
 def test_rebuild_needs_no_images(scene_cube):

@@ -123,8 +123,7 @@ FOUND = Comparison({}, {"smooth": "smooth lights (A)", "spiky": "spiky lights (F
 
 
 @pytest.mark.parametrize(
-    ("target", "name"),
-    [(2.0, "far"), (1.0, "even"), (0.75, "tabled"), (0.5, "near"), (0.1, None)],
+    ("target", "name"), [(2.0, "far"), (1.0, "even"), (0.75, "tabled"), (0.5, "near"), (0.1, None)]
 )
 def test_surfaces_count_first_then_lights_then_errors(target, name):
     best = cheapest(FOUND, "smooth", target)

@@ -93,11 +93,7 @@ def test_sigmoid_agrees_with_colour_science():
     model = Sigmoid()
     c0, c1, c2 = 1.3, -0.7, 0.4
     half, middle = 200.0, 580.0
-    per_nm = [
-        c0 / half**2,
-        c1 / half - 2 * c0 * middle / half**2,
-        c0 * middle**2 / half**2 - c1 * middle / half + c2,
-    ]
+    per_nm = [c0 / half**2, c1 / half - 2 * c0 * middle / half**2, c0 * middle**2 / half**2 - c1 * middle / half + c2]
     theirs = sd_Jakob2019(np.array(per_nm)).align(__import__("colour").SpectralShape(380, 780, 5))
     np.testing.assert_allclose(model.to_reflectance(model.basis(GRID) @ [c0, c1, c2]), theirs.values, atol=1e-12)
 

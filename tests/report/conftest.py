@@ -42,11 +42,7 @@ def lossy_cube(small_cube):
     """Cube of two entries of one colour: no colour returns the second."""
     atlas = small_cube.data.atlas
     table = AtlasTable(
-        ("grey", "über"),
-        atlas.rgb[[0, 0]],
-        atlas.coefficients[:2],
-        np.array([0.5, 0.0]),
-        atlas.error[:2],
+        ("grey", "über"), atlas.rgb[[0, 0]], atlas.coefficients[:2], np.array([0.5, 0.0]), atlas.error[:2]
     )
     return Cube(dataclasses.replace(small_cube.data, atlas=table))
 

@@ -17,19 +17,8 @@ from uplift.cube import AtlasTable
 from uplift.lookup import Cube
 from uplift.models import reflectance
 from uplift.report.assessment import assess
-from uplift.report.fidelity import (
-    JAKOB_HANIKA,
-    entry_errors,
-    find_alternatives,
-    find_crowding,
-    from_stored_entries,
-)
-from uplift.report.measures import (
-    MAX_LISTED,
-    check_calibration,
-    collect_failures,
-    compute_smoothness,
-)
+from uplift.report.fidelity import JAKOB_HANIKA, entry_errors, find_alternatives, find_crowding, from_stored_entries
+from uplift.report.measures import MAX_LISTED, check_calibration, collect_failures, compute_smoothness
 
 
 def delta_e(first, second, name):

@@ -8,7 +8,7 @@ import pytest
 from tests.helpers import raises
 from uplift.common.errors import OptionError
 from uplift.design.mixing import Surface, optics
-from uplift.design.mixing.optics import NO_SURFACE, Layer, add_lights, average_areas, stack_filters
+from uplift.design.mixing.optics import Layer, add_lights, average_areas
 
 INDICES = (1.01, 1.2, 1.5, 1.66, 2.4)
 
@@ -19,12 +19,6 @@ def test_lights_add_up_and_areas_are_averaged(spectra, parts):
     for scale in (1, 7):
         mean = expected / parts.sum(axis=1, keepdims=True)
         np.testing.assert_allclose(average_areas(spectra, scale * parts), mean)
-
-
-def test_thickness_of_filters_composes_without_creating_energy(spectra):
-    first, second = (stack_filters(spectra, thickness) for thickness in ([1, 2, 0.5], [2, 0, 1]))
-    np.testing.assert_allclose(stack_filters(spectra, [3, 2, 1.5]), first * second)
-    assert ((first >= 0) & (first <= 1)).all()
 
 
 def test_reflectance_on_a_ground_is_the_sum_of_all_reflections():
@@ -66,11 +60,6 @@ def test_saunderson_round_trip(incidence, n):
     assert (np.diff(measured) > 0).all()
     assert measured[0] == surface.outside
     assert measured[-1] == pytest.approx(1)  # perfect white stays white, as nothing absorbs
-
-
-def test_an_index_of_1_has_no_surface():
-    assert Surface.of_index(1) == Surface.of_index(1, "diffuse") == NO_SURFACE
-    np.testing.assert_array_equal(NO_SURFACE.apply([0, 0.3, 1]), [0, 0.3, 1])
 
 
 @pytest.mark.parametrize(

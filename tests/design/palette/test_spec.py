@@ -9,9 +9,9 @@ import uplift
 from tests.conftest import MACBETH, ROOT
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
-from uplift.common.errors import AtlasError, CubeFileError, PaletteError, UnknownNameError
-from uplift.design.palette import illuminant, read_palette
-from uplift.design.palette.colours import planck, screen_matrix
+from uplift.common.errors import PaletteError
+from uplift.design.palette import read_palette
+from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.palette import MinDifference
 
 COMPLETE = f"""
@@ -100,23 +100,6 @@ def test_lights_have_their_luminance_or_their_norm(read, sensor):
     np.testing.assert_allclose(palette.light("b").samples, 2, rtol=1e-9)
 
 
-def test_a_black_body_of_2856_k_is_illuminant_a(sensor):
-    """The CIE defines A by Planck's law; its table has six digits."""
-    np.testing.assert_allclose(planck(sensor, 2855.5), illuminant(sensor, "A"), rtol=1e-3)
-
-
-def test_paths_start_in_the_folder_of_the_spec(tmp_path, monkeypatch):
-    (tmp_path / "sub").mkdir()
-    (tmp_path / "paints.txt").write_bytes(MACBETH.read_bytes())
-    spec = tmp_path / "sub" / "spec.toml"
-    spec.write_text(
-        'lights.day.illuminant = "D65"\nmaterials.x = { atlas = "../paints.txt", entry = "orange" }\n',
-        encoding="utf-8",
-    )
-    monkeypatch.chdir("/")
-    assert read_palette(spec).material("x").samples is not None
-
-
 @pytest.mark.parametrize(
     ("text", "code", "key"),
     [
@@ -142,16 +125,3 @@ def test_an_invalid_spec_is_refused_with_its_key(read, text, code, key):
         read(text)
     assert caught.value.problem.startswith(key)
     assert caught.value.path.name == "spec.toml"
-
-
-@pytest.mark.parametrize(
-    ("material", "error"),
-    [
-        (f'{{ atlas = "{MACBETH.as_posix()}", entry = "orang" }}', UnknownNameError),
-        ('{ atlas = "none.txt", entry = "a" }', AtlasError),
-        ('{ rgb = "#102030", cube = "none.uplift" }', CubeFileError),
-    ],
-)
-def test_errors_of_other_files_are_their_own(read, material, error):
-    with pytest.raises(error):
-        read(HEAD + "materials.x = " + material)

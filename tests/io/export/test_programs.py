@@ -8,12 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.helpers import warns
 from tests.io.export import run_program
 from tests.parts import CC, need
 from uplift.common.errors import OptionError
-from uplift.io.export import LANGUAGES, program, write_program
-from uplift.io.export.program import identifier
+from uplift.io.export import LANGUAGES, write_program
 
 WAVELENGTHS = [300.0, 455.0, 551.5, 700.0]
 WITHIN = 1e-4  # tolerance of reflectance in single precision: multipliers of spectra near a box reach 4e6
@@ -137,20 +135,6 @@ def test_names_in_a_cube_cannot_end_a_comment(small_cube, check):
     sensor = replace(small_cube.data.sensor, space="*/ #error äöü\n /*", illuminant="*//* ${table}")
     odd = replace(small_cube, data=replace(small_cube.data, sensor=sensor))
     check(odd, "c", "spectra", np.full((1, 3), 0.5), expected=small_cube.reflectance([[0.5] * 3], WAVELENGTHS))
-
-
-@pytest.mark.parametrize(
-    ("stem", "name"),
-    [("macbeth-32", "macbeth_32"), ("32", "cube_32"), ("größe", "gr_e"), ("", "cube")],
-)
-def test_identifiers_derive_from_the_file_name(stem, name):
-    assert identifier(stem) == name
-
-
-def test_a_large_header_triggers_a_warning(tmp_path, plain_cube, monkeypatch):
-    monkeypatch.setattr(program, "LARGE", 1000)
-    with warns("warning"):
-        write_program(plain_cube.data, tmp_path / "cube.h")
 
 
 LOADING = r"""

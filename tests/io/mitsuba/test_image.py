@@ -37,8 +37,7 @@ def texture(mi, cube_path):
 
 
 @pytest.mark.parametrize(
-    "options",
-    [{}, {"wrap_mode": "mirror"}, {"wrap_mode": "clamp"}, {"filter_type": "nearest", "wrap_mode": "clamp"}],
+    "options", [{}, {"wrap_mode": "mirror"}, {"wrap_mode": "clamp"}, {"filter_type": "nearest", "wrap_mode": "clamp"}]
 )
 def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, options):
     import drjit
@@ -52,12 +51,6 @@ def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, o
         si.uv = mi.Point2f(*uv)
         found = sensor.rgb(spectrum(ours, uv, sensor.wavelengths))
         np.testing.assert_allclose(found, np.array(reference.eval_3(si)), rtol=0, atol=WITHIN)
-
-
-@pytest.mark.parametrize(("transform", "scale"), [("ScalarTransform3f", [2, 3]), ("ScalarTransform4f", [2, 3, 1])])
-def test_uv_are_transformed(mi, texture, spectrum, transform, scale):
-    moved = texture(to_uv=getattr(mi, transform)().scale(scale))
-    assert spectrum(moved, (0.1, 0.2), [500]) == pytest.approx(spectrum(texture(), (0.2, 0.6), [500]), abs=1e-6)
 
 
 def test_filtering_blends_spectra_not_multipliers(texture, spectrum, small_cube):
@@ -209,19 +202,6 @@ def test_a_texture_has_the_spectra_of_the_cube(mi, spectrum, small_cube, tmp_pat
     np.testing.assert_allclose(spectrum(found, (0.4, 0.9), WAVELENGTHS), expected, rtol=0, atol=within)
 
 
-def test_a_cube_is_not_accepted_with_a_texture(mi, cube_path, tmp_path):
-    write_exr(tmp_path / "texture.exr", flat(1, 400, 500))
-    with pytest.raises(RuntimeError, match="unreferenced"):
-        mi.load_dict({"type": "uplift", "filename": str(tmp_path / "texture.exr"), "cube": cube_path})
-
-
-def test_images_of_colours_are_not_textures(tmp_path):
-    write_exr(tmp_path / "image.exr", planes(IMAGE))
-    (tmp_path / "image.png").write_bytes(b"\x89PNG")
-    for name in ("image.exr", "image.png", "missing.exr"):
-        assert read_texels(tmp_path / name) is None
-
-
 MODEL = {"uplift.model": json.dumps(Moments(9).describe())}
 GREY = {f"moment.{order:02}": np.full((2, 2), 0.5 * (order == 0), np.float32) for order in range(9)}
 
@@ -269,14 +249,3 @@ def test_blend_is_the_weighted_sum(mi, model):
     found = blend(model, multipliers.tolist(), weights, mi.Spectrum(*SAMPLED))
     expected = weights @ evaluate(model, multipliers, SAMPLED)
     np.testing.assert_allclose(np.array(found), expected, rtol=0, atol=1e-5)
-
-
-def test_the_arc_tangent_is_a_polynomial_of_its_cosine(mi):
-    """Reflectances stay in [0, 1] however large the linear part is."""
-    large = np.logspace(-6, 8, 500)
-    linear, model = np.concatenate([-large, large]), Moments(9)
-    flat = [[x, *[0.0] * 8] for x in linear.tolist()]
-    found = np.array([blend(model, [each], [1.0], mi.Spectrum(500.0))[0] for each in flat])
-    np.testing.assert_allclose(found, 0.5 + np.arctan(linear) / np.pi, rtol=0, atol=1e-6)
-    assert found.min() >= 0
-    assert found.max() <= 1

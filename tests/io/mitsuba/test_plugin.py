@@ -37,16 +37,6 @@ def test_scenes_can_be_xml_and_cubes_are_found_by_the_file_resolver(mi, reposito
     assert "RegularSpectrum" in str(scene)
 
 
-def test_a_modified_cube_is_read_again(mi, tmp_path, spectrum, plain_cube, small_sigmoid_cube):
-    found = []
-    for cube in (plain_cube, small_sigmoid_cube):
-        cube.save(tmp_path / "cube.uplift", force=True)
-        texture = mi.load_dict({"type": "uplift", "cube": str(tmp_path / "cube.uplift"), "rgb": COLOUR})
-        found.append(spectrum(texture, (0, 0), [500])[0])
-        assert found[-1] == pytest.approx(cube.reflectance(COLOUR, [500])[0], abs=1e-4)
-    assert abs(found[0] - found[1]) > 1e-3
-
-
 @pytest.mark.parametrize(
     ("properties", "message"),
     [

@@ -16,7 +16,6 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.common.errors import OptionError
 from uplift.io import texture
-from uplift.io.texture import colour_profile
 from uplift.pipeline.build import build
 
 GAMMA = struct.pack(">4sIIHxx", b"curv", 0, 1, round(2.2 * 256))
@@ -181,19 +180,3 @@ def test_images_without_a_statement_are_srgb_codes_or_floats_of_the_cube(tmp_pat
     rgb, spaces, codes = convert(wide, exr(tmp_path / "b.exr", [0.3, 0.4, 0.2]))
     assert (spaces, codes) == ((), ("colour-space-assumed",))
     np.testing.assert_allclose(rgb, [0.3, 0.4, 0.2], rtol=0, atol=1e-7)
-
-
-def test_corrupt_profiles_do_not_raise():
-    intact = by_matrix("Display P3", SRGB_PARA)
-    rng = np.random.default_rng(0)
-    read = 0
-    for length in rng.integers(0, 2 * len(intact), 300):
-        corrupt = bytearray(intact[:length])
-        for place in rng.integers(0, max(len(corrupt), 1), 8 if corrupt else 0):
-            corrupt[place] = rng.integers(256)
-        found = colour_profile._icc_space("corrupt", bytes(corrupt))
-        if found is not None:
-            values = found.decode(np.linspace([0.0] * 3, [1.0] * 3, 9))
-            assert np.isfinite(values).all()
-            read += 1
-    assert 0 < read < 300

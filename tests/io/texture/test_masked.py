@@ -8,7 +8,7 @@ from PIL import Image
 
 import uplift
 from tests.helpers import raises
-from uplift.common.errors import ColourError, OptionError, TextureError
+from uplift.common.errors import OptionError, TextureError
 from uplift.io import texture
 from uplift.models import evaluate
 
@@ -16,7 +16,6 @@ from .conftest import WAVELENGTHS, read_channels, write_exr
 
 SHAPE = (20, 30)
 SPECTRUM = texture.Spectrum(WAVELENGTHS)
-NAMES = SPECTRUM.channels(uplift.load())
 
 
 @pytest.fixture(scope="module")
@@ -123,15 +122,6 @@ def test_masks_that_do_not_fit_are_refused(image, cubes, tmp_path, values, count
         texture.convert(prepared(cubes[:count], mask), image, tmp_path / "out.exr")
     assert caught.value.path == mask
     assert not (tmp_path / "out.exr").exists()
-
-
-def test_colours_outside_are_errors_of_the_image(cubes, tmp_path):
-    bad = write_exr(tmp_path / "bad.exr", dict.fromkeys("RGB", np.full(SHAPE, 2, np.float32)))
-    mask = png(tmp_path / "mask.png", np.zeros(SHAPE, np.uint8))
-    uplifters = [texture.prepare(cube, SPECTRUM, out_of_gamut="error", threads=1) for cube in cubes[:2]]
-    with raises(ColourError, "rgb-out-of-gamut") as caught:
-        texture.convert(texture.prepare_masked(uplifters, mask), bad, tmp_path / "out.exr")
-    assert caught.value.path == bad
 
 
 def test_cubes_that_do_not_fit_are_refused(cubes, small_sigmoid_cube, tmp_path):

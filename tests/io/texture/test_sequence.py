@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 
 import numpy as np
@@ -98,8 +97,7 @@ def test_resume_leaves_out_complete_newer_textures(jobs):
 
 
 @pytest.mark.parametrize(
-    "change",
-    [{"depth": "half"}, {"encoding": "linear"}, {"pixel_encoding": texture.Multipliers()}, {"cubes": (None,)}],
+    "change", [{"depth": "half"}, {"encoding": "linear"}, {"pixel_encoding": texture.Multipliers()}, {"cubes": (None,)}]
 )
 def test_resume_repeats_textures_of_other_settings(jobs, change):
     run(jobs[0])
@@ -121,12 +119,3 @@ def test_closing_the_iterator_ends_the_conversions(jobs, count, tmp_path):
     names = [path.name for path in (tmp_path / "out").iterdir()]
     assert 1 <= len(names) < 50
     assert all(name.endswith(".exr") for name in names)  # no unfinished file
-
-
-def test_lost_workers_are_an_error(jobs, monkeypatch):
-    def lost(future):
-        raise BrokenProcessPool
-
-    monkeypatch.setattr("concurrent.futures.Future.result", lost)
-    with raises(TextureError, "workers-lost"):
-        list(texture.convert_all(jobs, processes=2))
