@@ -67,11 +67,9 @@ def test_round_trips_are_as_the_methods_predict(numbers, kind):
         assert error(f"{cube}-spectra") <= error(f"{cube}-moments")
 
 
-def test_errors_under_other_lights_are_as_the_methods_predict(numbers):
-    """An atlas improves its own materials, and box spectra are the worst."""
+def test_an_atlas_improves_its_own_materials(numbers):
     own = {name: numbers[f"moments9-16{name}-spectra"]["own_lights_mean"] for name in ("", "-atlas")}
     assert own["-atlas"] < own[""] / 2
-    assert max(numbers, key=lambda name: numbers[name]["FL11_mean"]) == "macadam1935"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")

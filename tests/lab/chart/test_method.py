@@ -19,7 +19,6 @@ from uplift.lab.chart.cubes import CubeOptions, built_cube, prepare_c
 from uplift.lab.chart.measure import METHODS, QUICK_METHODS, select_methods
 from uplift.lab.chart.method import RANGE, NotInstalledError, edges, make_task
 from uplift.lab.chart.picture import COLOURS
-from uplift.lab.chart.published import boxes
 
 
 def shipped(repository, *names):
@@ -92,19 +91,6 @@ def test_smits_and_mallett_match_colour_science(small_task, colours):
     for name, theirs in (("smits1999", RGB_to_sd_Smits1999), ("mallett2019", RGB_to_sd_Mallett2019)):
         expected = [np.interp(at, sd.wavelengths, sd.values) for sd in map(theirs, colours)]
         np.testing.assert_allclose(prepared(name, small_task).uplift(colours, at), expected, atol=1e-12)
-
-
-def test_box_spectra_have_one_height_two_edges_and_the_colour(small_task):
-    sensor, rgb = small_task.sensor, np.concatenate([np.random.default_rng(5).random((300, 3)), edges()])
-    found = boxes(sensor)(rgb, sensor.wavelengths)
-    missed = np.abs(sensor.rgb(found) - rgb).max(axis=1)
-    assert (missed < 1e-6).mean() > 0.99
-    assert missed.max() < 0.05
-    height = found.max(axis=1, keepdims=True)
-    between = (found > 1e-9) & (found < height - 1e-9)
-    assert between.sum(axis=1).max() <= 2
-    assert (found[(rgb == 0).all(axis=1)] == 0).all()
-    np.testing.assert_allclose(found[(rgb == 1).all(axis=1)], 1, atol=1e-6)
 
 
 def test_jakob_fit_has_the_colour(small_task):

@@ -34,7 +34,7 @@ from uplift.lab.timing import Spread, environment, time_laps
 
 METHODS = (*published.METHODS, *mitsuba3.METHODS, *cubes.METHODS)
 QUICK_METHODS = (
-    *("jakob2019-*", "macadam1935", "mallett2019", "otsu2018", "smits1999", "mitsuba3-llvm", "c-sigmoid-32-moments"),
+    *("jakob2019-*", "mallett2019", "otsu2018", "smits1999", "mitsuba3-llvm", "c-sigmoid-32-moments"),
     *("moments9-16*-spectra", "moments9-16*-moments", "moments9-64-spectra", "moments9-64-moments"),
 )
 """Patterns of the methods of a quick run."""

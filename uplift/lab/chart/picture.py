@@ -21,7 +21,6 @@ COLOURS = {
     "uplift, sigmoid": "#3dbfa9",
     "uplift, C export": "#b8860b",
     "Jakob 2019": "#d1495b",
-    "MacAdam 1935": "#7d7d7d",
     "Mallett 2019": "#8e44ad",
     "Meng 2015": "#8c5a2b",
     "Mitsuba 3": "#f08c2e",

@@ -1,12 +1,11 @@
-"""Published methods in Python: Jakob 2019, MacAdam 1935, Mallett 2019, Meng 2015, Otsu 2018 and Smits 1999.
+"""Published methods in Python: Jakob 2019, Mallett 2019, Meng 2015, Otsu 2018 and Smits 1999.
 
 Domain: linear sRGB in [0, 1] under D65; Smits was made for an equal-energy white and is used with sRGB as renderers do.
 Range: reflectance in [0, 1], of Smits up to 1.015, of Meng not limited to 1. Spectra in steps of up to 10 nm are
-interpolated linearly. All but MacAdam's box spectra use the tables and programs of colour-science.
+interpolated linearly. All use the tables and programs of colour-science.
 
 References
 ----------
-MacAdam 1935, "The theory of the maximum visual efficiency of colored materials", JOSA 25.
 Smits 1999, "An RGB-to-spectrum conversion for reflectances", Journal of Graphics Tools 4(4).
 Meng, Simon, Hanika & Dachsbacher 2015, "Physically meaningful rendering using tristimulus colours", CGF 34(4).
 Otsu, Yamamoto & Hachisuka 2018, "Reproducing spectral reflectances from tristimulus colours", CGF 37(6).
@@ -17,12 +16,11 @@ Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral up
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, partial
 from typing import Any, cast
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from uplift.colorimetry.observer import END, START, STEP, aligned
 from uplift.colorimetry.sensor import Sensor
@@ -34,7 +32,6 @@ from uplift.lab.chart.method import (
     PreparedMethod,
     Task,
     nbytes,
-    ours,
     published_srgb,
     stated_sensor,
     stopwatch,
@@ -118,111 +115,6 @@ def smits_judge() -> Sensor:
     return stated_sensor(space.matrix_XYZ_to_RGB, space.whitepoint_name)
 
 
-NEWTON_STEPS, STARTS = 6, 32
-"""Steps of Newton's method, of which most edges need three, and boxes to start from; few colours need many."""
-TOLERANCE = 1e-7
-"""CIE xy."""
-DARK = 1e-12
-"""Luminance below which a colour is black."""
-
-
-@dataclass(frozen=True, eq=False)
-class Boxes:
-    """Box spectra: of all reflectances of a chromaticity, a box from 0 to 1 is the brightest.
-
-    The band is passed or stopped. A lower box with the same edges has any darker colour. A baseline: no measured
-    spectrum is a box. Edges are in units of samples. Wavelengths are cyclic: a box that extends beyond the last sample
-    continues at the first.
-
-    ``sensor``: the sensor.
-    ``weights`` (N, 3): XYZ of each sample.
-    ``sums`` (2 N + 1, 3): XYZ of all samples before, over two turns.
-    ``starts`` (S, 2): edges of the boxes that begin and end between samples.
-    ``tree``: their chromaticities.
-    """
-
-    sensor: Sensor
-    weights: Array
-    sums: Array
-    starts: Array
-    tree: Any
-
-    def __call__(self, rgb: Array, wavelengths: Array) -> Array:
-        xyz, samples, count = self.sensor.xyz(rgb), self.sensor.wavelengths, len(self.weights)
-        dark = xyz[:, 1] < DARK
-        xyz[dark] = self.sensor.light.white
-        edges = self.find(chromaticity(xyz))
-        height = np.where(dark, 0, np.minimum(xyz[:, 1] / box_xyz(self.sums, edges)[:, 1], 1))
-        # The part of the sample around each wavelength that lies in the box, or in its continuation.
-        position = np.clip((wavelengths - samples[0]) / (samples[1] - samples[0]), 0, count - 1)
-        rise, length = edges[:, :1] % count, np.diff(edges)
-        inside = [
-            np.clip(position + 1 - start, 0, length) - np.clip(position - start, 0, length)
-            for start in (rise, rise - count)
-        ]
-        return np.asarray(height[:, None] * np.clip(inside[0] + inside[1], 0, 1))
-
-    def find(self, xy: Array) -> Array:
-        """Edges (n, 2) of the boxes of chromaticities (n, 2): Newton's method from the nearest known ones in turn."""
-        edges = self.starts[self.tree.query(xy)[1]]
-        for start in range(STARTS):
-            rows = np.flatnonzero(self._error(edges, xy) > TOLERANCE)
-            if not rows.size:
-                break
-            target = xy[rows]
-            near = self.starts[self.tree.query(target, [start + 1])[1][:, 0]]
-            for _ in range(NEWTON_STEPS):
-                near = self._better(near, near + self._step(near, target), target)
-            edges[rows] = self._better(edges[rows], near, target)
-        return edges
-
-    def _better(self, edges: Array, new: Array, xy: Array) -> Array:
-        """Those of the new edges that are boxes and reduce the error, the old ones otherwise."""
-        length = np.diff(new)[:, 0]
-        better = (length > 0) & (length <= len(self.weights)) & (self._error(new, xy) < self._error(edges, xy))
-        return np.where(better[:, None], new, edges)
-
-    def _error(self, edges: Array, xy: Array) -> Array:
-        return np.asarray(np.linalg.norm(chromaticity(box_xyz(self.sums, edges)) - xy, axis=1))
-
-    def _step(self, edges: Array, xy: Array) -> Array:
-        xyz = box_xyz(self.sums, edges)
-        total, current = xyz.sum(axis=1)[:, None, None], chromaticity(xyz)
-        # ∂XYZ/∂edge is the weight of the sample at the edge; ∂xy/∂edge by the quotient rule.
-        slope = self.weights[np.floor(edges).astype(int) % len(self.weights)] * [[-1], [1]]
-        jacobian = ((slope[..., :2] - current[:, None] * slope.sum(axis=-1, keepdims=True)) / total).swapaxes(1, 2)
-        return np.asarray((np.linalg.pinv(jacobian) @ (xy - current)[..., None])[..., 0])
-
-
-def box_xyz(sums: Array, edges: Array) -> Array:
-    """XYZ (n, 3) of boxes of height 1 with ``edges`` (n, 2)."""
-    count = len(sums) // 2
-    at = edges - count * np.floor(edges[:, :1] / count)
-    low = np.clip(at.astype(int), 0, 2 * count - 1)
-    rise, fall = np.moveaxis(sums[low] + (at - low)[..., None] * (sums[low + 1] - sums[low]), 1, 0)
-    return np.asarray(fall - rise)
-
-
-def chromaticity(xyz: Array) -> Array:
-    """CIE xy (n, 2) of XYZ (n, 3)."""
-    return xyz[:, :2] / xyz.sum(axis=1, keepdims=True)
-
-
-def boxes(sensor: Sensor) -> Boxes:
-    """Precompute the boxes whose edges are between samples."""
-    weights = np.ascontiguousarray(sensor.light.xyz.T)
-    sums = np.concatenate([np.zeros((1, 3)), np.tile(weights, (2, 1)).cumsum(axis=0)])
-    rise, length = np.divmod(np.arange(len(weights) ** 2), len(weights))
-    starts = np.stack([rise, rise + length + 1], axis=1).astype(float)
-    return Boxes(sensor, weights, sums, starts, cKDTree(chromaticity(box_xyz(sums, starts))))
-
-
-def prepare_boxes(task: Task) -> PreparedMethod:
-    """Prepare the boxes of the sensor."""
-    table, seconds = stopwatch(lambda: boxes(task.sensor))
-    return PreparedMethod(table, nbytes(table.weights, table.sums, table.starts, table.tree.data), seconds)
-
-
 def _method(name: str, title: str, source: str, prepare: Callable[..., PreparedMethod], **fields: Any) -> Method:
     family = title.partition(",")[0]
     return Method(method=name, title=title, family=family, source=source, prepare=prepare, **fields)
@@ -277,15 +169,6 @@ METHODS = (
         claimed_error=0.1,
         judge=mitsuba3.judge,
         note="looked up by colour-science in the table of Mitsuba 3",
-    ),
-    _method(
-        "macadam1935",
-        "MacAdam 1935",
-        "MacAdam, The theory of the maximum visual efficiency of colored materials, JOSA 25, 1935",
-        prepare_boxes,
-        claimed_error=0.01,
-        judge=ours,
-        note="box spectra, a baseline of this package",
     ),
     MALLETT,
     _in_single(MALLETT),
