@@ -1,4 +1,4 @@
-"""Failures of fits and sensitivity of stored cubes, for docs/stability.md and its picture."""
+"""Failures of fits and sensitivity of stored cubes, for docs/stability.md and its pictures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import uplift
 from benchmarks import CUBES, DOCS, record
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.progress import Progress
-from uplift.lab.study.plots import plot_locality
+from uplift.lab.study.plots import plot_locality, plot_map
 from uplift.lab.study.sensitivity import COLOURS, MOVED_DELTA_E, NOISE, study_sensitivity
 from uplift.lab.study.stability import NO_ATLAS, SYNTHETIC_ATLASES, DesignSpace, study_stability
 from uplift.pipeline.rebuild import recorded_atlas
@@ -48,7 +48,7 @@ def main() -> None:
 
 
 def failure_map() -> list[dict[str, Any]]:
-    """Run the builds of the design."""
+    """Run the builds of the design, and plot them."""
 
     def show(progress: Progress) -> None:
         if progress.done % 20 == 0 or progress.done == progress.total:
@@ -56,6 +56,7 @@ def failure_map() -> list[dict[str, Any]]:
 
     atlases = {"macbeth": uplift.read_atlas("macbeth")} | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
     results = study_stability(DesignSpace(atlases=(NO_ATLAS, *atlases)).configs(), atlases, show)
+    plot_map(list(results.values()), FOLDER / "map.png", force=True)
     return [row | {"technique": config.model_label} for config, row in results.items()]
 
 

@@ -19,7 +19,7 @@ from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
 MOMENTS_PLOTS = ("moments.png", "moments-patches.png", "moments-worst.png")
-SENSITIVITY_PLOTS = ("sensitivity-locality.png",)
+STABILITY_PLOTS, SENSITIVITY_PLOTS = ("stability.png",), ("sensitivity-locality.png",)
 """Files of --output."""
 MACBETH = "macbeth"
 Row = Mapping[str, Any]
@@ -186,19 +186,24 @@ def _list_option(name: str, kind: Callable[[str], Any], metavar: str, help: str)
 @options.atlas("Atlas in addition to the synthetic ones", MACBETH)
 @_list_option("--atlases", str, "NAME,…", "Atlases to use by name, or 'none'.")
 @click.option("--samples", type=options.Whole(0, 100_000), help="Number of random settings in addition to the grids.")
+@output_option
 @options.output_format("table", "json", "csv")
-def stability(quick: bool, files: tuple[str, ...], style: str, **settings: Any) -> None:
+@options.force
+def stability(
+    quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool, **settings: Any
+) -> None:
     """Build cubes over dims, coefficients, models, spaces, thresholds and atlases, and count unfitted nodes.
 
     Reports for each build the realisable and the unfitted nodes, rounds, improvement attempts, the largest residual and
     the time. The builds are a grid of each setting against models and coefficients, and a random sample of other
     combinations.
 
-    Atlases are none, the ColorChecker, and three difficult synthetic ones: crowded, spiky and noisy.
+    Atlases are none, the ColorChecker, and three difficult synthetic ones: crowded, spiky and noisy. --output writes a
+    heat map of the largest residuals, as PNG.
 
     \b
     Examples:
-      uplift study stability --quick
+      uplift study stability --quick --output out --force
       uplift study stability --format json
       uplift study stability --thresholds 1e-4,1e-6 --dims 9 --format csv
     """
@@ -208,9 +213,14 @@ def stability(quick: bool, files: tuple[str, ...], style: str, **settings: Any) 
     atlases = read_atlases(files or (MACBETH,)) | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
     given = {name: value for name, value in settings.items() if value is not None}
     design = replace(QUICK_DESIGN if quick else DesignSpace(), **({"atlases": (NO_ATLAS, *atlases)} | given))
+    _check_plots(output, STABILITY_PLOTS, files, force=force)
     with progress_bar("builds") as progress:
         results = study_stability(design.configs(), atlases, progress)
     records = list(results.values())
+    if output is not None:
+        from uplift.lab.study.plots import plot_map
+
+        _write_plots(output, {STABILITY_PLOTS[0]: partial(plot_map, records)}, force=force)
     hidden = ("success", "points", "stand_ins")
     _print(style, records, records, [{key: row[key] for key in row if key not in hidden} for row in records])
     if style == "table":

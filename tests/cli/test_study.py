@@ -102,7 +102,8 @@ def test_held_out_has_the_same_numbers_in_all_formats(run, rows, macbeth):
 
 def test_stability(run, rows, home, tcs):
     words = (*SETTINGS, "--thresholds", "1e-3,1e-4", "--samples", 1, "--atlas", tcs, "--atlases", "none,tcs")
-    result = run("study", "stability", *words)
+    result = run("study", "stability", *words, "-o", "out")
+    check_plots(home / "out", ["stability.png"], result.stderr)
     assert re.fullmatch(r"3 builds, \d+ realisable nodes: 0 unfitted in 0 builds", result.stdout.splitlines()[-1])
     found = rows("stability", *words)
     assert {row["atlas"] for row in found} == {"none", "tcs"}

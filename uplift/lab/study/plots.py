@@ -1,4 +1,4 @@
-"""Figures of the studies: reconstructions from moments, and the distance to which an entry affects a cube."""
+"""Figures of the studies: reconstructions from moments, failures of builds, and how far an entry affects a cube."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.arrays import Array, StrPath
 from uplift.lab.study.moments import TECHNIQUES, MomentsStudy, Technique, fine_grid
 from uplift.lab.study.sensitivity import MOVED_DELTA_E, Change
-from uplift.viz.figure import figure_text, new_figure, style_axes, style_spectrum_axes, write_png
+from uplift.models import Sigmoid
+from uplift.viz.figure import colour_map, figure_text, new_figure, style_axes, style_spectrum_axes, write_png
 
 FLOATS = 9
 """Numbers stored of the spectra that are drawn, as in figures 4.1 and 4.2 of the thesis."""
@@ -94,6 +95,51 @@ def _plot_spectra(study: MomentsStudy, rows: Sequence[Iterable[int]], path: StrP
         axes.set_ylabel("")
     for axes in panels[:-1].flat:
         axes.set_xlabel("")
+    write_png(figure, path, force=force)
+
+
+MAP_AXES = ("space", "threshold", "dim", "atlas")
+"""Options of builds that the map of failures shows, each over the models."""
+DECADES = (-2.0, 0.0)
+"""Range of the map: log₁₀ of the largest residual over the threshold."""
+
+
+def plot_map(runs: Sequence[Mapping[str, Any]], path: StrPath, *, force: bool = False) -> None:
+    """Write the largest residual of realisable nodes over the threshold as heat maps, PNG.
+
+    Orange cells are those with failed nodes, numbers count failed stand-ins of unrealisable nodes. ``runs`` are records
+    of `uplift.lab.study.stability.run`.
+    """
+    models = list(dict.fromkeys((each["model"], each["coefficients"]) for each in runs))
+    values = {
+        axis: sorted({each[axis] for each in runs}, key=lambda value: (str(type(value)), value)) for axis in MAP_AXES
+    }
+    figure = new_figure(11.0, 1.1 + 0.42 * len(models))
+    panels = figure.subplots(1, len(MAP_AXES), width_ratios=[len(values[axis]) for axis in MAP_AXES], squeeze=False)[0]
+    for axes, axis in zip(panels, MAP_AXES, strict=True):
+        residuals, failed = (np.full((len(models), len(values[axis])), start) for start in (np.nan, 0.0))
+        for each in runs:
+            cell = models.index((each["model"], each["coefficients"])), values[axis].index(each[axis])
+            residuals[cell] = np.fmax(residuals[cell], np.log10(max(each["worst"] / each["threshold"], 1e-12)))
+            failed[cell] += each["stand_ins"]
+        drawn = axes.imshow(
+            residuals, cmap=colour_map().with_extremes(over=HIGHLIGHT), vmin=DECADES[0], vmax=DECADES[1]
+        )
+        for (row, column), count in np.ndenumerate(failed):
+            if count:
+                dark = residuals[row, column] > sum(DECADES) / 2
+                axes.text(column, row, f"{count:.0f}", ha="center", va="center", fontsize=7, color="w" if dark else "k")
+        ticks = [f"{value:.0e}" if axis == "threshold" else str(value).removeprefix("ITU-R ") for value in values[axis]]
+        axes.set_xticks(range(len(ticks)), map(figure_text, ticks), rotation=40, ha="right", fontsize=8)
+        axes.set_title(axis, loc="left", fontsize=10)
+        axes.set_yticks([])
+        axes.spines[:].set_visible(False)
+    names = [model if model == Sigmoid.name else f"{model} {count}" for model, count in models]
+    panels[0].set_yticks(range(len(models)), names, fontsize=9)
+    bar = figure.colorbar(drawn, ax=list(panels), fraction=0.02, pad=0.01, extend="max", ticks=[-2, -1, 0])
+    bar.set_ticklabels(["0.01", "0.1", "1"])
+    bar.set_label("largest residual / threshold")
+    bar.outline.set_visible(False)
     write_png(figure, path, force=force)
 
 
