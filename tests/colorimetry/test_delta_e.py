@@ -73,12 +73,3 @@ def test_dominant_wavelengths_agree_with_colour_science(sensor):
 def test_greys_and_black_have_no_dominant_wavelength(sensor):
     for xyz in (np.zeros(3), np.full(3, -1.0), 0.3 * sensor.light.white):
         assert dominant_wavelength(xyz, sensor) == GREY
-
-
-def test_every_direction_from_white_meets_the_locus_once(sensor):
-    white = sensor.light.white[:2] / sensor.light.white.sum()
-    for angle in np.linspace(0, 2 * np.pi, 361):
-        x, y = white + 0.01 * np.array([np.cos(angle), np.sin(angle)])
-        found = dominant_wavelength([x, y, 1 - x - y], sensor)
-        assert 380 <= found.wavelength <= 780
-        assert 0 < found.purity < 0.2

@@ -55,14 +55,6 @@ def test_what_remains_at_the_entries_is_not_counted_twice():
     assert learnt(np.full((1, 3), 1e4))[0] < 1.3 * learnt(places).mean()
 
 
-def test_errors_are_local():
-    """The error is larger where left-out entries were predicted badly."""
-    places = np.array([[0.0, 0, 0], [3, 0, 0], [0, 3, 0], [80, 0, 0], [83, 0, 0], [80, 3, 0]])
-    learnt = standard_error(places, np.array([3.0, 3, 3, 0.3, 0.3, 0.3]), np.zeros(6))
-    hard, easy = learnt(np.array([[0.0, 0, 2], [80, 0, 2]]))
-    assert hard > 1.5 * easy
-
-
 def test_errors_are_weighted_sums(monkeypatch):
     """Against plain sums at colours, in blocks, and for each entry without itself."""
     queried = np.random.default_rng(6).uniform(-20, 60, (40, 3))

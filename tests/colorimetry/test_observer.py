@@ -78,14 +78,6 @@ def test_unknown_names_raise_with_near_names(call, code, near):
     assert near in caught.value.hint
 
 
-def test_lamps_are_left_out_by_name():
-    lamps = observer.lamps()
-    kept = lamps.without(("FL2",))
-    assert set(lamps.names) - set(kept.names) == {"FL2"}
-    row = lamps.names.index("FL2")
-    np.testing.assert_array_equal(kept.power, np.delete(lamps.power, row, axis=0))
-
-
 @pytest.mark.parametrize("limits", [(360, 830, 1), (360, 1000, 5), (380, 780, 10)])
 def test_other_ranges_agree_with_colour_science(limits, sensor):
     found = observer.on_range(sensor, *limits)

@@ -1,24 +1,19 @@
-"""Writers that are killed, interrupted, run or at once: the old or a complete new file remains."""
+"""Writers that are killed, and builds at once: the old or a complete new file remains, and cubes are equal."""
 
 from __future__ import annotations
 
 import os
 import shutil
-import signal
 import subprocess
 import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
-import numpy as np
 import pytest
-from PIL import Image
 
 import uplift
 from tests.fuzz.fuzzing import ROOT
 from uplift.cube import digest
-from uplift.io.texture import exr_file
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="needs SIGKILL and /proc")
 
@@ -30,26 +25,6 @@ print(flush=True)
 for cube in itertools.cycle(cubes):
     cube.save(sys.argv[1], force=True)
 """
-SECONDS = 10.0
-"""Limit of the time from a signal to the end of all processes."""
-
-
-def start(words: list[str], folder: Path) -> subprocess.Popen[str]:
-    """Start a command that obeys Ctrl-C, as in a terminal."""
-    previous = signal.signal(signal.SIGINT, signal.default_int_handler)  # inherited
-    try:
-        return subprocess.Popen(
-            [sys.executable, "-m", "uplift_cli", *words], cwd=folder, stderr=subprocess.PIPE, text=True
-        )
-    finally:
-        signal.signal(signal.SIGINT, previous)
-
-
-def is_running(process: str) -> bool:
-    try:
-        return " Z " not in Path(f"/proc/{process}/stat").read_text()
-    except OSError:
-        return False
 
 
 @pytest.mark.parametrize("exists", [False, True])
@@ -78,26 +53,3 @@ def test_builds_in_threads_give_equal_cubes():
     dims = [3, 4, 5, 5, 4, 3]
     with ThreadPoolExecutor(len(dims)) as pool:
         assert list(pool.map(built, dims)) == [alone[dim] for dim in dims]
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
-def test_signals_end_textures_and_their_workers(tmp_path, number):
-    random = np.random.default_rng(int(number))
-    for name in ("a.png", "b.png", "c.png"):
-        Image.fromarray(random.integers(0, 256, (1024, 1024, 3), np.uint8)).save(tmp_path / name, compress_level=1)
-    words = ["texture", "a.png", "b.png", "c.png", "-o", "out", "--processes", "2", "-q"]
-    process = start(words, tmp_path)
-    while not list(tmp_path.glob("out/.*.part")):
-        assert process.poll() is None, process.stderr.read()
-        time.sleep(0.02)
-    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
-    process.send_signal(number)
-    _, text = process.communicate(timeout=SECONDS)
-    end = time.monotonic() + SECONDS
-    while any(map(is_running, children)):
-        assert time.monotonic() < end, "its workers do not end"
-        time.sleep(0.05)
-    assert process.returncode in (-number, 128 + number, 130)
-    assert number == signal.SIGKILL or len(text.splitlines()) <= 1
-    assert all(exr_file.is_intact(path) for path in tmp_path.glob("out/*.exr"))
-    assert number == signal.SIGKILL or not list(tmp_path.glob("out/.*.part"))

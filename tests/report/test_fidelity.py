@@ -13,8 +13,6 @@ import uplift
 from tests.helpers import with_points
 from uplift.atlas import on_grid
 from uplift.colorimetry.observer import display_sensors, light
-from uplift.cube import AtlasTable
-from uplift.lookup import Cube
 from uplift.models import reflectance
 from uplift.report.assessment import assess
 from uplift.report.fidelity import JAKOB_HANIKA, entry_errors, find_alternatives, find_crowding, from_stored_entries
@@ -82,10 +80,6 @@ def test_entries_of_another_atlas_have_no_lattice_errors(small_cube, repository)
     own = ("lattice", "delta_e_lattice", "rms_lattice", "worst_lattice", "half_width", "half_width_codes")
     assert {getattr(found.entries, name) for name in own} == {None}
     assert sorted((*found.entries.names, *found.out_of_gamut)) == sorted(other.names)
-    name = found.entries.names[0]
-    (measured,) = on_grid(uplift.Atlas((other.entries[other.names.index(name)],)), small_cube.wavelengths)
-    assert found.entries.rgb[0] == pytest.approx(small_cube.data.sensor.rgb(measured), abs=1e-12)
-    assert found.entries.delta_e[0, 1] == pytest.approx(delta_e(found.entries.answer[0], measured, "A"), abs=1e-6)
 
 
 def test_without_an_atlas_there_are_no_entries(small_sigmoid_cube):
@@ -144,16 +138,6 @@ def test_entry_with_the_colour_of_an_earlier_one_is_lost(lossy_cube):
     assert half_width["grey"][1] > 10
 
 
-@pytest.mark.parametrize("count", [0, 1])
-def test_single_entry_has_no_close_entries(lossy_cube, count):
-    atlas = lossy_cube.data.atlas
-    arrays = ("names", "rgb", "coefficients", "half_width", "error")
-    few = {name: getattr(atlas, name)[:count] for name in arrays}
-    cube = Cube(dataclasses.replace(lossy_cube.data, atlas=AtlasTable(**few)))
-    found = assess(cube, "few.uplift", 1, None, ("A",)).crowding
-    assert found is None if count == 0 else (found.entries.names, found.lost) == ((), ())
-
-
 def test_calibration_against_an_unknown_atlas(small_cube, repository):
     other = uplift.read_atlas(repository / "atlases" / "cie2017.txt")
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11", "A"))
@@ -203,13 +187,6 @@ def test_failures_list_the_worst_points_first(spoilt, small_cube):
     nothing = dataclasses.replace(with_points(spoilt.data, distance=np.full(512, np.nan, np.float32)), provenance={})
     found = collect_failures(nothing)
     assert (found.over_threshold, len(found.worst_points)) == (512, MAX_LISTED)
-
-
-def test_cube_without_provenance_can_be_assessed(small_cube, macbeth):
-    silent = Cube(dataclasses.replace(small_cube.data, provenance={}))
-    found = assess(silent, "small.uplift", 1, macbeth, ("A",))
-    assert not found.own
-    assert len(found.entries.names) == 23
 
 
 @pytest.fixture(scope="module")

@@ -67,23 +67,6 @@ def test_pixels_equal_those_of_python_under_a_mix_of_lights(page, small_cube):
     assert curve.count("L") == 83
 
 
-def test_arrow_keys_move_to_another_pixel_and_mark_it(page):
-    need(CHROMIUM)
-    with browser() as opened:
-        opened.open(page)
-        before, label = opened.canvas("view"), "document.getElementById('pixel').textContent"
-        assert opened.evaluate(label).startswith("384, 256: #")
-        opened.evaluate("document.getElementById('view').focus()")
-        opened.key("ArrowRight")
-        opened.key("ArrowUp", modifiers=8)
-        assert opened.evaluate(label).startswith("385, 236: #")
-        marked = np.argwhere((opened.canvas("view") != before).any(axis=2))
-        assert np.abs(marked - [236, 385]).max() < 10
-        for _ in range(30):
-            opened.key("ArrowUp", modifiers=8)
-        assert opened.evaluate(label).startswith("385, 0: #")
-
-
 def test_other_cubes_are_rejected(small_cube, tmp_path):
     sensor = replace(small_cube.data.sensor, space="Display P3")
     with raises(OptionError, "option"):

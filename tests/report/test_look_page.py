@@ -76,13 +76,6 @@ def test_its_spectrum_is_the_answer(html, small_cube, found):
     assert given["rgb"] == "#8a2a20"
 
 
-def test_regions_are_those_of_the_bounds(html, found):
-    for given, each in zip(numbers(html)["lights"], found, strict=True):
-        assert given["name"] == each.light.name
-        np.testing.assert_allclose(given["region"], each.outline(0), atol=1e-3)
-        np.testing.assert_allclose(given["likely"], each.likely(0), atol=1e-3)
-
-
 def test_a_page_is_about_one_colour(small_cube):
     two = [bounds(small_cube, np.full((2, 3), 0.4), observer.light("A"), divisions=0)]
     for found in (two, []):
