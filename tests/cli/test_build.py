@@ -107,7 +107,7 @@ def test_verbose_prints_every_round_and_storing(run, home):
         ("--model moment", "unknown-model"),
         ("--axis log", "unknown-axis-spacing"),
         ("--range 360", "option"),
-        ("--range 361:830", "invalid-range"),
+        ("--range 361:830", "option-out-of-range"),
         ("--entry-coefficients 18", "option-out-of-range"),
         ("--atlas none.txt", "file-not-found"),
         ("--atlas mine", "atlas"),

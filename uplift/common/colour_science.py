@@ -8,8 +8,6 @@ from types import ModuleType
 
 import numpy as np
 
-__all__ = ["colour_science"]
-
 
 @functools.cache
 def colour_science() -> ModuleType:

@@ -13,8 +13,6 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Any, Protocol
 
-__all__ = ["CsvWriter", "csv_text", "plain_cell"]
-
 _FORMULA = re.compile(r"'*[=+\-@\t\r\n＝＋－＠]")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _NEUTRALISED = re.compile(r"'+[=+\-@\t\r\n＝＋－＠]")

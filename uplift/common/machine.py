@@ -9,35 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-
-class _SharedLimit:
-    """One thread in pools of the process, from the first caller to the last one."""
-
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._callers = 0
-        self._limits: Any = None
-
-    def __enter__(self) -> None:
-        from threadpoolctl import threadpool_limits
-
-        with self._lock:
-            if not self._callers:
-                self._limits = threadpool_limits(1, user_api="blas")
-            self._callers += 1
-
-    def __exit__(self, *error: object) -> None:
-        from threadpoolctl import OpenBLASController
-
-        with self._lock:
-            self._callers -= 1
-            if not self._callers:
-                # The limit can otherwise be restored by the thread only that set it.
-                OpenBLASController.clear_controlling_thread(force=True)
-                self._limits.restore_original_limits()
-
-
-_LIMIT = _SharedLimit()
+_LOCK = threading.Lock()
+_LIMITS: list[Any] = []
+"""The limit of the process, once for every caller."""
 
 
 @contextlib.contextmanager
@@ -48,11 +22,21 @@ def single_threaded_blas() -> Iterator[None]:
     number of threads, which changes the rounding of sums. The threads of XLA are not affected: they distribute rows.
     """
     import scipy.linalg  # noqa: F401  loads its own BLAS, and only loaded libraries can be limited
-    from threadpoolctl import ThreadpoolController
+    from threadpoolctl import OpenBLASController, ThreadpoolController, threadpool_limits
 
     per_thread = ThreadpoolController().select(threading_layer="openmp")  # its limits hold for the calling thread
-    with per_thread.limit(limits=1, user_api="blas"), _LIMIT:
-        yield
+    with per_thread.limit(limits=1, user_api="blas"):
+        with _LOCK:
+            _LIMITS.append(_LIMITS[0] if _LIMITS else threadpool_limits(1, user_api="blas"))
+        try:
+            yield
+        finally:
+            with _LOCK:
+                limit = _LIMITS.pop()
+                if not _LIMITS:
+                    # The limit can otherwise be restored by the thread only that set it.
+                    OpenBLASController.clear_controlling_thread(force=True)
+                    limit.restore_original_limits()
 
 
 CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")

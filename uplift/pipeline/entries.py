@@ -127,10 +127,8 @@ def warn_of_crowding(names: Sequence[str], boxes: EntryBoxes, seeds: Seeds) -> N
     duplicates = [names[row] for row in np.flatnonzero(boxes.half_width == 0).tolist()]
     crowded = [names[row] for row in seeds.crowded if boxes.half_width[row]]
     if duplicates:
-        warn(
-            f"{_listed(duplicates)} left out: an earlier entry has the same colour, which has only one answer",
-            "entry-duplicate",
-        )
+        problem = f"{_listed(duplicates)} left out: an earlier entry has the same colour, which has only one answer"
+        warn(problem, "entry-duplicate")
     if crowded:
         warn(
             f"{_listed(crowded)} crowded: closer entries own the nearest lattice point. Queries at the entries' own "
@@ -149,12 +147,9 @@ def _listed(names: Sequence[str]) -> str:
 
 def describe_atlas(atlas: Atlas, names: Sequence[str]) -> dict[str, Any]:
     """Files by name, digest and the scale of their values if the caller gave it, and the entries that are not used."""
+    atlases = [{"name": each.name, "digest": each.digest, "measured": each.measured} for each in atlas.sources]
     return {
-        "atlases": [
-            {"name": source.name, "digest": source.digest}
-            | ({} if source.measured == "auto" else {"measured": source.measured})
-            for source in atlas.sources
-        ],
+        "atlases": [{key: each[key] for key in each if (key, each[key]) != ("measured", "auto")} for each in atlases],
         "left_out": [name for name in atlas.names if name not in names],
         "skipped": [entry.name for entry in atlas.skipped],
     }

@@ -82,25 +82,15 @@ class Options:
         for field in fields(self):
             object.__setattr__(self, field.name, _plain(field.name, str(field.type), getattr(self, field.name)))
         low, high = MAX_RANGE
-        if not low <= self.shortest <= START < END <= self.longest <= high:
-            raise OptionError(
-                f"the range must hold {START:g} to {END:g} nm and lie within {low:g} to {high:g} nm, "
-                f"got {self.shortest:g} to {self.longest:g}"
-            )
+        shown = f"got {self.shortest:g} to {self.longest:g}"
+        limits = f"the range must hold {START:g} to {END:g} nm and lie within {low:g} to {high:g} nm"
+        _require(low <= self.shortest <= START < END <= self.longest <= high, f"{limits}, {shown}")
         # A rebuild has the sensitivities of a camera at the wavelengths of the cube only.
         steps = [step for step in STEPS if step <= STEP or self.space != CAMERA]
-        if self.step not in steps:
-            *others, last = (f"{step:g}" for step in steps)
-            cube = "of a camera's cube " if self.space == CAMERA else ""
-            problem = f"step {cube}must be {', '.join(others)} or {last} nm, got {self.step:g}"
-            raise OptionError(problem, code="invalid-range", hint="use 5")
-        if (self.longest - self.shortest) % self.step:
-            raise OptionError(
-                f"the range must be a multiple of the step of {self.step:g} nm, "
-                f"got {self.shortest:g} to {self.longest:g}",
-                code="invalid-range",
-                hint="use a step of 1",
-            )
+        allowed = ", ".join(f"{step:g}" for step in steps)
+        _require(self.step in steps, f"step of {self.space} must be one of {allowed} nm, got {self.step:g}", "use 5")
+        multiple = f"the range must be a multiple of the step of {self.step:g} nm"
+        _require((self.longest - self.shortest) % self.step == 0, f"{multiple}, {shown}", "use a step of 1")
         self.spectrum_model()
         for name, names, kind in (
             (self.axis, AXES, "axis spacing"),
@@ -110,20 +100,24 @@ class Options:
         ):
             if name not in names:
                 raise unknown_name(name, [known for known in names if known != CUSTOM], kind)
-        if not 1 <= len(self.lights) <= MAX_LIGHTS:
-            raise OptionError(f"lights must name 1 to {MAX_LIGHTS} illuminants, got {len(self.lights)}")
-        entry_range = (self.coefficients, MAX_COUNT) if self.model == Moments.name else (-np.inf, np.inf)
-        for name, least, most, hint in (
-            ("dim", 2, np.inf, "use dim=2 or more"),
-            ("entry_coefficients", *entry_range, "entries have as many coefficients as the nodes, or more"),
-            ("threshold", MIN_THRESHOLD, MAX_THRESHOLD, "use 1e-6 to 0.1"),
-            ("auto_tolerance", 0, MAX_AUTO_TOLERANCE, "it is a ΔE00"),
+        count, most = len(self.lights), f"in [{self.coefficients}, {MAX_COUNT}]"
+        _require(1 <= count <= MAX_LIGHTS, f"lights must name 1 to {MAX_LIGHTS} illuminants, got {count}")
+        _require(
+            self.dim == AUTO or self.dim >= 2,
+            f"dim must be at least 2, got {format_value(self.dim)}",
+            "use dim=2 or more",
+        )
+        _require(
+            self.model != Moments.name or self.coefficients <= self.entry_coefficients <= MAX_COUNT,
+            f"entry_coefficients must be {most}, got {format_value(self.entry_coefficients)}",
+            "entries have as many coefficients as the nodes, or more",
+        )
+        for name, least, largest in (
+            ("threshold", MIN_THRESHOLD, MAX_THRESHOLD),
+            ("auto_tolerance", 0, MAX_AUTO_TOLERANCE),
         ):
             value = getattr(self, name)
-            if value != AUTO and not least <= value <= most:
-                limits = f"in [{least:g}, {most:g}]" if most < np.inf else f"at least {least:g}"
-                problem = f"{name} must be {limits}, got {format_value(value)}"
-                raise OptionError(problem, code="option-out-of-range", hint=hint)
+            _require(least <= value <= largest, f"{name} must be in [{least:g}, {largest:g}], got {value:g}")
 
     def spectrum_model(self, coefficients: int | None = None) -> Model:
         """Create the spectrum model, from `shortest` to `longest` nm, of the nodes or of other moments."""
@@ -142,6 +136,11 @@ def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
         current.setdefault("entry_coefficients", current["coefficients"])
     current = {"prior": "smooth", "leave_out": (), **current}  # the defaults up to file version 3
     return {name: tuple(value) if isinstance(value, list) else value for name, value in current.items()}
+
+
+def _require(valid: bool, problem: str, hint: str = "") -> None:
+    if not valid:
+        raise OptionError(problem, code="option-out-of-range", hint=hint)
 
 
 def _plain(name: str, kind: str, value: Any) -> Any:
@@ -172,7 +171,5 @@ def check_memory(options: Options) -> None:
         largest = int(max((have - PROCESS_BYTES) / node, 8) ** (1 / 3))
         # A float overflows for absurd values of dim.
         needed, memory = (f"{min(count, 10**300) / 1e9:.3g} GB" for count in (need, have))
-        raise OptionError(
-            f"dim {format_value(options.dim)} needs about {needed} of memory, this machine has {memory}",
-            hint=f"use dim={largest} or less",
-        )
+        problem = f"dim {format_value(options.dim)} needs about {needed} of memory, this machine has {memory}"
+        raise OptionError(problem, hint=f"use dim={largest} or less")
