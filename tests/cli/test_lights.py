@@ -90,8 +90,6 @@ def test_programs(run, misuse, home):
     [
         ("query", "1", "1", "1", "--cube", "lights.uplift"),
         ("texture", "in.png", "-o", "out.exr", "--cube", "lights.uplift"),
-        ("relight", "in.png", "--cube", "lights.uplift"),
-        ("mix", "#ff0000", "#0000ff", "--cube", "lights.uplift"),
         ("study", "sensitivity", "lights.uplift"),
     ],
 )

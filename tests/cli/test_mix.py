@@ -97,9 +97,6 @@ def test_paint_over_an_image(run, refuse, home, cubes):
         (("-1:#ffffff",), "option"),
         (("1:1.5,0,0",), "rgb-out-of-gamut"),
         (("#802020/#c03030",), "colour"),
-        (("#802020", "--thickness", "-1"), "invalid-thickness"),
-        (("#802020", "--refractive-index", "0.5"), "option"),
-        (("--filter", "#802020", "--thickness", "2"), "option"),
         (("#802020", "--atlas", "none.txt"), "file-not-found"),
     ],
 )
@@ -113,8 +110,6 @@ def test_invalid_input_is_an_error(refuse, words, code):
         (),
         (BLUE, "--over", "in.exr"),
         (BLUE, "-o", "out.exr"),
-        (BLUE, "--additive", "--ground", "white"),
-        (BLUE, "--steps", "1"),
         (BLUE, "--over", "in.exr", "-o", "out.exr", "--plot", "a.png"),
         ("--theories", BLUE, YELLOW, "--thickness", 2),
     ],

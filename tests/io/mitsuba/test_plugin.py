@@ -41,9 +41,7 @@ def test_scenes_can_be_xml_and_cubes_are_found_by_the_file_resolver(mi, reposito
     ("properties", "message"),
     [
         ({}, "must have one of rgb, filename, bitmap, got 0"),
-        ({"rgb": COLOUR, "filename": "image.png"}, "must have one of rgb, filename, bitmap, got 2"),
         ({"rgb": "red"}, "rgb must be three numbers, got 'red'"),
-        ({"rgb": "0.5 0.5"}, "rgb must be three numbers"),
         ({"rgb": [0.5, 0.5, 2.0]}, r"lies outside \[0, 1\]"),
         ({"rgb": COLOUR, "cube": "missing.uplift"}, "missing.uplift: "),
         ({"rgb": COLOUR, "wrap": "clamp"}, "unreferenced"),
@@ -195,8 +193,6 @@ def test_a_white_wall_has_the_colour_of_the_sky(mi, table):
     ("properties", "message"),
     [
         ({"type": "uplift_envmap"}, "must have one of filename, bitmap"),
-        ({"type": "uplift_envmap", "rgb": "1, 1, 1"}, "must have one of"),
-        ({"type": "uplift", "emission": True, "rgb": "0, 0, 1, 1"}, "rgb must be three numbers"),
         ({"type": "uplift", "emission": True, "rgb": "-3, 1, -2"}, "no light has the colour"),
         ({"type": "uplift", "emission": True, "rgb": "1, 1, 1", "cube": "missing.uplift"}, "missing.uplift"),
     ],

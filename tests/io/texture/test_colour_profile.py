@@ -101,7 +101,6 @@ P3, ADOBE, BT2020 = "Display P3", "Adobe RGB (1998)", "ITU-R BT.2020"
         ("jpg", by_matrix("sRGB", LINEAR), "sRGB", lambda codes: codes),
         ("png", by_matrix(BT2020, SRGB_TABLE), BT2020, colour.models.eotf_sRGB),
         ("png", (12, 13), P3, colour.models.eotf_sRGB),
-        ("png", (9, 8), BT2020, lambda codes: codes),
         ("png", (9, 14), BT2020, colour.models.oetf_inverse_BT2020),
         ("png", (1, 4), "sRGB", lambda codes: codes**2.2),
     ],
@@ -124,7 +123,6 @@ def test_colours_of_profiles_and_code_points_are_converted(suffix, statement, sp
         ("jpg", by_matrix("sRGB", GAMMA)[:300]),  # PNG files lose damaged profiles when they are read
         ("tif", b"no profile"),
         ("png", (9, 16)),
-        ("png", (2, 13)),
     ],
 )
 def test_unusable_statements_trigger_a_warning(suffix, statement, spectral, tmp_path):
