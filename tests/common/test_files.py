@@ -12,8 +12,6 @@ from tests.helpers import raises
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write, check_output, check_outputs, remove_temporaries
 
-AS_ROOT = os.name == "nt" or not hasattr(os, "geteuid") or os.geteuid() == 0
-
 
 def write(path, text, **options):
     with atomic_write(path, **options) as temporary:
