@@ -38,7 +38,7 @@ def main() -> None:
         atlas=ATLAS,
         dim=DIM,
         looks=list(looks(plain, looked)),
-        entries=entries(plain, looked),
+        entries=len(plain.data.atlas.rgb),
         impossible=[impossible(*each) for each in IMPOSSIBLE],
         scene=render(plain, looked),
     )
@@ -56,13 +56,6 @@ def looks(plain: Cube, looked: Cube) -> Iterator[Row]:
             )
             distances = {"without": delta_e_rgb(screen, before, wish), "with_look": delta_e_rgb(screen, after, wish)}
             yield {"look": look["name"], "light": each["light"], **codes, **distances}
-
-
-def entries(plain: Cube, looked: Cube) -> Row:
-    """Return the largest change of a reflectance at the colours of the measured entries."""
-    rgb = plain.data.atlas.rgb
-    change = np.abs(looked.reflectance(rgb) - plain.reflectance(rgb)).max()
-    return {"count": len(rgb), "change": {"spectra": change}}
 
 
 def impossible(rgb: str, light: str, wish: str) -> Row:

@@ -17,7 +17,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb, rgb_to_lab
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
-from uplift.design.mixing import Ingredients, Medium, dispersive, make_coat
+from uplift.design.mixing import dispersive
 from uplift.design.mixing.coats import ramp
 from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, Pigment, PowerOfReflectance, Scattering, from_opaque
 from uplift.design.mixing.theories import Mixer, mixers, spectral_models
@@ -266,14 +266,13 @@ def _greens(cube: Cube, pair: Array, rule: Scattering | None) -> Iterator[Row]:
 
 
 def draw(cube: Cube, smooth: Cube, folder: Path) -> None:
-    """Write a picture for each pair of colours, one of coats, and one that compares other tools, by ``smooth``."""
+    """Write a picture for each pair of colours, and one that compares other tools, by ``smooth``."""
     folder.mkdir(exist_ok=True)
     by_name, parts = {mixer.name: mixer for mixer in mixers(cube)}, ramp(np.ones(2), STEPS)
     for name, pair in PAIRS.items():
         rgb = np.array([colour(cube, word) for word in pair])
         strips = {by_name[each].title: by_name[each].mix(rgb, parts) for each in DRAWN}
         _plot(cube, strips, folder / f"{name}.png")
-    _plot(cube, dict(_coats(cube)), folder / "thickness.png")
     _plot(smooth, _tools(smooth), folder / "tools.png")
 
 
@@ -295,20 +294,6 @@ def _tools(cube: Cube) -> dict[str, Array]:
         "coloraide's spectral, after spectral.js (published)": np.concatenate([ends[:1], steps.expected, ends[1:]]),
         "Mixbox 1:1 (published)": np.concatenate([ends[:1], mixbox, ends[1:]]),
     }
-
-
-def _coats(cube: Cube) -> Iterator[tuple[str, Array]]:
-    """Yield title and colours of paints on white and on black and of dyes, with doubling thickness."""
-    sensor = cube.data.sensor
-    thickness = [0, *(2.0 ** np.arange(-4, 3))]
-    for name, code in (("red", "#b01030"), ("yellow", "#ffd200"), ("blue", "#005fa0")):
-        colorant, scattering = Ingredients(cube.reflectance(colour(cube, code))[None]), dispersive(sensor)
-        paints = [make_coat("pigment", colorant, [1], Medium(x, scattering=scattering)) for x in thickness]
-        dyes = [make_coat("dye", colorant, [1], Medium(x)) for x in thickness]
-        title = f"{', '.join(f'{x:.3g}' for x in thickness)} units thick"
-        yield f"{name} paint on white, {title}", sensor.rgb([coat.over(np.ones(81)) for coat in paints])
-        yield f"{name} paint on black, {title}", sensor.rgb([coat.over(np.zeros(81)) for coat in paints])
-        yield f"{name} dye on white, the same thicknesses", sensor.rgb([coat.over(1.0) for coat in dyes])
 
 
 # --- times ---

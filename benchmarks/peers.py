@@ -13,7 +13,6 @@ import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, partial
-from importlib.metadata import version
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -31,7 +30,6 @@ from uplift.lab.timing import Spread, spread
 from uplift.lattice import Lattice
 from uplift.models import Moments, Sigmoid, evaluate, reflectance
 from uplift.models.model import Model
-from uplift.models.sigmoid import evaluate_unscaled
 
 THRESHOLD = 1e-4
 """Largest |linear RGB| between a fitted spectrum and its colour: the threshold of cubes."""
@@ -90,18 +88,18 @@ def model_of(name: str, count: int) -> Model:
     return Sigmoid() if name == "sigmoid" else Moments(count)
 
 
-def judge(rgb: ArrayLike, target: ArrayLike, *, least: float, within: float = THRESHOLD) -> dict[str, float]:
+def judge(rgb: ArrayLike, target: ArrayLike, *, least: float) -> dict[str, float]:
     """Compare linear RGB (n, 3) with ``target`` (n, 3): the share within `THRESHOLD`, and the largest residual.
 
-    Raises `RuntimeError` if fewer than the share ``least`` come within ``within``: some tools leave a few nodes
+    Raises `RuntimeError` if fewer than the share ``least`` come within `THRESHOLD`: some tools leave a few nodes
     unfitted, with more a time means nothing.
     """
     residual = np.abs(np.asarray(rgb) - np.asarray(target)).max(axis=1)
     residual = np.where(np.isfinite(residual), residual, np.inf)
-    share = float((residual <= within).mean())
+    share = float((residual <= THRESHOLD).mean())
     if share < least:
-        raise RuntimeError(f"wrong answer, not timed: {share:.1%} of the points are within {within:g}")
-    return {"share": float((residual <= THRESHOLD).mean()), "worst": float(residual.max())}
+        raise RuntimeError(f"wrong answer, not timed: {share:.1%} of the points are within {THRESHOLD:g}")
+    return {"share": share, "worst": float(residual.max())}
 
 
 def judge_multipliers(model: Model, multipliers: Array, target: Array, *, least: float) -> dict[str, float]:
@@ -187,31 +185,4 @@ def _run_ceres(program: Path, unknowns: str, count: int) -> tuple[Array, dict[st
         return np.fromfile(solution).reshape(-1, count), json.loads(done.stdout)
 
 
-def colour_science(runs: int) -> list[Peer]:
-    """Time a small table of colour-science's LUT3D_Jakob2019; a large one goes from point to point in shorter steps."""
-    import colour
-    from colour.recovery.jakob2019 import lightness_scale
-
-    size, table = 3, colour.recovery.LUT3D_Jakob2019()
-    cmfs, light = observer.aligned(sensor())
-
-    def generate() -> Array:
-        space = colour.RGB_COLOURSPACES[sensor().space]
-        table.generate(space, cmfs, light, size, print_callable=lambda *_: None)
-        return np.asarray(table.coefficients.reshape(-1, 3))
-
-    # A part of the table for each largest component; within it by the value of that component, then by the shares of
-    # the next two, in cyclic order.
-    shares = np.linspace(0, 1, size)
-    value, last, middle = np.meshgrid(lightness_scale(size), shares, shares, indexing="ij")
-    bright = np.stack([value, value * middle, value * last], axis=-1)
-    target = np.stack([np.roll(bright, part, axis=-1) for part in range(3)]).reshape(-1, 3)
-    coefficients, cpu = measured(generate, len(target), runs)
-    rgb = sensor().rgb(evaluate_unscaled(coefficients, sensor().wavelengths))
-    answer = judge(rgb, target, least=0.8, within=1e-2)
-    tool = f"colour-science {version('colour-science')} `LUT3D_Jakob2019`"
-    notes = f"a table of size {size}, 3 × {size}³ points; it stops at a ΔE"
-    return [Peer(tool, "sigmoid", 3, len(target), cpu, **answer, notes=notes)]
-
-
-TOOLS = (ours, ceres, colour_science)
+TOOLS = (ours, ceres)

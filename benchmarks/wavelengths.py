@@ -27,9 +27,6 @@ OTHERS = ("meyer", "uniform", "bins")
 COUNTS = range(4, 17)
 LIGHTS = (("A", "B", "C", "D65"), ("FL2", "FL7", "FL11"))
 """Smooth ones, and spiky ones."""
-BOUNCE_COUNTS = (6, 8, 12)
-PATHS = 400
-BOUNCE_LIGHTS = ("D65", "FL11")
 COLOURS = ("#20509a", "#d1495b", "#2e8b57", "#c98a1b", "#7fa3d9")
 CORNERS = np.array([[0.5, np.sqrt(0.75)], [0.0, 0.0], [1.0, 0.0]])
 """Corners of figure 7, where the first, second and third channel have all wavelengths."""
@@ -209,22 +206,6 @@ def spread(ratios: Array) -> Row:
     }
 
 
-def bounces(materials: Array) -> list[Row]:
-    """Return mean ΔE00 of random paths over one to three held-out materials."""
-    odd = np.arange(len(materials)) % 2 == 1
-    fitted = make_setup(materials[~odd], BOUNCE_LIGHTS)
-    rng = np.random.default_rng(1)
-    draws = [rng.choice(materials[odd], PATHS) for _ in range(3)]
-    paths = [make_setup(np.prod(draws[: length + 1], axis=0), BOUNCE_LIGHTS) for length in range(3)]
-    rows = []
-    for count in BOUNCE_COUNTS:
-        samplings = {name: method(fitted, count) for name, method in METHODS.items()}
-        for length, path in enumerate(paths, 1):
-            errors = {name: float(evaluate(path, sampling).mean) for name, sampling in samplings.items()}
-            rows.append({"count": count, "materials": length, "errors": errors})
-    return rows
-
-
 # --- pictures ---
 
 
@@ -309,9 +290,6 @@ def main() -> None:
         materials=len(materials),
         summary=[summary for summary, _ in found],
         errors=[row for _, rows in found for row in rows],
-        bounce_paths=PATHS,
-        bounce_lights=BOUNCE_LIGHTS,
-        bounces=bounces(materials),
         **compare_meyer(checker, opponent),
     )
 
