@@ -72,10 +72,7 @@ def content(path: Path) -> bytes:
 
 def difference(old: bytes, new: bytes) -> str:
     """The first lines that differ."""
-    try:
-        lines = old.decode().splitlines(), new.decode().splitlines()
-    except UnicodeDecodeError:
-        return f"{len(old)} and {len(new)} bytes"
+    lines = (each.decode(errors="replace").splitlines() for each in (old, new))
     compared = list(difflib.unified_diff(*lines, lineterm="", n=0))[2:]
     changed = ["      " + line[:160] for line in compared if not line.startswith("@@")]
     return "\n".join([f"{len(changed)} lines", *changed[:8]])

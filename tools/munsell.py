@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import csv
 import sys
-from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -24,11 +23,9 @@ def main(folder: str, output: str) -> None:
     with (data / "Munsell1269NotationInfo.dat").open(encoding="utf-8") as file:
         names = [f"{chip['H']} {float(chip['V']):g}/{float(chip['C']):g}" for chip in csv.DictReader(file)]
     wavelengths, values = table[::5, 0], table[::5, 1:]
-    rows, counts = [], Counter[str]()
-    for name, column in zip(names, values.T, strict=True):
-        counts[name] += 1
-        unique = name if counts[name] == 1 else f"{name} ({counts[name]})"
-        rows.append([unique, *(f"{value:.4f}" for value in column)])
+    repeats = [names[:row].count(name) + 1 for row, name in enumerate(names)]
+    names = [name if repeat == 1 else f"{name} ({repeat})" for name, repeat in zip(names, repeats, strict=True)]
+    rows = [[name, *(f"{value:.4f}" for value in column)] for name, column in zip(names, values.T, strict=True)]
     Path(output).parent.mkdir(parents=True, exist_ok=True)
     header = ["name", *(f"{wavelength:g}" for wavelength in wavelengths)]
     write_text(csv_text(header, rows), output, force=True)

@@ -14,7 +14,6 @@ Examples
 from __future__ import annotations
 
 import csv
-import io
 import json
 import statistics
 import string
@@ -32,10 +31,7 @@ DOCS = ROOT / "docs"
 TEMPLATES = DOCS / "templates"
 README = "README"
 NAMED: dict[str, Callable[[float], str]] = {
-    "time": viz_format.format_time,
-    "size": viz_format.format_size,
-    "error": viz_format.format_error,
-    "build_time": viz_format.format_build_time,
+    name: getattr(viz_format, f"format_{name}") for name in ("time", "size", "error", "build_time")
 }
 """Formats in addition to the format specifications of Python: `time` takes nanoseconds, `size` bytes."""
 Row = Mapping[str, Any]
@@ -131,18 +127,16 @@ def read_rows(path: str) -> list[Row]:
         except ValueError:
             return cell
 
-    return [{key: value(cell) for key, cell in row.items()} for row in csv.DictReader(io.StringIO(read_text(path)))]
+    return [{key: value(cell) for key, cell in row.items()} for row in csv.DictReader(read_text(path).splitlines())]
 
 
 def render(name: str, data: Mapping[str, Any] | None = None) -> str:
     """Return the text of a page, from its template and its data, by default the stored one."""
-    loader = FileSystemLoader(TEMPLATES)
-    environment = Environment(
-        loader=loader, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
-    )
+    style = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
+    environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, **style)
     environment.filters |= {"num": number, "mean": statistics.fmean}
-    environment.globals |= {"load": read_data, "rows": read_rows, "text": read_text}
-    environment.globals |= {"table": table, "where": where, "pick": pick}
+    functions = {"load": read_data, "rows": read_rows, "text": read_text, "table": table, "where": where, "pick": pick}
+    environment.globals |= functions
     return environment.get_template(f"{name}.md.j2").render(read_data(name) if data is None else data)
 
 

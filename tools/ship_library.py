@@ -23,13 +23,8 @@ from uplift.fit.families import STEPS
 
 ROOT = Path(__file__).parents[1]
 FILE = ROOT / "uplift" / "fit" / "library.npz"
-FAMILIES = {
-    "checker": ("macbeth", "babelcolor"),
-    "pmc": ("pmc",),
-    "tcs": ("tcs",),
-    "vs": ("vs",),
-    "cie2017": ("cie2017",),
-    "rawtoaces": ("rawtoaces",),
+FAMILIES = {"checker": ("macbeth", "babelcolor")} | {
+    name: (name,) for name in ("pmc", "tcs", "vs", "cie2017", "rawtoaces")
 }
 """Shipped atlases by family: the two ColorCheckers are one chart."""
 SPREAD, OTSU_SPREAD = 5.0, 3.0
@@ -76,10 +71,7 @@ def blurred_otsu(xyz: Array, light: Array) -> Array:
     """Spectra (n, 81) of XYZ (n, 3) under a light (3, 81), blended between clusters; exact, not clipped."""
     shape = otsu2018.SPECTRAL_SHAPE_OTSU2018
     resampled = np.stack([np.interp(observer.grid(), shape.wavelengths, row) for row in np.eye(36)])
-    basis, means = (
-        otsu2018.BASIS_FUNCTIONS_OTSU2018 @ resampled,
-        otsu2018.CLUSTER_MEANS_OTSU2018 @ resampled,
-    )
+    basis, means = (table @ resampled for table in (otsu2018.BASIS_FUNCTIONS_OTSU2018, otsu2018.CLUSTER_MEANS_OTSU2018))
     xy = colour.XYZ_to_xy(xyz)
     spectra = np.zeros((len(xyz), basis.shape[-1]))
     for cluster, share in enumerate(shares(xy, len(basis)).T):

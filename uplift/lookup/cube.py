@@ -17,16 +17,7 @@ from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData, read, write
-from uplift.lookup.blocks import (
-    Function,
-    as_coefficient_count,
-    as_colours,
-    as_float_type,
-    as_thread_count,
-    as_wavelengths,
-    blockwise,
-    decode_codes,
-)
+from uplift.lookup import blocks
 from uplift.lookup.interpolate import MODES, cells, coefficients, extended_coefficients, node_errors
 
 if TYPE_CHECKING:
@@ -139,17 +130,17 @@ class Cube:
         ndarray, shape (..., count)
             Coefficients.
         """
-        width = as_coefficient_count(count, self.data)
-        colours = as_colours(rgb, self.data.sensor)
-        kind, threads = as_float_type(dtype), as_thread_count(threads)
-        function: Function = partial(coefficients, self.data)
+        width = blocks.as_coefficient_count(count, self.data)
+        colours = blocks.as_colours(rgb, self.data.sensor)
+        kind, threads = blocks.as_float_type(dtype), blocks.as_thread_count(threads)
+        function: blocks.Function = partial(coefficients, self.data)
         if width != self.coefficient_count:
             function = partial(extended_coefficients, self.data)
             if self._is_table_worthwhile(colours, width * kind.itemsize):
                 from uplift.lookup.node_table import tabulate_coefficients
 
                 function = tabulate_coefficients(self.data, width, kind, threads).values
-        return blockwise(function, colours, width, kind, threads)
+        return blocks.blockwise(function, colours, width, kind, threads)
 
     def reflectance(
         self,
@@ -190,15 +181,15 @@ class Cube:
         """
         if mode not in MODES:
             raise OptionError(f"unknown mode '{mode}'", code="unknown-mode", hint=f"use one of {', '.join(MODES)}")
-        at = as_wavelengths(wavelengths, self.data.sensor.wavelengths)
-        kind, count = as_float_type(dtype), as_thread_count(threads)
-        colours = as_colours(rgb, self.data.sensor)
-        function: Function = partial(MODES[mode], self.data, wavelengths=at)
+        at = blocks.as_wavelengths(wavelengths, self.data.sensor.wavelengths)
+        kind, count = blocks.as_float_type(dtype), blocks.as_thread_count(threads)
+        colours = blocks.as_colours(rgb, self.data.sensor)
+        function: blocks.Function = partial(MODES[mode], self.data, wavelengths=at)
         if mode in TABULATED and self._is_table_worthwhile(colours, len(at) * kind.itemsize):
             from uplift.lookup.node_table import tabulate
 
             function = getattr(tabulate(self.data, at, kind, count), mode)
-        return blockwise(function, colours, len(at), kind, count)
+        return blocks.blockwise(function, colours, len(at), kind, count)
 
     def _is_table_worthwhile(self, colours: Array, row_bytes: int) -> bool:
         """Whether to compute the spectra of all lattice points once, instead of repeatedly per block."""
@@ -218,7 +209,7 @@ class Cube:
         ndarray of bool, shape (...)
             True where it can.
         """
-        colours = as_colours(rgb, self.data.sensor)
+        colours = blocks.as_colours(rgb, self.data.sensor)
         if self.data.complete_cells is None:
             return np.ones(colours.shape[:-1], dtype=bool)
         return self.data.complete_cells[cells(self.data, colours.reshape(-1, 3))].reshape(colours.shape[:-1])
@@ -242,12 +233,12 @@ class Cube:
         """
         from uplift.lookup.fill import fill_missing, missing_points
 
-        colours = None if rgb is None else as_colours(rgb, self.data.sensor).reshape(-1, 3)
+        colours = None if rgb is None else blocks.as_colours(rgb, self.data.sensor).reshape(-1, 3)
         points = missing_points(self.data, colours)
         if not points.size:
             return self
         source = load() if other is None else other
-        return Cube(fill_missing(self.data, points, source.data, as_thread_count(threads)))
+        return Cube(fill_missing(self.data, points, source.data, blocks.as_thread_count(threads)))
 
     def standard_error(self, rgb: ArrayLike, light: str | Light | None = None) -> Array | None:
         """Estimate the difference that 68 % of measurements have from answers, as learnt from left-out atlas entries.
@@ -301,7 +292,7 @@ class Cube:
         """
         from uplift.colorimetry.expected_error import nearest_distances
 
-        colours = rgb_to_lab(self.data.sensor, as_colours(rgb, self.data.sensor))
+        colours = rgb_to_lab(self.data.sensor, blocks.as_colours(rgb, self.data.sensor))
         distances = nearest_distances(colours.reshape(-1, 3), self.data.entry_lab)
         return (distances > self.data.familiar_distance).reshape(colours.shape[:-1])
 
@@ -318,7 +309,7 @@ class Cube:
         ndarray, shape (...)
             Linear RGB.
         """
-        return decode_codes(self.data.sensor, codes)
+        return blocks.decode_codes(self.data.sensor, codes)
 
     def encode(self, rgb: ArrayLike) -> Array:
         """Convert linear RGB to 8-bit codes, the inverse of `decode`.
@@ -378,12 +369,12 @@ def expected_errors(cube: Cube, rgb: ArrayLike, light: str | Light | None = None
     lit: Light | None = light if not isinstance(light, str) else None
     if isinstance(light, str):
         lit = import_module(OBSERVER).light(light, cube.observer, *data.sensor.range)
-    function: Function = partial(node_errors, data)
+    function: blocks.Function = partial(node_errors, data)
     if lit is not None and lit.name != data.error_illuminant:
         from uplift.lookup.light_errors import light_errors
 
         function = light_errors(data, lit)
-    return blockwise(function, as_colours(rgb, data.sensor), 2)
+    return blocks.blockwise(function, blocks.as_colours(rgb, data.sensor), 2)
 
 
 def find_file(path: str | os.PathLike[str], packaged: Mapping[str, Path] = PACKAGED) -> str | os.PathLike[str]:
