@@ -148,6 +148,13 @@ def test_wavelengths_are_interpolated_linearly():
     np.testing.assert_allclose(found, expected, rtol=1e-12)
 
 
+def test_single_precision_is_close():
+    rgb = np.random.default_rng(0).random((50, 3)) * 1e4
+    found = TABLE.spectrum(rgb.astype(np.float32), dtype=np.float32)
+    assert found.dtype == np.float32
+    np.testing.assert_allclose(found, TABLE.spectrum(rgb.astype(np.float32)), rtol=1e-6)
+
+
 @pytest.mark.parametrize(
     ("code", "kind", "rgb", "options"),
     [

@@ -1,9 +1,13 @@
-"""Gaussian quadrature for sampled weights: known rules, polynomial exactness, undefined orders."""
+"""Gaussian quadrature for sampled weights: known rules, an exact oracle, polynomial exactness, undefined orders."""
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.polynomial import legendre
 
 from tests.helpers import raises
@@ -45,6 +49,32 @@ def test_rule_is_exact_to_degree_2n_minus_1_and_no_further(order):
     assert _moment_error(rule, POINTS, BELL, 2 * order - 1) < 1e-12
     if order <= 8:
         assert _moment_error(rule, POINTS, BELL, 2 * order) > 1e-9
+
+
+def _exact_nodes(points, masses, order):
+    """Roots of the orthogonal polynomial from its moments, by elimination in fractions."""
+    moments = [sum(m * Fraction(p) ** k for p, m in zip(points, masses, strict=True)) for k in range(2 * order)]
+    rows = [[moments[i + j] for j in range(order)] + [-moments[i + order]] for i in range(order)]
+    for i in range(order):
+        pivot = next(k for k in range(i, order) if rows[k][i])
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        rows[i] = [value / rows[i][i] for value in rows[i]]
+        for k in range(order):
+            if k != i:
+                rows[k] = [a - rows[k][i] * b for a, b in zip(rows[k], rows[i], strict=True)]
+    return np.roots([1.0, *(float(row[-1]) for row in reversed(rows))])
+
+
+@given(st.lists(st.integers(-9, 9), min_size=6, max_size=12).filter(lambda m: sum(map(bool, m)) > 4), st.integers(1, 4))
+def test_nodes_agree_with_elimination_in_fractions(masses, order):
+    points = list(range(len(masses)))
+    result = gauss_rule(points, masses, order)
+    if isinstance(result, UndefinedRule):
+        return
+    expected = np.sort_complex(_exact_nodes(points, masses, order))
+    gap = np.diff(result.nodes).min() if order > 1 else 1.0
+    if gap > 1e-2:  # np.roots is inaccurate for nearly double roots
+        np.testing.assert_allclose(result.nodes, expected, atol=1e-5)
 
 
 @pytest.mark.parametrize(

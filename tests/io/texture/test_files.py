@@ -102,6 +102,13 @@ def test_the_checksum_is_that_of_the_bytes_and_finds_every_change(count, tmp_pat
         assert not exr_file.is_intact(path)
 
 
+def test_a_missing_chunk_is_an_incomplete_file(tmp_path):
+    with raises(OutputError) as caught:
+        write_parts(tmp_path / "a.exr", 1, rows=16)
+    assert caught.value.path == tmp_path / "a.exr"
+    assert list(tmp_path.iterdir()) == []
+
+
 def many(count):
     return [b"c%06d" % number for number in range(count)]
 

@@ -262,6 +262,13 @@ def test_tiffs_state_whether_they_are_multiplied(is_multiplied, small_cube, spec
     np.testing.assert_array_equal(np.rint(channels(tmp_path / "out.exr")["A"][0] * 255.0), codes[0, :, 3])
 
 
+def test_half_floats_leave_the_unit_interval_by_rounding_only(spectral, tmp_path):
+    alpha = np.linspace(0.01, 1, 600).reshape(20, 30)
+    white = np.repeat(alpha[..., None] * (1 + 1e-4), 3, axis=-1).astype(np.float16)
+    source = write_exr(tmp_path / "a.exr", {**planes(white), "A": alpha.astype(np.float16)})
+    assert texture.convert(spectral, source, tmp_path / "out.exr").warnings == ()
+
+
 def test_odd_alpha_gives_finite_colours_and_warnings(spectral, tmp_path):
     alpha = np.array([[0, np.nan, np.inf, 2, -1, 0.5]], np.float32)
     source = write_exr(tmp_path / "a.exr", {**planes(np.full((1, 6, 3), 0.75, np.float32)), "A": alpha})

@@ -9,7 +9,15 @@ from tests.io.texture.conftest import planes, write_exr
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.scene.plan.context import sample_colours
-from uplift.scene.plan.evaluation import ColourGroup, ErrorSummary, EvaluationSet, GroupError, Trial, decide
+from uplift.scene.plan.evaluation import (
+    WORST_DELTA_E,
+    ColourGroup,
+    ErrorSummary,
+    EvaluationSet,
+    GroupError,
+    Trial,
+    decide,
+)
 
 LIGHTS = ("D65", "FL11")
 
@@ -47,6 +55,14 @@ def test_errors_agree_with_a_slow_oracle(tests):
         assert part.mean == pytest.approx(np.average(delta_e, weights=group.weights), rel=1e-9)
         assert part.largest == pytest.approx(delta_e.max(), rel=1e-9)
     assert error.quantile == max(part.quantile for part in error.parts)
+
+
+def test_reference_spectra_have_no_error_and_nan_has_the_largest(tests):
+    assert tests.error(tests.reflectances).quantile == pytest.approx(0, abs=1e-9)
+    broken = tests.reflectances.copy()
+    broken[3] = np.nan
+    error = tests.error(broken)
+    assert {part.largest for part in error.parts if part.group == "textures"} == {WORST_DELTA_E}
 
 
 @pytest.mark.parametrize(
