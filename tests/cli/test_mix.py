@@ -27,20 +27,6 @@ def test_blue_and_yellow_are_green(ask):
     assert ask("mix", BLUE, YELLOW) == found
 
 
-@pytest.mark.parametrize("kind", ["--pigment", "--dye"])
-@pytest.mark.parametrize(
-    "options",
-    [
-        (),
-        ("--refractive-index", "1.2", "--incidence", "diffuse"),
-        ("--scattering", "root"),
-        ("--scattering", "constant"),
-    ],
-)
-def test_a_colour_mixed_with_itself_is_unchanged(ask, kind, options):
-    assert ask("mix", kind, "2:#c8a070", "1:#c8a070", *options)["hex"] == "#c8a070"
-
-
 def test_entries_by_name_have_their_measured_spectra(ask, cubes, macbeth):
     cube = ("--cube", cubes / "moments-8-macbeth.uplift")
     from_cube, measured = (
@@ -51,13 +37,6 @@ def test_entries_by_name_have_their_measured_spectra(ask, cubes, macbeth):
     np.testing.assert_allclose(from_cube["spectrum"][4:], measured["spectrum"][4:], atol=0.03)  # from 400 nm
     plain = ask("mix", "2:0.113,0.199,0.336", "yellow", "--atlas", macbeth)
     assert np.abs(np.subtract(plain["spectrum"], measured["spectrum"])).max() > 0.03
-
-
-def test_thin_coats_show_the_ground(ask):
-    assert ask("mix", "#803020", "--thickness", 0, "--ground", "#f0e8d8")["hex"] == "#f0e8d8"
-    paint = ("mix", "#c8342a/#601810", "--thickness", 1)  # its colours on white and black
-    assert ask(*paint)["hex"] == "#c8342a"
-    assert ask(*paint, "--ground", "black")["hex"] == "#601810"
 
 
 def test_lights_and_filters(run, ask):

@@ -74,6 +74,15 @@ def test_limits_without_absorption_and_without_scattering():
         np.testing.assert_allclose(dye.reflectance, 0, atol=1e-6)
 
 
+def test_thick_paint_hides_its_ground_and_thickness_0_shows_it(paint):
+    opaque = Pigment(paint.absorption[3:], paint.scattering[3:])
+    for ground in (0.0, 1.0):
+        np.testing.assert_allclose(opaque.layer(1e7).over(ground), opaque.opaque_reflectance(), rtol=1e-9)
+    np.testing.assert_array_equal(SEVERAL.layer(0.0).over([0.1, 0.5, 1]), [0.1, 0.5, 1])
+    limits = Pigment(np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
+    np.testing.assert_array_equal(limits.opaque_reflectance(), [1, 0, 0])
+
+
 def test_amy_is_exact_for_strong_absorption_and_half_for_white():
     """Eq. 10.4 compared with eq. 10.5, and the example of 10.2.2."""
     found = Pigment(np.array([5.0, 1e-9, 1 / 6, 0.0]), np.array([0.05, 1.0, 1 / 3, 0.0]))

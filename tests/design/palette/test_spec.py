@@ -10,8 +10,8 @@ from tests.conftest import MACBETH, ROOT
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
 from uplift.common.errors import PaletteError
-from uplift.design.palette import read_palette
-from uplift.design.palette.colours import screen_matrix
+from uplift.design.palette import illuminant, read_palette
+from uplift.design.palette.colours import planck, screen_matrix
 from uplift.design.palette.palette import MinDifference
 
 COMPLETE = f"""
@@ -98,6 +98,11 @@ def test_lights_have_their_luminance_or_their_norm(read, sensor):
     luminances = [sensor.xyz(screen_matrix(sensor) @ palette.light(name).samples)[1] for name in ("day", "a")]
     np.testing.assert_allclose(luminances, [1, 0.5], atol=1e-12)
     np.testing.assert_allclose(palette.light("b").samples, 2, rtol=1e-9)
+
+
+def test_a_black_body_of_2856_k_is_illuminant_a(sensor):
+    """The CIE defines A by Planck's law; its table has six digits."""
+    np.testing.assert_allclose(planck(sensor, 2855.5), illuminant(sensor, "A"), rtol=1e-3)
 
 
 @pytest.mark.parametrize(

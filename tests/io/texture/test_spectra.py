@@ -23,9 +23,6 @@ from uplift.lights.lookup import EmissionTable, load_emission
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")
     from colour.io.fichet2021 import components_to_sRGB_Fichet2021, read_spectral_image_Fichet2021
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")
-    from colour.io.fichet2021 import read_spectral_image_Fichet2021
 
 
 @pytest.fixture(scope="module")
