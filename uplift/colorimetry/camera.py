@@ -18,7 +18,6 @@ CAMERA = "camera"
 """Name of the RGB space of raw values, balanced so that the perfect reflector is (1, 1, 1)."""
 LAYOUT = "give rows of a wavelength in nm and the sensitivities of red, green and blue"
 MAX_BYTES = 1_000_000
-COLUMNS = 4
 CORRELATED = 50.0
 """Distance in nm at which the correlation of reflectances that a camera's matrix is fitted to falls to 1/e."""
 MAX_CONDITION = 1e4
@@ -80,10 +79,8 @@ def camera_sensor(camera: Camera, standard: Sensor) -> Sensor:
     sensitivities = camera.at(nm)
     weights = sensitivities * standard.power[:, None]
     if not (weights.sum(axis=0) > 0).all():
-        raise OptionError(
-            f"every channel must respond to {light.name} within {nm[0]:g}–{nm[-1]:g} nm",
-            hint="give wavelengths in nm, and sensitivities of red, green and blue",
-        )
+        problem = f"every channel must respond to {light.name} within {nm[0]:g}–{nm[-1]:g} nm"
+        raise OptionError(problem, hint=LAYOUT)
     # With C the correlation, B the balanced camera and X the weights of XYZ: M = B C Xᵀ (X C Xᵀ)⁻¹.
     balanced = (weights / weights.sum(axis=0)).T
     expected = np.exp(-np.abs(np.subtract.outer(nm, nm)) / CORRELATED) @ light.xyz.T
@@ -112,13 +109,12 @@ def read_camera(path: StrPath) -> Camera:
         if not cells or cells[0].startswith("#") or is_header:
             continue
         try:
-            table.append([parse_float(cell) for cell in cells])
-        except ValueError:
-            table.append([])
-        if len(table[-1]) != COLUMNS:
-            problem = f"a row must have {COLUMNS} numbers, got {format_value(row)}"
-            raise OptionError(problem, path=path, line=line, hint=LAYOUT)
-    numbers = np.array(table).reshape(-1, COLUMNS)
+            wavelength, red, green, blue = map(parse_float, cells)
+        except ValueError as error:
+            problem = f"a row must have four numbers, got {format_value(row)}"
+            raise OptionError(problem, path=path, line=line, hint=LAYOUT) from error
+        table.append([wavelength, red, green, blue])
+    numbers = np.array(table).reshape(-1, 4)
     name = Path(path).stem.encode(errors="backslashreplace").decode()
     try:
         return Camera(name, numbers[:, 0], numbers[:, 1:])

@@ -49,12 +49,8 @@ def extreme_spectra(matrix: Array, rgb: Array, response: Array, basis: Indices |
     rows = max(BLOCK_NUMBERS // matrix.shape[1], 1)
     for first in range(0, len(rgb), rows):
         block = slice(first, first + rows)
-        _solve(
-            matrix,
-            rgb[block],
-            _perturbed(response[block]),
-            ExtremeSpectra(found.reflectance[block], found.basis[block], found.solved[block]),
-        )
+        part = ExtremeSpectra(found.reflectance[block], found.basis[block], found.solved[block])
+        _solve(matrix, rgb[block], _perturbed(response[block]), part)
     return found
 
 

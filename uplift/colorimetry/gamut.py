@@ -218,12 +218,8 @@ def _cube(values: Array) -> Array:
 
 Mapping = Callable[[Array, Gamut], Array]
 """Function from finite linear RGB (n, 3) outside [0, 1] to linear RGB (n, 3) inside, up to rounding."""
-MAPPINGS: dict[str, Mapping] = {
-    "clip": clip,
-    "scale": scale,
-    "desaturate": desaturate,
-    "desaturate-oklab": desaturate_oklab,
-}
+MAPPINGS: dict[str, Mapping] = {"clip": clip, "scale": scale, "desaturate": desaturate}
+MAPPINGS["desaturate-oklab"] = desaturate_oklab
 METHODS = ("error", *MAPPINGS)
 """Names of the methods; ``"error"`` raises instead of moving a colour."""
 

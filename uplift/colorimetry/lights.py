@@ -28,16 +28,10 @@ RELIGHT_LIGHTS = ("A", "FL11", "HP1")
 """Lights under which products of RGB go visibly wrong: warm, three narrow bands, and nearly one wavelength."""
 
 DESCRIPTIONS = {
-    "A": "tungsten",
-    "D50": "warm daylight",
-    "D65": "daylight",
-    "FL2": "fluorescent",
-    "FL7": "broadband fluorescent",
-    "FL11": "three-band fluorescent",
-    "HP1": "sodium lamp",
-    "LED-B3": "white LED",
-    "LED-RGB1": "red, green and blue LED",
-}
+    "A": "tungsten", "D50": "warm daylight", "D65": "daylight", "HP1": "sodium lamp",
+    "FL2": "fluorescent", "FL7": "broadband fluorescent", "FL11": "three-band fluorescent",
+    "LED-B3": "white LED", "LED-RGB1": "red, green and blue LED",
+}  # fmt: skip
 """Words for readers who do not know the names."""
 
 CHART_LIGHTS = REPORT_LIGHTS[1:]

@@ -186,12 +186,8 @@ def _solve(
         if first >= len(parents):
             break
         start = basis[:, parents[first:last]] if first else basis[:, :last]
-        found = extreme_spectra(
-            sensor.matrix,
-            np.repeat(rgb, last - first, axis=0),
-            np.tile(response[first:last], (len(rgb), 1)),
-            start.reshape(-1, 3),
-        )
+        colours, responses = np.repeat(rgb, last - first, axis=0), np.tile(response[first:last], (len(rgb), 1))
+        found = extreme_spectra(sensor.matrix, colours, responses, start.reshape(-1, 3))
         if not found.solved.all():
             raise _unrealisable("rounding prevents a decision whether a reflectance has a colour")
         xyz[:, first:last] = (found.reflectance @ light.xyz.T).reshape(len(rgb), -1, 3)
