@@ -64,7 +64,7 @@ def test_a_variant_without_spectra_raises(mi):
 
 def test_missing_mitsuba_raises(monkeypatch):
     monkeypatch.setitem(sys.modules, "mitsuba", None)
-    with raises(OptionError, "mitsuba-not-installed"):
+    with raises(OptionError, "extra-not-installed"):
         register()
 
 

@@ -69,7 +69,7 @@ def test_impossible_workers_raise(options, code, monkeypatch):
 
 def test_missing_dask_raises(monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with raises(OptionError, "dask-not-installed"):
+    with raises(OptionError, "extra-not-installed"):
         list(texture.convert_all([], scheduler="tcp://here:1"))
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from uplift.colorimetry.gamut import METHODS, check_method, map_to_gamut
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError, UpliftError, UpliftWarning
+from uplift.common.errors import OptionError, UpliftError, UpliftWarning, needs_extra
 from uplift.io.mitsuba.texels import Placement, Texels, light_texels, uplift_texels
 from uplift.io.mitsuba.texture import make_environment, make_texture
 from uplift.io.mitsuba.texture_file import read_colours, read_lights, read_texels
@@ -43,17 +43,11 @@ def register() -> None:
     Raises
     ------
     OptionError
-        Mitsuba is not installed (code ``mitsuba-not-installed``), or the variant is not set, not spectral, or polarised
+        Mitsuba is not installed (code ``extra-not-installed``), or the variant is not set, not spectral, or polarised
         (``unsupported-variant``).
     """
-    try:
+    with needs_extra("mitsuba", "plugins", OptionError):
         import mitsuba
-    except ImportError as error:
-        raise OptionError(
-            "Mitsuba 3 is not installed",
-            code="mitsuba-not-installed",
-            hint="install it: pip install 'spectral-uplift[mitsuba]'",
-        ) from error
     variant = mitsuba.variant()
     if variant is None or "spectral" not in variant or "polarized" in variant:
         raise OptionError(

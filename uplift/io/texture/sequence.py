@@ -12,7 +12,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from uplift.common.errors import OptionError, TextureError, UpliftError
+from uplift.common.errors import OptionError, TextureError, UpliftError, needs_extra
 from uplift.common.files import check_outputs, remove_stale
 from uplift.common.processes import tied_processes
 from uplift.common.progress import ProgressCallback, ignore_progress
@@ -205,14 +205,8 @@ def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
 @contextlib.contextmanager
 def _dask_executor(address: str) -> Iterator[Executor]:
     """Connect to a cluster. Raises `OptionError`."""
-    try:
+    with needs_extra("cluster", "clusters", OptionError):
         import distributed
-    except ImportError as error:
-        raise OptionError(
-            "clusters need Dask, which is not installed",
-            code="dask-not-installed",
-            hint="install it: pip install 'spectral-uplift[cluster]'",
-        ) from error
     with contextlib.ExitStack() as stack:
         for handler in logging.getLogger("distributed").handlers:  # lost connections are raised as errors
             stack.callback(handler.setLevel, handler.level)
