@@ -21,7 +21,7 @@ from .startup import hide_drawing_notes
 GROUPS = {
     "First steps": ("relight", "samples"),
     "Cubes": ("build", "query", "bounds", "texture", "mix", "export", "lights"),
-    "Inspection": ("info", "slices", "report", "check", "atlas"),
+    "Inspection": ("info", "slices", "report", "check", "diff", "atlas"),
     "Scenes": ("plan", "wavelengths", "compare", "palette"),
     "Measurements": ("chart", "study"),
 }

@@ -1,0 +1,142 @@
+"""``uplift diff``: where two cubes differ."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ..completion import complete_cube
+from ..inputs import expand_patterns, find_input_space
+from ..options import (
+    NUMBER,
+    Whole,
+    encoding_option,
+    force_option,
+    format_option,
+    input_space_option,
+    light_option,
+    out_of_gamut_option,
+)
+from ..output.console import make_table, print_json, say, show
+from ..output.progress import spinner
+
+if TYPE_CHECKING:
+    from uplift.common.arrays import Array
+    from uplift.lookup import Cube
+
+MAX_SIDE = 960
+"""Pixels of the longer side of an image, as compared."""
+
+
+@click.command("diff")
+@click.argument("first", metavar="CUBE", shell_complete=complete_cube)
+@click.argument("second", metavar="CUBE", shell_complete=complete_cube)
+@click.argument("images", metavar="[IMAGE]...", nargs=-1)
+@light_option("Illuminant", "D65 A FL2 FL11 LED-B3")
+@click.option(
+    "--tolerance",
+    type=NUMBER,
+    metavar="DE",
+    help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by more, or if entries were added or "
+    "removed.",
+)
+@click.option("--worst", type=Whole(0), default=5, show_default=True, help="Number of worst colours of each set.")
+@encoding_option("the images")
+@input_space_option("the images")
+@out_of_gamut_option("clip", "pixels")
+@click.option("-o", "--output", metavar="FILE", help="HTML page with pictures of where the cubes differ.")
+@format_option("table", "json")
+@force_option
+def command(
+    first: str,
+    second: str,
+    images: tuple[str, ...],
+    lights: tuple[str, ...],
+    tolerance: float | None,
+    worst: int,
+    encoding: str,
+    input_space: str | None,
+    method: str,
+    output: str | None,
+    style: str,
+    force: bool,
+) -> None:
+    """Compare two cubes: ΔE00 of their answers at nodes, atlas entries, and the colours of images.
+
+    \b
+    Examples:
+      uplift diff macbeth-32.uplift macbeth-8.uplift
+      uplift diff macbeth-32.uplift macbeth-8.uplift wood.png -o wood-diff.html
+      uplift diff macbeth-32.uplift macbeth-8.uplift --tolerance 1 --format json
+
+    The cubes may have different lattices, models, atlases and ranges, in one RGB space. Entries are compared by name.
+    Without --tolerance the exit code is 0.
+    """
+    from uplift.colorimetry.lights import SCENE_LIGHTS
+    from uplift.common.errors import OptionError, OutputError
+    from uplift.common.files import check_output, write_text
+    from uplift.lookup import load
+    from uplift.report.diff import diff_cubes, to_json
+
+    if tolerance is not None and tolerance < 0:
+        raise OptionError(f"tolerance must not be negative, got {tolerance:g}")
+    paths = expand_patterns(images)
+    if output is not None:
+        if Path(output).suffix.lower() != ".html":
+            raise OutputError(
+                "the name of a page must end in .html", code="unknown-suffix", path=output, hint="name the page .html"
+            )
+        check_output(output, inputs=(first, second, *paths), force=force)
+    names = (first, second) if first != second else (first, f"{second} (again)")
+    cubes = dict(zip(names, map(load, (first, second)), strict=True))
+    with spinner("comparing answers"):
+        pictures = {path: _read(path, next(iter(cubes.values())), encoding, input_space, method) for path in paths}
+        found = diff_cubes(cubes, lights or SCENE_LIGHTS, pictures)
+        if output is not None:
+            from uplift.report.diff_page import render_diff
+
+            write_text(render_diff(found, pictures, worst), output, force=force)
+    figures = to_json(found, tolerance, worst)
+    if style == "json":
+        print_json(figures)
+    else:
+        _print(figures)
+        if output is not None:
+            say(f"{output}: where they differ")
+    if tolerance is not None and not found.is_within(tolerance):
+        raise SystemExit(1)
+
+
+def _read(path: str, cube: Cube, encoding: str, input_space: str | None, method: str) -> Array:
+    from uplift.io.texture.picture import read_picture
+
+    space = find_input_space(input_space)
+    picture = read_picture(
+        path, cube.data.sensor, max_side=MAX_SIDE, encoding=encoding, out_of_gamut=method, space=space
+    )
+    for warning in picture.warnings:
+        warnings.warn(warning, stacklevel=1)
+    return picture.rgb
+
+
+def _print(figures: dict[str, Any]) -> None:
+    moved = ("moved",) if "tolerance" in figures else ()
+    table = make_table(("colours", "light"), ("mean ΔE00", "95 %", "largest", *moved))
+    for row in figures["differences"]:
+        numbers = [f"{row[name]:.3f}" for name in ("mean", "p95", "max")]
+        table.add_row(row["set"], row["light"], *numbers, *(f"{row[name]:,}" for name in moved))
+    worst = make_table(("worst colours", "linear RGB", "light"), ("ΔE00",))
+    for row in figures["worst"]:
+        rgb = " ".join(f"{value:.4f}" for value in row["rgb"])
+        worst.add_row(row.get("entry", row["set"]), rgb, row["light"], f"{row['delta_e']:.3f}")
+    show(table, *([worst] if figures["worst"] else []))
+    for change in ("removed", "added"):
+        if figures[f"entries_{change}"]:
+            say(f"entries {change}: {', '.join(figures[f'entries_{change}'])}")
+    if figures["uncovered"]:
+        say(f"{figures['uncovered']:,} colours are in one of the cubes only")
+    if "tolerance" in figures:
+        say("passed" if figures["passed"] else f"FAILED: the tolerance is ΔE00 {figures['tolerance']:g}")

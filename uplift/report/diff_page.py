@@ -1,0 +1,97 @@
+"""Two cubes compared, as a page: figures, maps over the lattice and over images, and the spectra that differ most."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from markupsafe import Markup
+
+from uplift.colorimetry.srgb import hex_codes, to_display_codes
+from uplift.common.arrays import Array
+from uplift.io.slices import blue_slices
+from uplift.report.charts import spectra_chart
+from uplift.report.diff import Changes, CubeDiff, to_json
+from uplift.viz.figure import PALE, STYLE, colour_map, new_figure, to_page_svg
+from uplift.viz.html import render
+
+MIN_LIMIT, SHARE = 1.0, 0.99
+"""Smallest ΔE00 at the dark end of maps, so that invisible differences stay pale; share of the nodes below the end."""
+
+
+def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
+    """Render a comparison, with the images (height, width, 3) in linear RGB that it was made for."""
+    limit = max(MIN_LIMIT, math.ceil(np.quantile(diff.nodes.largest, SHARE)))
+    dim = diff.cubes[0].data.lattice.dim
+    nodes = blue_slices(diff.nodes.largest[: dim**3], dim)
+    return render(
+        "report/templates/diff.html.j2",
+        title=" and ".join(diff.names),
+        lead="Where the answers of two cubes differ: ΔE00 between their spectra, the largest under any of the lights.",
+        diff=diff,
+        figures=to_json(diff, None, worst),
+        lattice=_map(_mosaic(nodes), limit, "ΔE00 over the lattice, a tile for each blue"),
+        images=[_image(diff, each, images[each.name], limit) for each in diff.images],
+        spectra=[_spectra(diff, each, int(row)) for each in diff.sets for row in each.worst(worst)],
+    )
+
+
+def _mosaic(slices: Array) -> Array:
+    """Arrange square slices (dim, dim, dim) in reading order, with a gap between them."""
+    dim = len(slices)
+    columns = math.ceil(math.sqrt(dim))
+    rows = math.ceil(dim / columns)
+    sheet = np.full((rows * (dim + 1) - 1, columns * (dim + 1) - 1), np.nan)
+    for number, plane in enumerate(slices):
+        top, left = (dim + 1) * np.array(divmod(number, columns))
+        sheet[top : top + dim, left : left + dim] = plane
+    return sheet
+
+
+def _map(values: Array, limit: float, label: str, picture: Array | None = None) -> Markup:
+    """Draw a map of ΔE00 (height, width), next to a picture of 8-bit codes if one is given."""
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        panels = 1 if picture is None else 2
+        figure = new_figure(7.2, 7.2 * values.shape[0] / values.shape[1] / panels + 0.2)
+        grid = figure.subplots(1, panels, squeeze=False)[0]
+        if picture is not None:
+            grid[0].imshow(picture, interpolation="antialiased")
+        drawn = grid[-1].imshow(values, cmap=colour_map(), vmin=0, vmax=limit, interpolation="nearest")
+        bar = figure.colorbar(drawn, ax=list(grid), fraction=0.03, pad=0.015, label="ΔE00", extend="max")
+        bar.outline.set_visible(False)
+        for axes in grid:
+            axes.set(xticks=(), yticks=(), facecolor=PALE)
+            axes.spines[:].set_visible(False)
+        return to_page_svg(figure, label)
+
+
+def _image(diff: CubeDiff, changes: Changes, rgb: Array, limit: float) -> tuple[str, Markup]:
+    codes = to_display_codes(rgb, diff.cubes[0].data.sensor).astype(np.uint8)
+    values = changes.largest.reshape(rgb.shape[:2])
+    return changes.name, _map(values, limit, f"{changes.name}, and ΔE00 of its pixels", codes)
+
+
+def _spectra(diff: CubeDiff, changes: Changes, row: int) -> dict[str, object]:
+    """The two spectra of a colour, or of an entry."""
+    first, second = diff.cubes
+    wavelengths, rgb = first.data.sensor.wavelengths, changes.rgb[row]
+    if changes is diff.entries:
+        name = diff.entry_names[row]
+        rows = [np.array([cube.data.atlas.names.index(name)]) for cube in diff.cubes]
+        answers = [
+            cube.data.entry_spectra.reflectance(each, wavelengths)[0]
+            for cube, each in zip(diff.cubes, rows, strict=True)
+        ]
+    else:
+        name = changes.name
+        answers = [cube.reflectance(rgb, wavelengths) for cube in (first, second)]
+    return {
+        "name": name,
+        "code": hex_codes(rgb[None], first.data.sensor)[0],
+        "light": diff.lights[int(changes.delta_e[:, row].argmax())],
+        "delta_e": float(changes.largest[row]),
+        "chart": spectra_chart(wavelengths, *answers, None),
+    }
