@@ -19,6 +19,9 @@ from uplift.viz.html import render
 MIN_LIMIT, SHARE = 1.0, 0.99
 """Smallest ΔE00 at the dark end of maps, so that invisible differences stay pale; share of the nodes below the end."""
 
+WIDTH = 10.5
+"""Inches of a map; the page scales it to its columns."""
+
 
 def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
     """Render a comparison, with the images (height, width, 3) in linear RGB that it was made for."""
@@ -55,7 +58,7 @@ def _map(values: Array, limit: float, label: str, picture: Array | None = None) 
 
     with matplotlib.rc_context(STYLE):
         panels = 1 if picture is None else 2
-        figure = new_figure(7.2, 7.2 * values.shape[0] / values.shape[1] / panels + 0.2)
+        figure = new_figure(WIDTH, 0.94 * WIDTH * values.shape[0] / values.shape[1] / panels)
         grid = figure.subplots(1, panels, squeeze=False)[0]
         if picture is not None:
             grid[0].imshow(picture, interpolation="antialiased")

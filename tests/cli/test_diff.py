@@ -1,0 +1,43 @@
+"""``uplift diff``."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+
+@pytest.fixture
+def cubes(home, small_cube, plain_cube):
+    small_cube.save(home / "a.uplift")
+    plain_cube.save(home / "b.uplift")
+    return "a.uplift", "b.uplift"
+
+
+def test_exit_code_by_tolerance(run, cubes):
+    run("diff", *cubes)
+    run("diff", *cubes, "--tolerance", "100", code=1)  # entries were removed
+    run("diff", "a.uplift", "a.uplift", "--tolerance", "0")
+
+
+def test_json_and_page(run, cubes, home):
+    result = run("diff", *cubes, "--light", "A", "--format", "json", "-o", "page.html", "--tolerance", "1", code=1)
+    figures = json.loads(result.stdout)
+    assert figures["cubes"] == list(cubes)
+    assert {row["light"] for row in figures["differences"]} == {"A"}
+    assert len(figures["entries_removed"]) == 23
+    assert (home / "page.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [
+        (("--output", "page.png"), "unknown-suffix"),
+        (("--tolerance", "-1"), "option"),
+        (("--light", "no lamp"), "unknown-illuminant"),
+        (("missing.png",), "file-not-found"),
+    ],
+)
+def test_bad_input(run, cubes, options, code):
+    result = run("diff", *cubes, *options, "--format", "json", code=2)
+    assert json.loads(result.stderr)["error"]["code"] == code
