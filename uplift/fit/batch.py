@@ -31,13 +31,14 @@ jax.tree_util.register_dataclass(
 )
 
 
-def map_batches(function: Callable[..., Any], constants: Any, *arrays: Array, max_small: int = 0) -> Any:
-    """Apply a compiled function to constants and arrays (n, …) of n > 0 rows, and join the arrays that it returns."""
+def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any, max_small: int = 0) -> Any:
+    """Apply a compiled function to constants and to trees of arrays (n, …), n > 0, and join the arrays it returns."""
     parts = []
     with jax.enable_x64(True):
         constants = _distribute(constants)
         for rows, width in batches(len(arrays[0]), max_small):
-            result = function(constants, *(shard(array[rows], width) for array in arrays))
+            given = jax.tree.map(lambda array, rows=rows, width=width: shard(array[rows], width), arrays)
+            result = function(constants, *given)
             parts.append(jax.tree.map(lambda array, rows=rows: np.asarray(array)[: rows.stop - rows.start], result))
     return jax.tree.map(lambda *joined: np.concatenate(joined), *parts)
 

@@ -1,20 +1,23 @@
 """Fit of atlas entries: the measured spectrum, its colours under several lights, and exactly its RGB.
 
-docs/mathematics.md, 6. The objective is minimised by Levenberg and Marquardt's method in MINPACK, which is faster than
-a batch on JAX at every number of entries: a batch runs until its last entry converges (docs/performance.md).
+docs/mathematics.md, 6. The objective is minimised by `Marquardt`, a solver of optimistix that is stepped in numpy: nothing
+needs to be compiled for a few entries, and those that have converged leave the batch (docs/performance.md).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+import equinox
 import numpy as np
+import optimistix
 
 from uplift.colorimetry.delta_e import delta_e_spectra, lab_jacobian, lab_of
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, blocks
 from uplift.fit.problem import Problem
-from uplift.fit.solver import solve_singly
+from uplift.fit.solver import NO_TAGS, Options, solve_singly
 from uplift.models.model import Model
 
 LIGHTS_WEIGHT, SMOOTHNESS = 0.03, 1e-3
@@ -30,7 +33,11 @@ FLATNESS = 1e-5
 """Weight that keeps the constant multiplier finite where neither the spectrum nor the lights constrain it."""
 MAX_STEPS = 256
 PRECISION = 1e-8
-"""Relative reduction of the objective, change of the multipliers and steepness at which MINPACK stops."""
+"""Relative reduction of the objective and relative change of the multipliers at which a fit ends."""
+BLOCK = 256
+"""Entries that are fitted at a time."""
+FIRST_DAMPING = 1e-3
+"""Initial μ relative to the largest diagonal element of JᵀJ."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,41 +56,38 @@ class Objective:
     weight: float
     multipliers: Array
 
-    def colours(self, spectrum: Any) -> Any:
-        """CIE L*a*b* (L, 3) of a spectrum (N,) under the lights."""
-        return lab_of(self.lights @ spectrum, self.whites)
+    def colours(self, spectra: Any) -> Any:
+        """CIE L*a*b* (…, L, 3) of spectra (…, N) under the lights."""
+        return lab_of((self.lights @ spectra[..., None, :, None])[..., 0], self.whites)
 
     def residuals(self, multipliers: Any, measured: Any, colours: Any) -> Any:
-        """Residuals (N + 3 L + C,) for a measurement (N,) with its `colours`; all of numpy or of JAX."""
-        spectrum = self.model.to_reflectance(self.basis @ multipliers)
-        difference, colour_difference = spectrum - measured, self.colours(spectrum) - colours
+        """Residuals (…, N + 3 L + C) for measurements (…, N) with their `colours`; all of numpy or of JAX."""
+        spectra = self.model.to_reflectance(multipliers @ self.basis.T)
+        colour_difference = self.colours(spectra) - colours
         return multipliers.__array_namespace__().concat(
             [
-                self.values * difference,
-                self.weight * colour_difference.ravel(),
+                self.values * (spectra - measured),
+                self.weight * colour_difference.reshape(*measured.shape[:-1], -1),
                 self.multipliers * multipliers,
-            ]
+            ],
+            axis=-1,
         )
 
     def jacobian(self, multipliers: Array) -> Array:
-        """Derivative (N + 3 L + C, C) of the residuals; it does not depend on the measurement."""
-        x = self.basis @ multipliers
-        change = self.model.derivative(x)[:, None] * self.basis  # g = S(B p), so ∂g/∂p = S′(B p) B
-        to_lab = lab_jacobian(self.lights @ self.model.to_reflectance(x), self.whites)
-        colours = (to_lab @ (self.lights @ change)).reshape(-1, len(multipliers))
+        """Derivative (…, N + 3 L + C, C) of the residuals; it does not depend on the measurements."""
+        *shape, count = multipliers.shape
+        x = multipliers @ self.basis.T
+        change = self.model.derivative(x)[..., None] * self.basis  # g = S(B p), so ∂g/∂p = S′(B p) B
+        xyz = (self.lights @ self.model.to_reflectance(x)[..., None, :, None])[..., 0]
+        colours = lab_jacobian(xyz, self.whites) @ (self.lights @ change[..., None, :, :])
         return np.concatenate(
             [
                 self.values[:, None] * change,
-                self.weight * colours,
-                np.diag(self.multipliers),
-            ]
+                self.weight * colours.reshape(*shape, -1, count),
+                np.broadcast_to(np.diag(self.multipliers), (*shape, count, count)),
+            ],
+            axis=-2,
         )
-
-    def steepness(self, multipliers: Array, measured: Array) -> float:
-        """Largest cosine of the angle between the residuals and their derivatives: 0 at a minimum, NaN without one."""
-        slopes, residuals = self.jacobian(multipliers), self.residuals(multipliers, measured, self.colours(measured))
-        norms = np.linalg.norm(slopes, axis=0) * np.linalg.norm(residuals)
-        return float(np.abs(slopes.T @ residuals / norms).max())
 
 
 def objective(
@@ -109,6 +113,99 @@ def objective(
     )
 
 
+class MarquardtState(NamedTuple):
+    """State of n fits between steps."""
+
+    residual: Array
+    """(n, m)."""
+    damping: Array
+    """(n,) μ, 0 before the first step."""
+    growth: Array
+    """(n,) factor of μ after the next rejected step."""
+    done: Array
+    """(n,) whether the fit has ended."""
+
+
+class Marquardt(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
+    """Levenberg and Marquardt's method for a batch of fits in numpy, with Nielsen's damping.
+
+    The option ``jacobian`` maps ``y`` (n, C) to the derivative (n, m, C) of the residuals. Madsen, Nielsen & Tingleff
+    2004, "Methods for non-linear least squares problems", section 3.2.
+    """
+
+    rtol: float = PRECISION
+    atol: float = 0.0
+    norm: Callable[[Any], Any] = equinox.field(static=True, default=optimistix.max_norm)
+
+    def init(
+        self, fn: Any, y: Any, args: Any, options: Options, f_struct: Any, aux_struct: Any, tags: Any
+    ) -> MarquardtState:
+        """Evaluate the residuals at ``y`` (n, C)."""
+        count = len(y)
+        return MarquardtState(fn(y, args)[0], np.zeros(count), np.full(count, 2.0), np.zeros(count, dtype=bool))
+
+    def step(
+        self, fn: Any, y: Any, args: Any, options: Options, state: MarquardtState, tags: Any
+    ) -> tuple[Any, MarquardtState, Any]:
+        """Take one step in every fit that has not ended; no sum of squares increases."""
+        jacobian = options["jacobian"](y)
+        gram = jacobian.mT @ jacobian
+        diagonal = gram.diagonal(axis1=-2, axis2=-1).max(axis=-1)
+        damping = np.where(state.damping > 0, state.damping, FIRST_DAMPING * diagonal)
+        # (JᵀJ + μ I) Δy = −Jᵀ f
+        slope = (jacobian.mT @ state.residual[..., None])[..., 0]
+        change = -np.linalg.solve(gram + damping[:, None, None] * np.eye(y.shape[-1]), slope[..., None])[..., 0]
+        residual, aux = fn(y + change, args)
+        before, after = ((each**2).sum(axis=-1) for each in (state.residual, residual))
+        # ϱ: the reduction of the squares over that of the linear model
+        expected = (change * (damping[:, None] * change - slope)).sum(axis=-1)
+        gain = (before - after) / np.maximum(expected, np.finfo(float).tiny)
+        better = gain > 0
+        small = np.linalg.norm(change, axis=-1) <= self.rtol * np.linalg.norm(y, axis=-1)
+        ended = small | (better & (before - after <= self.rtol * before) & (expected <= self.rtol * before))
+        accept = (better & ~state.done)[:, None]
+        return (
+            np.where(accept, y + change, y),
+            MarquardtState(
+                np.where(accept, residual, state.residual),
+                damping * np.where(better, np.maximum(1 / 3, 1 - (2 * gain - 1) ** 3), state.growth),
+                np.where(better, 2.0, 2 * state.growth),
+                state.done | ended,
+            ),
+            aux,
+        )
+
+    def terminate(
+        self, fn: Any, y: Any, args: Any, options: Options, state: MarquardtState, tags: Any
+    ) -> tuple[Any, Any]:
+        """Whether all fits have ended."""
+        return state.done.all(), optimistix.RESULTS.successful
+
+    def postprocess(self, fn: Any, y: Any, aux: Any, *rest: Any) -> tuple[Any, Any, dict[str, Any]]:
+        """Return the solution as it is."""
+        return y, aux, {}
+
+
+def minimise(goal: Objective, measured: Array) -> Array:
+    """Multipliers (E, C) that minimise the objective of measured reflectances (E, N), starting from grey."""
+    solver, multipliers = Marquardt(), np.zeros((len(measured), goal.model.count))
+    colours, options = goal.colours(measured), {"jacobian": goal.jacobian}
+
+    def fn(y: Array, rows: Array) -> tuple[Array, None]:
+        return goal.residuals(y, measured[rows], colours[rows]), None
+
+    for block in blocks(len(measured), BLOCK):
+        rows = np.arange(len(measured))[block]
+        state = solver.init(fn, multipliers[rows], rows, options, None, None, NO_TAGS)
+        for _ in range(MAX_STEPS):
+            multipliers[rows], state, _ = solver.step(fn, multipliers[rows], rows, options, state, NO_TAGS)
+            kept = ~state.done
+            rows, state = rows[kept], MarquardtState(*(each[kept] for each in state))
+            if solver.terminate(fn, multipliers[rows], rows, options, state, NO_TAGS)[0]:
+                break
+    return multipliers
+
+
 class FittedEntries(NamedTuple):
     """E atlas entries as spectra of the model.
 
@@ -132,27 +229,7 @@ def fit_entries(problem: Problem, measured: Array, rgb: Array, **weights: float)
     ``weights`` are those of `objective`, min ‖g − m‖² + Σ |w ΔL*a*b*|².
     """
     goal = objective(problem, **weights)
-    if problem.solver is None:
-        from scipy.optimize import leastsq
-
-        # From grey, by Levenberg and Marquardt's method
-        near, scale = np.zeros((len(measured), goal.model.count)), np.ones(goal.model.count)
-        for row, spectrum in enumerate(measured):
-            near[row], *_ = leastsq(
-                goal.residuals,
-                near[row],
-                args=(spectrum, goal.colours(spectrum)),
-                Dfun=lambda p, *_: goal.jacobian(p),
-                full_output=True,  # otherwise it warns where rounding ends the fit
-                ftol=PRECISION,
-                xtol=PRECISION,
-                gtol=PRECISION,
-                diag=scale,
-            )
-    else:
-        from uplift.fit.optimistix_solvers import minimise  # the default needs no optimistix
-
-        near = minimise(problem.solver, goal, measured)
+    near = minimise(goal, measured)
     # The minimum has nearly the colour; of all spectra that have it exactly, the nearest to the minimum is taken.
     multipliers = solve_singly(problem.forward, near, rgb, problem.tolerance, MAX_STEPS)
     spectra = np.asarray(problem.model.to_reflectance(multipliers @ problem.forward.basis.T))

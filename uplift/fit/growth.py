@@ -15,23 +15,19 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from uplift.common.arrays import Array, Indices, blocks
+from uplift.common.arrays import Array, Indices, Mask, blocks
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.fit.problem import Nodes, Problem
 from uplift.fit.solver import Solution
-from uplift.lattice import NOT_FITTED, Lattice, weighted_sum
+from uplift.lattice import NOT_FITTED
 from uplift.models.arithmetic import blocked_matmul
 
 MAX_PASSES, IMPROVEMENT_PASSES = 24, 192
 BLOCK_POINTS = 1 << 15
 """Nodes processed at a time."""
-MIN_CELLS = 4
-"""Cells along each axis of the coarsest lattice, at least."""
 MAX_CORRECTION = 0.1
-"""Largest correction, in units of the metric, that is interpolated: nearly box-shaped spectra have larger ones, which
+"""Largest correction, in units of the metric, that others start from: nearly box-shaped spectra have larger ones, which
 are not smooth."""
-ALL = 1 - 1e-9
-"""Sum of the weights of known corners above which all corners are known."""
 NUDGE = 0.5
 EXTREME = 100.0
 """Linear part of a nearly white (+) or nearly black (−) spectrum."""
@@ -78,9 +74,14 @@ class Growth:
         return [points[block] for block in blocks(len(points), BLOCK_POINTS)]
 
     def attempt(
-        self, points: Indices, start: Array, number: int, prior: Array | None = None, max_passes: int = MAX_PASSES
+        self,
+        points: Indices,
+        start: Array,
+        number: int | Indices,
+        prior: Array | None = None,
+        max_passes: int = MAX_PASSES,
     ) -> Solution:
-        """Solve nodes (k,) from multipliers (k, C) in round ``number``, and keep what is better than before."""
+        """Solve nodes (k,) from multipliers (k, C) and keep what is better than before; ``number`` is their round."""
         goal = self.nodes.goal(points)
         solution = self.problem.solve(goal, start, max_passes, prior)
         better = solution.distance < self.distance[points]
@@ -88,85 +89,22 @@ class Growth:
         self.multipliers[kept], self.distance[kept] = solution.multipliers[better], solution.distance[better]
         self.rgb[kept] = (goal - solution.residual)[better]
         fitted = (self.round[points] == NOT_FITTED) & (solution.distance <= self.problem.threshold)
-        self.round[points[fitted]] = number
-        if points.size and number != NOT_FITTED:
+        numbers = np.broadcast_to(number, points.shape)
+        self.round[points[fitted]] = numbers[fitted]
+        last = int(numbers.max(initial=NOT_FITTED))
+        if last != NOT_FITTED:
             done = int((self.round != NOT_FITTED).sum())
-            detail = f"round {number}: {len(points)} tried"
-            self.progress(Progress("fit", done, len(self.nodes.points), step=number, detail=detail))
+            detail = f"round {last}: {len(points)} tried"
+            self.progress(Progress("fit", done, len(self.nodes.points), step=last, detail=detail))
         return solution
 
-
-def strides(dim: int) -> list[int]:
-    """Lattice steps between the nodes of each round: powers of two down to 1."""
-    return [1 << power for power in reversed(range(max((dim // MIN_CELLS).bit_length(), 1)))]
-
-
-def grow_from_prior(
-    problem: Problem, nodes: Nodes, expected: Expected, seeds: Indices, progress: ProgressCallback
-) -> Growth:
-    """Fit nodes from the prior. Seeds (S,) are fitted in the first round, and give and take no correction."""
-    growth, lattice = Growth(problem, nodes, progress), nodes.lattice
-    waiting, seeded = lattice.mask(nodes.points), lattice.mask(seeds)
-    # Corrections p − p₀ at every second node, whose last column is the weight of a known one, and the rows of nodes.
-    half, numbers = lattice.thinned(2)
-    corrections, row = np.zeros((half.size, problem.model.count + 1)), np.full(lattice.size, -1, dtype=np.int32)
-    row[numbers] = np.arange(half.size)
-    row[seeds] = -1
-
-    def fit(points: Indices, start: Array, prior: Array, number: int, max_passes: int) -> tuple[Indices, Array, Array]:
-        """Fit nodes, store their corrections, and return those that are not solved."""
-        solution = growth.attempt(points, start, number, prior, max_passes)
-        correction = solution.multipliers - prior
-        # |R⁻¹ (p − p₀)|∞
-        size = np.abs(blocked_matmul(correction, problem.forward.inverse_root.T)).max(axis=1)
-        stored = row[points] >= 0
-        rows = row[points[stored]]
-        corrections[rows, :-1], corrections[rows, -1] = correction[stored], size[stored] <= MAX_CORRECTION
-        unsolved = solution.distance > problem.tolerance
-        return points[unsolved], solution.multipliers[unsolved], prior[unsolved]
-
-    rounds = strides(lattice.dim)
-    for number, stride in enumerate(rounds):
-        # Of every stride-th node, those that no coarser round has had; the seeds come first.
-        _, points = lattice.thinned(stride)
-        points = np.union1d(points, seeds) if number == 0 else points
-        points = points[waiting[points]]
-        waiting[points] = False
-        level, numbers = lattice.thinned(rounds[max(number - 1, 0)])
-        known = np.where((row[numbers] >= 0)[:, None], corrections[row[numbers]], 0)
-        rest = [(points[:0], growth.multipliers[:0], growth.multipliers[:0])]
-        for block in blocks(len(points), BLOCK_POINTS):
-            # From p₀ + R δ, with the correction δ of the nodes around, to the spectrum of the colour nearest to p₀.
-            some = points[block]
-            prior = expected(some)
-            sums = weighted_sum(known, *level.corners(lattice.target(some)))
-            smooth = (sums[:, -1:] > ALL) & ~seeded[some, None]
-            rest.append(fit(some, prior + np.where(smooth, sums[:, :-1], 0), prior, number, max_passes=1))
-        # What the first pass leaves is fitted at the end of the round, all at once.
-        points, start, prior = (np.concatenate(parts) for parts in zip(*rest, strict=True))
-        fit(points, start, prior, number, MAX_PASSES)
-    _retry(growth, len(rounds))
-    return growth
+    def is_smooth(self, correction: Array) -> Mask:
+        """Whether corrections (k, C) are small enough to expect similar ones nearby: |R⁻¹ (p − p₀)|∞."""
+        size = np.abs(blocked_matmul(correction, self.problem.forward.inverse_root.T)).max(axis=1)
+        return np.asarray(size <= MAX_CORRECTION)
 
 
-def supporting_points(lattice: Lattice, points: Indices) -> Indices:
-    """Return nodes (k,), and those of earlier rounds that their corrections are interpolated from, ascending.
-
-    Fitted alone, they have the answers of the lattice with all nodes.
-    """
-    wanted, finer = lattice.mask(points), np.ones(lattice.size, dtype=bool)
-    for stride in reversed(strides(lattice.dim)[:-1]):
-        level, numbers = lattice.thinned(stride)
-        coarser = lattice.mask(numbers)
-        supported = np.flatnonzero(wanted & finer & ~coarser)
-        for block in blocks(len(supported), BLOCK_POINTS):
-            corners, weights = level.corners(lattice.target(supported[block]))
-            wanted[numbers[corners[weights > 0]]] = True
-        finer = coarser
-    return np.flatnonzero(wanted)
-
-
-def _retry(growth: Growth, number: int) -> None:
+def retry(growth: Growth, number: int) -> None:
     """Try failed nodes again from the mean of their fitted neighbours, while one more of these has been fitted."""
     lattice, multipliers = growth.nodes.lattice, growth.multipliers
     fresh = np.flatnonzero(growth.round != NOT_FITTED)

@@ -19,6 +19,7 @@ from uplift.common.arrays import Array
 from uplift.fit.bounded_least_squares import BoundedProblem, solve_bounded
 from uplift.fit.entries import FittedEntries, fit_entries, join_entries
 from uplift.fit.problem import Problem
+from uplift.fit.solver import LeastChange
 
 MET = 0.1
 """ΔE00 within which a target is met."""
@@ -108,7 +109,7 @@ def _linear_design(sensor: Sensor, goal: LookGoal, expected: Array, near: Array,
 
 def fit_designs(problem: Problem, goals: Sequence[LookGoal], designs: Array) -> FittedEntries:
     """Fit designed reflectances (k, N) by the spectrum model, each with the lights of its goal."""
-    lit = (replace(problem, lights=(problem.sensor.light, *goal.lights), solver=None) for goal in goals)
+    lit = (replace(problem, lights=(problem.sensor.light, *goal.lights), method=LeastChange) for goal in goals)
     parts = zip(lit, goals, designs, strict=True)
     return join_entries(
         *(fit_entries(own, design[None], goal.rgb[None], lights=LIGHTS_WEIGHT) for own, goal, design in parts)

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, partial
-from typing import TYPE_CHECKING
+from functools import cached_property
 
 import numpy as np
 
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.colorimetry.solid import solid, toward_grey
 from uplift.common.arrays import Array, Indices, blocks
-from uplift.fit.solver import Solution, solve
+from uplift.fit.solver import LeastChange, Method, Solution, solve
 from uplift.lattice import CORNERS, Lattice
 from uplift.models.minimum_norm import ForwardMap, forward_map
 from uplift.models.model import Model
-
-if TYPE_CHECKING:
-    from uplift.fit.optimistix_solvers import Solver
 
 BLOCK_NODES = 1 << 15
 """Nodes that are tested at a time."""
@@ -28,7 +24,7 @@ class Problem:
     """Sensor, spectrum model, lights under which colours are kept, light of the errors, threshold and solver.
 
     ``error_light`` is that of the sensor by default. ``threshold`` is the largest distance of a fitted node in linear
-    RGB. ``solver`` is a least-squares solver of optimistix, or None for the steps of `uplift.fit.solver`.
+    RGB. ``method`` solves batches of nodes; see `uplift.fit.solver`.
     """
 
     sensor: Sensor
@@ -36,7 +32,7 @@ class Problem:
     lights: tuple[Light, ...] = ()
     error_light: Light | None = None
     threshold: float = 1e-4
-    solver: Solver | None = None
+    method: Method = LeastChange
 
     @cached_property
     def forward(self) -> ForwardMap:
@@ -50,12 +46,15 @@ class Problem:
 
     def solve(self, target: Array, start: Array, max_passes: int, prior: Array | None = None) -> Solution:
         """Find multipliers (n, C) of linear RGB (n, 3); see `uplift.fit.solver.solve`."""
-        method = solve
-        if self.solver is not None:
-            from uplift.fit.optimistix_solvers import solve_with  # the default needs no optimistix
-
-            method = partial(solve_with, self.solver)
-        return method(self.forward, start, target, tolerance=self.tolerance, max_passes=max_passes, prior=prior)
+        return solve(
+            self.forward,
+            start,
+            target,
+            tolerance=self.tolerance,
+            max_passes=max_passes,
+            prior=prior,
+            method=self.method,
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -1,20 +1,22 @@
 """The solver of the fit: of all spectra of a colour, the one nearest to the prior (docs/mathematics.md, 5).
 
 minimise |R⁻¹ (p − p₀)|² subject to r(p) = t, by damped steps (Nocedal & Wright 2006, "Numerical optimization", 18.1).
-Rows are independent problems, each with its own damping. The step uses the array API: nodes are solved on JAX in
-batches of fixed shapes, entries one by one in numpy, where nothing needs to be compiled.
-`uplift.fit.optimistix_solvers` makes a solver of optimistix of it.
+`LeastChange` is a solver of optimistix for many problems at a time, each with its own damping. `solve` steps it, or any
+other solver of optimistix (`uplift.fit.stock_solvers`), over batches of fixed shapes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any, NamedTuple
+from itertools import chain, islice, repeat
+from typing import Any, NamedTuple, Protocol
 
+import equinox
 import jax
 import jax.numpy as jnp
 import numpy as np
+import optimistix
 
 from uplift.common.arrays import Array
 from uplift.fit.batch import map_batches
@@ -32,11 +34,33 @@ MIN_GAIN, PATIENCE = 1e-3, 8
 """A problem is abandoned after `PATIENCE` consecutive passes that each reduce its distance by less than `MIN_GAIN`.
 Otherwise unrealisable colours, frequent in wide gamuts, would remain until the last pass."""
 
-Residual = Callable[[Any], Any]
-"""From multipliers (n, C) to target minus RGB, t − r, (n, 3)."""
+Options = dict[str, Any]
+"""Options of a solver's ``init``: arrays with a row for each problem."""
+NO_TAGS: frozenset[object] = frozenset()
+"""Nothing is known of the matrices of the problem."""
 
 
-class SolverState(NamedTuple):
+class BatchSolver(Protocol):
+    """A solver of optimistix for a batch of problems, as `solve` needs it."""
+
+    def resume(self, options: Options, y: Any, state: Any) -> Options:
+        """Return the options with which ``init`` goes on, from those before, multipliers ``y`` (n, C) and the state."""
+
+
+class Method(Protocol):
+    """A way to solve batches, the same object for a whole build: what is compiled for it is found by its identity."""
+
+    def __call__(self, forward: ForwardMap, tolerance: Any) -> Any:
+        """Make the `BatchSolver` that stops at a distance of ``tolerance`` in linear RGB."""
+
+    def options(self, start: Array, prior: Array | None) -> Options:
+        """Return the options of the first pass, from multipliers (n, C)."""
+
+    def schedule(self) -> Iterator[int]:
+        """Yield the steps of each pass."""
+
+
+class LeastChangeState(NamedTuple):
     """State of n problems between steps."""
 
     residual: Any
@@ -54,48 +78,73 @@ class SolverState(NamedTuple):
         return abs(self.residual).max(axis=1)
 
 
-def init_state(
-    forward: ForwardMap, residual: Residual, y: Any, prior: Any, damping: Any, anchor_weight: Any
-) -> SolverState:
-    """Evaluate the residuals at multipliers ``y`` (n, C)."""
-    return SolverState(residual(y), blocked_matmul(y - prior, forward.inverse_root.T), damping, anchor_weight)
+class LeastChange(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
+    """Damped steps that reach the colour and change the prior least, for a batch of problems with three residuals each.
 
+    ``atol`` is the distance in linear RGB at which a problem is solved. The options of `init` are ``prior`` (n, C), the
+    multipliers to change least (the start by default), ``damping`` and ``anchor_weight`` (n,). Arrays are those of
+    numpy or of JAX.
+    """
 
-def take_step(
-    forward: ForwardMap, residual: Residual, y: Any, state: SolverState, tolerance: Any
-) -> tuple[Any, SolverState]:
-    """Take one step in every problem whose distance exceeds the tolerance; no squared residual increases."""
-    where = y.__array_namespace__().where
-    # Δx = A⁺ (t − r + A d) − d, and p changes by R Δx.
-    anchored = state.displacement * state.anchor_weight[:, None]
-    change = anchored_step(forward, y, state.residual, state.damping, anchored)
-    trial = y + blocked_matmul(change, forward.root.T)
-    left = residual(trial)
-    # A step is accepted where it reduces the squared residual; μ follows the success of the linearisation.
-    better = ((left**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (abs(trial).max(axis=1) <= MAX_MULTIPLIER)
-    accept = (better & (state.distance > tolerance))[:, None]
-    after = SolverState(
-        residual=where(accept, left, state.residual),
-        displacement=where(accept, state.displacement + change, state.displacement),
-        damping=where(better, state.damping / 4, state.damping * 4),
-        anchor_weight=where(better, state.anchor_weight, 0.0),
-    )
-    return where(accept, trial, y), after
+    forward: ForwardMap
+    atol: Any
+    rtol: float = 0.0
+    norm: Callable[[Any], Any] = equinox.field(static=True, default=optimistix.max_norm)
 
+    def init(
+        self, fn: Any, y: Any, args: Any, options: Options, f_struct: Any, aux_struct: Any, tags: Any
+    ) -> LeastChangeState:
+        """Evaluate the residuals at multipliers ``y`` (n, C)."""
+        given = self.options(y, y) | options
+        displacement = blocked_matmul(y - given["prior"], self.forward.inverse_root.T)
+        return LeastChangeState(fn(y, args)[0], displacement, given["damping"], given["anchor_weight"])
 
-def solve_singly(forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int) -> Array:
-    """Find multipliers (n, C) of linear RGB (n, 3), one problem after another, each nearest to its own start."""
-    multipliers = start.copy()
-    for row, goal in enumerate(target):
-        y = start[row : row + 1]
-        residual = partial(forward.residual, target=goal)
-        state = init_state(forward, residual, y, y, np.full(1, FIRST_DAMPING), np.zeros(1))
-        for _ in range(max_steps):
-            if state.distance[0] <= tolerance:
-                break
-            y, state = take_step(forward, residual, y, state, tolerance)
-        multipliers[row] = y[0]
-    return multipliers
+    def step(
+        self, fn: Any, y: Any, args: Any, options: Options, state: LeastChangeState, tags: Any
+    ) -> tuple[Any, LeastChangeState, Any]:
+        """Take one step in every problem whose distance exceeds the tolerance; no squared residual increases."""
+        where = y.__array_namespace__().where
+        # Δx = A⁺ (t − r + A d) − d, and p changes by R Δx.
+        anchored = state.displacement * state.anchor_weight[:, None]
+        change = anchored_step(self.forward, y, state.residual, state.damping, anchored)
+        trial = y + blocked_matmul(change, self.forward.root.T)
+        left, aux = fn(trial, args)
+        # A step is accepted where it reduces the squared residual; μ follows the success of the linearisation.
+        better = ((left**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (abs(trial).max(axis=1) <= MAX_MULTIPLIER)
+        accept = (better & (state.distance > self.atol))[:, None]
+        after = LeastChangeState(
+            residual=where(accept, left, state.residual),
+            displacement=where(accept, state.displacement + change, state.displacement),
+            damping=where(better, state.damping / 4, state.damping * 4),
+            anchor_weight=where(better, state.anchor_weight, 0.0),
+        )
+        return where(accept, trial, y), after, aux
+
+    def terminate(
+        self, fn: Any, y: Any, args: Any, options: Options, state: LeastChangeState, tags: Any
+    ) -> tuple[Any, Any]:
+        """Whether all problems are solved."""
+        return (state.distance <= self.atol).all(), optimistix.RESULTS.successful
+
+    def postprocess(self, fn: Any, y: Any, aux: Any, *rest: Any) -> tuple[Any, Any, dict[str, Any]]:
+        """Return the solution as it is."""
+        return y, aux, {}
+
+    def resume(self, options: Options, y: Any, state: LeastChangeState) -> Options:
+        """Go on with the damping and the weight reached."""
+        return options | {"damping": state.damping, "anchor_weight": state.anchor_weight}
+
+    @staticmethod
+    def options(start: Array, prior: Array | None) -> Options:
+        """Change the prior least, or without one the current multipliers in each step."""
+        count = len(start)
+        given = {"damping": np.full(count, FIRST_DAMPING), "anchor_weight": np.full(count, float(prior is not None))}
+        return {"prior": start if prior is None else prior, **given}
+
+    @staticmethod
+    def schedule() -> Iterator[int]:
+        """One step at a time while most problems converge, then several, to pass through fewer batches."""
+        return chain(repeat(1, SINGLE_STEPS), repeat(MORE_STEPS))
 
 
 class Solution(NamedTuple):
@@ -117,59 +166,92 @@ def solve(
     tolerance: float,
     max_passes: int,
     prior: Array | None = None,
+    method: Method = LeastChange,
 ) -> Solution:
     """Find multipliers of linear RGB ``target`` (n, 3), from ``start`` (n, C), nearest to ``prior`` (n, C).
 
     Without a prior each step changes the current multipliers least, which is more robust far from the answer. No
-    distance increases. Failure to converge is not an error: the distance reports it. The steps of a problem do not
-    depend on the others.
+    squared residual increases. Failure to converge is not an error: the distance reports it. The steps of a problem do
+    not depend on the others.
     """
     count = len(start)
-    solution = Solution(start.copy(), np.empty((count, 3)), np.full(count, np.inf))
-    rows, stale = np.arange(count), np.zeros(count, dtype=np.int64)
-    y, damping, anchor_weight = start, np.full(count, FIRST_DAMPING), np.full(count, float(prior is not None))
-    prior = start if prior is None else prior
-    # One step at a time while most problems converge, then several, to pass through fewer batches.
-    for number in range(max_passes if count else 0):
-        advance = partial(_advance, tolerance=tolerance, max_steps=1 if number < SINGLE_STEPS else MORE_STEPS)
-        given = (y, prior[rows], target[rows], damping, anchor_weight)
-        y, state = map_batches(advance, forward, *given, max_small=MAX_SMALL_BATCHES)
-        before = solution.distance[rows]
-        solution.multipliers[rows], solution.residual[rows], solution.distance[rows] = y, state.residual, state.distance
-        # Converged and abandoned problems leave the batch.
-        stale = np.where(state.distance > (1 - MIN_GAIN) * before, stale + 1, 0)
-        kept = (state.distance > tolerance) & (stale < PATIENCE)
-        if not kept.any():
+    solution = Solution(start.copy(), np.full((count, 3), np.inf), np.full(count, np.inf))
+    rows, stale, options = np.arange(count), np.zeros(count, dtype=np.int64), method.options(start, prior)
+    for steps in islice(method.schedule(), max_passes):
+        if not rows.size:
             break
-        rows, stale = rows[kept], stale[kept]
-        y, damping, anchor_weight = y[kept], state.damping[kept], state.anchor_weight[kept]
+        given = (solution.multipliers[rows], target[rows], options)
+        advance = partial(_advance, method, tolerance=tolerance, max_steps=steps)
+        y, residual, options = map_batches(advance, forward, *given, max_small=MAX_SMALL_BATCHES)
+        before = solution.distance[rows]
+        closer = (residual**2).sum(axis=1) <= (solution.residual[rows] ** 2).sum(axis=1)
+        better = rows[closer]
+        solution.multipliers[better], solution.residual[better] = y[closer], residual[closer]
+        solution.distance[better] = np.abs(residual[closer]).max(axis=1)
+        # Converged and abandoned problems leave the batch.
+        distance = solution.distance[rows]
+        stale = np.where(distance > (1 - MIN_GAIN) * before, stale + 1, 0)
+        kept = (distance > tolerance) & (stale < PATIENCE)
+        rows, stale, options = rows[kept], stale[kept], {name: array[kept] for name, array in options.items()}
     return solution
 
 
-@jax.jit
+@partial(jax.jit, static_argnums=0)
 def _advance(
+    method: Method,
     forward: ForwardMap,
     y: jax.Array,
-    prior: jax.Array,
     target: jax.Array,
-    damping: jax.Array,
-    anchor_weight: jax.Array,
+    options: Options,
     *,
     tolerance: float,
     max_steps: int,
-) -> tuple[jax.Array, SolverState]:
-    """Take up to ``max_steps`` steps in a batch."""
+) -> tuple[jax.Array, jax.Array, Options]:
+    """Take up to ``max_steps`` steps in a batch; the options go on from there."""
+    solver = method(forward, tolerance)
+    y, state = iterate(solver, lambda p, goal: (forward.residual(p, goal), None), y, target, options, max_steps)
+    return y, state.residual, solver.resume(options, y, state)
 
-    residual = partial(forward.residual, target=target)
 
-    def advance(carry: Any) -> Any:
-        count, y, state = carry
-        return count + 1, *take_step(forward, residual, y, state, tolerance)
+def iterate(solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps: Any) -> tuple[Any, Any]:
+    """Step a solver of optimistix by hand until it terminates, as its documentation shows for interactive use.
 
-    state = init_state(forward, residual, y, prior, damping, anchor_weight)
-    _, y, state = jax.lax.while_loop(
-        lambda carry: (carry[0] < max_steps) & (carry[2].distance > tolerance).any(),
-        advance,
-        (jnp.asarray(0), y, state),
-    )
-    return y, state
+    `optimistix.least_squares` takes the same steps, and seconds more to compile.
+    """
+    state = solver.init(fn, y, args, options, *jax.eval_shape(fn, y, args), NO_TAGS)
+    arrays, static = equinox.partition(state, equinox.is_array)
+
+    def step(carry: Any) -> Any:
+        count, y, arrays = carry
+        y, state, _ = solver.step(fn, y, args, options, equinox.combine(arrays, static), NO_TAGS)
+        return count + 1, y, equinox.filter(state, equinox.is_array)
+
+    def unfinished(carry: Any) -> Any:
+        count, y, arrays = carry
+        done, _ = solver.terminate(fn, y, args, options, equinox.combine(arrays, static), NO_TAGS)
+        return (count < max_steps) & ~done
+
+    _, y, arrays = jax.lax.while_loop(unfinished, step, (jnp.asarray(0), y, arrays))
+    return y, equinox.combine(arrays, static)
+
+
+def solve_singly(forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int) -> Array:
+    """Find multipliers (n, C) of linear RGB (n, 3), one problem after another, each nearest to its own start.
+
+    The steps are those of numpy: nothing needs to be compiled for a few problems.
+    """
+
+    def fn(p: Any, goal: Any) -> tuple[Any, None]:
+        return forward.residual(p, goal), None
+
+    solver, multipliers = LeastChange(forward, tolerance), start.copy()
+    for row, goal in enumerate(target):
+        y = start[row : row + 1]
+        options = LeastChange.options(y, None)
+        state = solver.init(fn, y, goal, options, None, None, NO_TAGS)
+        for _ in range(max_steps):
+            if solver.terminate(fn, y, goal, options, state, NO_TAGS)[0]:
+                break
+            y, state, _ = solver.step(fn, y, goal, options, state, NO_TAGS)
+        multipliers[row] = y[0]
+    return multipliers

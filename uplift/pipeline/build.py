@@ -36,7 +36,7 @@ from uplift.pipeline.entries import AtlasLike
 from uplift.pipeline.options import AUTO, CUSTOM, SOLVERS, ModelName, Options, PriorName, SolverName, check_memory
 
 if TYPE_CHECKING:
-    from uplift.fit.optimistix_solvers import Solver
+    from uplift.fit.stock_solvers import Solver
     from uplift.pipeline.look import LooksLike
 
 
@@ -225,16 +225,18 @@ def _problem(options: Options, observer: str | Camera, solver: str | Solver) -> 
     error_light = observers.light(ERROR_ILLUMINANT, sensor.observer, *sensor.range)
     problem = Problem(sensor, options.spectrum_model(), lights, error_light, options.threshold)
     if solver != SOLVERS[0]:
-        from uplift.fit import optimistix_solvers
+        from uplift.fit import stock_solvers
 
         if solver == CUSTOM:
             raise unknown_name(CUSTOM, SOLVERS, "solver")
-        if isinstance(solver, str):
-            solver = optimistix_solvers.stock_solver(solver, problem.tolerance)
-        if not isinstance(solver, optimistix_solvers.SOLVER_TYPES):
+        if isinstance(solver, stock_solvers.SOLVER_TYPES):
+            method = stock_solvers.RowByRow(solver)
+        elif isinstance(solver, str):
+            method = stock_solvers.stock_solver(solver, problem.tolerance)
+        else:
             given = format_value(solver)
             raise OptionError(f"solver must be a name or a least-squares solver of optimistix, got {given}")
-        problem = replace(problem, solver=solver)
+        problem = replace(problem, method=method)
     if sensor.sensitivities is None:
         return replace(options, space=sensor.space), problem
     return replace(options, observer=sensor.space), problem

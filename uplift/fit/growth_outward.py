@@ -1,0 +1,84 @@
+"""Growth outward from the seeds, in shells: a node starts from its prior and the corrections on its way to a seed."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from uplift.common.arrays import Indices, blocks
+from uplift.common.progress import ProgressCallback
+from uplift.fit.growth import BLOCK_POINTS, Expected, Growth, retry
+from uplift.fit.problem import Nodes, Problem
+from uplift.lattice import Lattice
+
+
+def grow_outward(
+    problem: Problem, nodes: Nodes, expected: Expected, seeds: Indices, progress: ProgressCallback
+) -> Growth:
+    """Fit nodes from the prior, in the order of their distance from the seeds (S,), or from the middle without any.
+
+    Seeds start from entries, not from the prior, and give no correction.
+    """
+    growth, lattice = Growth(problem, nodes, progress), nodes.lattice
+    middle = lattice.index(np.full((1, 3), lattice.dim // 2))
+    distance, toward = shells(lattice, seeds if seeds.size else middle)
+    # δ = p − p₀ of the nodes, in single precision as it is only a start, and whether it is known and smooth
+    corrections = np.zeros((lattice.size, problem.model.count), dtype=np.float32)
+    known, seeded = np.zeros(lattice.size, dtype=bool), lattice.mask(seeds)
+    order = nodes.points[np.argsort(distance[nodes.points], kind="stable")]
+    ends = np.searchsorted(distance[order], np.arange(1, distance.max() + 2))
+
+    rest = [(order[:0], growth.multipliers[:0], growth.multipliers[:0])]
+    for number, shell in enumerate(np.split(order, ends[:-1])):
+        for block in blocks(len(shell), BLOCK_POINTS):
+            points = shell[block]
+            prior = expected(points)
+            # Where both are known, δ ≈ 2 δ₁ − δ₂ with the corrections one and two steps towards a seed, else δ₁.
+            near, far = toward[points], toward[toward[points]]
+            one = (known[near] & (distance[near] < number))[:, None]
+            two = one & (known[far] & (distance[far] < distance[near]))[:, None]
+            change = np.where(two, 2 * corrections[near] - corrections[far], np.where(one, corrections[near], 0))
+            solution = growth.attempt(points, prior + change, number, prior, max_passes=1)
+            found = solution.multipliers - prior
+            corrections[points], known[points] = found, growth.is_smooth(found) & ~seeded[points]
+            unsolved = solution.distance > problem.tolerance
+            rest.append((points[unsolved], solution.multipliers[unsolved], prior[unsolved]))
+    # What one step leaves is fitted at the end, all at once.
+    points, start, prior = (np.concatenate(parts) for parts in zip(*rest, strict=True))
+    growth.attempt(points, start, distance[points], prior)
+    retry(growth, len(ends))
+    return growth
+
+
+def shells(lattice: Lattice, seeds: Indices) -> tuple[NDArray[np.int16], NDArray[np.int32]]:
+    """Distances (n,) of nodes from the nearest seed, in steps to any of 26 neighbours, and nodes (n,) nearer to a seed.
+
+    The latter are one step along each axis towards the seed that is nearest by the sum of the steps along the axes.
+    """
+    dim = lattice.dim
+    reached = lattice.mask(seeds).reshape(lattice.shape)
+    steps = np.where(reached, 0, 3 * dim).astype(np.int32)
+    distance = np.zeros(lattice.shape, dtype=np.int16)
+    # A cube around the seeds grows by a step along each axis, one axis after another.
+    while not reached.all():
+        distance += ~reached
+        for axis in range(3):
+            grown, old = (np.moveaxis(each, axis, 0) for each in (reached.copy(), reached))
+            grown[1:] |= old[:-1]
+            grown[:-1] |= old[1:]
+            reached = np.moveaxis(grown, 0, axis)
+    # min_j (f_j + |i − j|) along each axis, by running minima in both directions
+    ramp = np.arange(dim, dtype=np.int32)
+    for axis in range(3):
+        along = np.moveaxis(steps, axis, -1)
+        before = np.minimum.accumulate(along - ramp, axis=-1) + ramp
+        after = np.minimum.accumulate((along + ramp)[..., ::-1], axis=-1)[..., ::-1] - ramp
+        steps = np.moveaxis(np.minimum(before, after), -1, axis)
+    toward = np.arange(lattice.size, dtype=np.int32).reshape(lattice.shape)
+    for axis, stride in enumerate((dim * dim, dim, 1)):
+        along, result = np.moveaxis(steps, axis, 0), np.moveaxis(toward, axis, 0)
+        down = np.zeros(along.shape, dtype=bool)
+        down[1:] = along[:-1] < along[1:]
+        result[1:] -= stride * down[1:]
+        result[:-1] += stride * ((along[1:] < along[:-1]) & ~down[:-1])
+    return distance.ravel(), toward.ravel()
