@@ -114,7 +114,13 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     metavar="IMAGE",
     help="Build only the cells that the colours of this image, or quoted pattern, need; repeatable.",
 )
-@click.option("--start", default="prior", help="What nodes start from: prior, or neighbours, outward from the seeds.")
+@click.option(
+    "--growth",
+    default="outward",
+    show_default=True,
+    help="Order of the nodes: outward from the entries, coarse-to-fine, or neighbours: outward, each node from the "
+    "spectra of its neighbours.",
+)
 @click.option(
     "--solver",
     default="least-change",

@@ -1,6 +1,6 @@
 """Fit of atlas entries: the measured spectrum, its colours under several lights, and exactly its RGB.
 
-docs/mathematics.md, 6. The objective is minimised by `Marquardt`, a solver of optimistix that is stepped in numpy: nothing
+docs/mathematics.md, 6. `Marquardt`, a solver of optimistix that is stepped in numpy, minimises the objective: nothing
 needs to be compiled for a few entries, and those that have converged leave the batch (docs/performance.md).
 """
 

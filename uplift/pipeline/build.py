@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol
@@ -22,7 +22,9 @@ from uplift.common.text import format_value
 from uplift.common.version import VERSION
 from uplift.cube import CubeData
 from uplift.fit.base import learn_base
-from uplift.fit.growth import STEPS, THESIS_STEPS, grow_from_prior, improve, supporting_points
+from uplift.fit.growth import STEPS, THESIS_STEPS, Growth, improve
+from uplift.fit.growth_coarse import grow_coarse_to_fine
+from uplift.fit.growth_outward import grow_outward
 from uplift.fit.growth_thesis import grow_from_neighbours
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem, nodes_of
@@ -33,11 +35,27 @@ from uplift.lookup import Cube
 from uplift.models.moments import MAX_COUNT
 from uplift.pipeline import entries as spectra
 from uplift.pipeline.entries import AtlasLike
-from uplift.pipeline.options import AUTO, CUSTOM, SOLVERS, ModelName, Options, PriorName, SolverName, check_memory
+from uplift.pipeline.options import (
+    AUTO,
+    CUSTOM,
+    SOLVERS,
+    GrowthName,
+    ModelName,
+    Options,
+    PriorName,
+    SolverName,
+    check_memory,
+)
 
 if TYPE_CHECKING:
     from uplift.fit.stock_solvers import Solver
     from uplift.pipeline.look import LooksLike
+
+GROWTH: dict[str, Callable[..., Growth]] = {
+    "outward": grow_outward,
+    "coarse-to-fine": grow_coarse_to_fine,
+    "neighbours": grow_from_neighbours,
+}
 
 
 class SceneLike(Protocol):
@@ -75,7 +93,7 @@ def build(
     threshold: float = 1e-4,
     auto_tolerance: float = 0.5,
     seed_corners: bool = False,
-    start: Literal["prior", "neighbours"] = "prior",
+    growth: GrowthName = "outward",
     solver: SolverName | Solver = "least-change",
     debug: bool = False,
     scene: SceneLike | StrPath | Sequence[StrPath] | None = None,
@@ -135,14 +153,15 @@ def build(
     seed_corners : bool, default False
         Start all eight corners of the cell of each atlas entry from the entry, as Tódová 2020 does. By default, seven
         of them start between entry and prior, with a weight of the entry from ½ to 1 that the nugget of the atlas
-        determines, and less, down to 0, at colours unlike the entry's. ``start="neighbours"`` always does.
-    start : {"prior", "neighbours"}, default "prior"
-        What lattice points start from: the spectrum that the atlas lets expect at their colour, or the spectra of
-        their fitted neighbours, outward from the seeds (Tódová 2020, section 3.1).
+        determines, and less, down to 0, at colours unlike the entry's. ``growth="neighbours"`` always does.
+    growth : {"outward", "coarse-to-fine", "neighbours"}, default "outward"
+        Order in which lattice points are fitted: outward from the atlas entries, in shells, or from a coarse lattice to
+        finer ones. Both start from the spectrum that the atlas lets expect at a colour, and have the same answers.
+        ``"neighbours"`` goes outward and starts from the spectra of fitted neighbours (Tódová 2020, section 3.1).
     solver : str or optimistix.AbstractLeastSquaresSolver, default "least-change"
-        Solver of lattice points and entries: ``"least-change"``, ``"dogleg"``, ``"levenberg-marquardt"``,
-        ``"gauss-newton"``, or any least-squares solver of optimistix. The default is fastest; answers agree
-        except for nearly box-shaped spectra (docs/accuracy.md).
+        Solver of lattice points, all of optimistix: ``"least-change"``, our own, ``"dogleg"``,
+        ``"levenberg-marquardt"``, ``"gauss-newton"``, or any least-squares solver or minimiser. The default is fastest;
+        answers agree except for nearly box-shaped spectra (docs/accuracy.md).
     debug : bool, default False
         Store the round of growth in which each point was fitted.
     scene : SceneLike, path-like or sequence of path-like, optional
@@ -165,7 +184,7 @@ def build(
         A look that cannot be read, has the colour or the name of an entry or of another look, or needs a model with
         more coefficients.
     UnknownNameError
-        An unknown space, illuminant, observer, model, axis, prior, family, start or solver.
+        An unknown space, illuminant, observer, model, axis, prior, family, growth or solver.
 
     Warns
     -----
@@ -201,7 +220,7 @@ def build(
         threshold=threshold,
         auto_tolerance=auto_tolerance,
         seed_corners=seed_corners,
-        start=start,
+        growth=growth,
         solver=solver if isinstance(solver, str) else CUSTOM,
         debug=debug,
     )
@@ -270,7 +289,7 @@ def _build(
 ) -> Cube:
     """Build a cube from checked options and the problem that they describe."""
     sensor, model, entry_model = problem.sensor, problem.model, options.spectrum_model(options.entry_coefficients)
-    neighbours = options.start == "neighbours"
+    neighbours = options.growth == "neighbours"
 
     # The spectra: families of the library, entries of the atlas, and looks, which become further entries.
     libraries = spectra.read_libraries(library)
@@ -300,19 +319,17 @@ def _build(
     spectra.warn_of_crowding(constraints.names, boxes, seeds)
     own = constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
 
-    # The nodes that a scene needs, or all, grow from coarse to fine: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7),
+    # The nodes that a scene needs, or all, grow from the seeds: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7),
     # where t is the nearest colour that some reflectance has (9). They are improved and stored as coefficients.
     kept = None if scene is None else np.flatnonzero(scene.required_points(boxes, sensor, progress))
-    fitted = None if kept is None or neighbours else supporting_points(lattice, kept)
-    nodes = nodes_of(lattice, sensor, options.threshold / 2, fitted)
-    grow, steps = (grow_from_neighbours, THESIS_STEPS) if neighbours else (grow_from_prior, STEPS)
+    nodes = nodes_of(lattice, sensor, options.threshold / 2, None if neighbours else kept)
 
     def expected(points: Indices) -> Array:
         return initial_guess(points, nodes.goal(points), prior, seeds, own, blend)
 
-    growth = grow(problem, nodes, expected, seeds.points, progress)
-    improvements = improve(growth, steps)
-    points = store(growth, seeds, prior)
+    grown = GROWTH[options.growth](problem, nodes, expected, seeds.points, progress)
+    improvements = improve(grown, THESIS_STEPS if neighbours else STEPS)
+    points = store(grown, seeds, prior)
     points = points if kept is None else points.restricted_to(kept)
 
     table = constraints.table(model, boxes, prior)

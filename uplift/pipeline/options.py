@@ -24,7 +24,8 @@ ModelName = Literal["moments", "sigmoid"]
 MODELS: tuple[ModelName, ...] = ("moments", "sigmoid")
 PriorName = Literal["learnt", "smooth"]
 PRIORS: tuple[PriorName, ...] = ("learnt", "smooth")
-STARTS = ("prior", "neighbours")
+GrowthName = Literal["outward", "coarse-to-fine", "neighbours"]
+GROWTHS: tuple[GrowthName, ...] = ("outward", "coarse-to-fine", "neighbours")
 SolverName = Literal["least-change", "dogleg", "levenberg-marquardt", "gauss-newton"]
 SOLVERS: tuple[SolverName, ...] = ("least-change", "dogleg", "levenberg-marquardt", "gauss-newton")
 CUSTOM = "custom"
@@ -45,7 +46,7 @@ TYPES: dict[str, tuple[Any, type, str]] = {
     "bool": (bool | np.bool_, bool, "True or False"),
 }
 """By the annotation of an option: types that are accepted, that which is recorded as JSON, and their name."""
-RENAMED = {"within": "auto_tolerance"}
+RENAMED = {"within": "auto_tolerance", "start": "growth"}
 """Options by the names that earlier versions recorded in cubes."""
 
 
@@ -74,7 +75,7 @@ class Options:
     threshold: float = 1e-4
     auto_tolerance: float = 0.5
     seed_corners: bool = False
-    start: str = "prior"
+    growth: str = "outward"
     solver: str = "least-change"
     debug: bool = False
 
@@ -95,7 +96,7 @@ class Options:
         for name, names, kind in (
             (self.axis, AXES, "axis spacing"),
             (self.prior, PRIORS, "prior"),
-            (self.start, STARTS, "start"),
+            (self.growth, GROWTHS, "growth"),
             (self.solver, (*SOLVERS, CUSTOM), "solver"),
         ):
             if name not in names:
@@ -132,6 +133,8 @@ class Options:
 def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
     """Return options read from a cube under their present names."""
     current = {RENAMED.get(name, name): value for name, value in options.items()}
+    if current.get("growth") == "prior":  # the default up to file version 4
+        current["growth"] = "coarse-to-fine"
     if "coefficients" in current:  # up to file version 3 entries had as many
         current.setdefault("entry_coefficients", current["coefficients"])
     current = {"prior": "smooth", "leave_out": (), **current}  # the defaults up to file version 3
