@@ -64,7 +64,7 @@ def main() -> None:
         "accuracy",
         "growth",
         runs=RUNS,
-        starts=[start(name, space) for space in SPACES for name in ("prior", "neighbours")],
+        starts=[start(name, space) for space in SPACES for name in ("outward", "coarse-to-fine", "neighbours")],
         solvers=[solver(name) for name in SOLVERS],
         start_dim=START_DIM,
         solver_dim=SOLVER_DIM,
@@ -110,7 +110,7 @@ def at_range(shortest: int, longest: int, step: int) -> Row:
 
 def start(name: str, space: str) -> Row:
     """Build with a start, and compare answers for materials that neither atlas nor library contains."""
-    build = partial(uplift.build, MACBETH, dim=START_DIM, start=name, space=space, leave_out=OTHERS, debug=True)
+    build = partial(uplift.build, MACBETH, dim=START_DIM, growth=name, space=space, leave_out=OTHERS, debug=True)
     cube = build()
     _, seconds = time_calls(build, RUNS)
     answers = {}

@@ -52,7 +52,7 @@ def test_all_options_are_passed_to_the_build(run, home):
     run("build", "--dim", "3", "--coefficients", "5", "--warp", "vision",
         "--axis", "linear", "--space", "Display P3", "--illuminant", "D50",
         "--observer", "CIE 1964 10 Degree Standard Observer", "--light", "A", "--light", "FL2",
-        "--start", "neighbours", "--solver", "dogleg", "--threshold", "1e-3", "--debug",
+        "--growth", "neighbours", "--solver", "dogleg", "--threshold", "1e-3", "--debug",
         "--range", "360:830", "--step", "10", "-o", "cube")  # fmt: skip
     data = uplift.load(home / "cube").data
     assert data.model == uplift.models.Moments(5, 360, 830, "vision")
@@ -61,7 +61,7 @@ def test_all_options_are_passed_to_the_build(run, home):
     assert data.sensor.observer == "CIE 1964 10 Degree Standard Observer"
     assert (data.threshold, data.sensor.range) == (1e-3, (360, 830, 10))
     assert data.points.round is not None
-    given = {"lights": ["A", "FL2"], "start": "neighbours", "solver": "dogleg"}
+    given = {"lights": ["A", "FL2"], "growth": "neighbours", "solver": "dogleg"}
     assert given.items() <= data.provenance["options"].items()
 
 

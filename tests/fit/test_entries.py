@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import leastsq
 
 from tests.conftest import MACBETH
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
-from uplift.fit.entries import FLATNESS, fit_entries, objective
+from uplift.fit.entries import FLATNESS, fit_entries, minimise, objective
 from uplift.fit.problem import Problem
 from uplift.models import Moments, Sigmoid, evaluate
 
@@ -94,6 +95,25 @@ def test_jacobian_equals_central_differences(sensor, measured, model):
         ]
         numeric = [(after - before) / 2e-5 for after, before in around]
         np.testing.assert_allclose(goal.jacobian(at), np.transpose(numeric), rtol=1e-5, atol=1e-8)
+
+
+@pytest.mark.parametrize("model", [Moments(9), Moments(17), Sigmoid()], ids=lambda m: f"{m.name}{m.count}")
+def test_minima_are_those_of_minpack(sensor, measured, model):
+    goal = objective(problem_of(sensor, model=model))
+    found = minimise(goal, measured)
+    for multipliers, spectrum in zip(found, measured, strict=True):
+        given = (spectrum, goal.colours(spectrum))
+        theirs, *_ = leastsq(
+            goal.residuals, np.zeros(model.count), given, lambda p, *_: goal.jacobian(p), full_output=True, ftol=1e-8
+        )
+        ours, other = ((goal.residuals(p, *given) ** 2).sum() for p in (multipliers, theirs))
+        assert ours <= other * (1 + 1e-6)
+
+
+def test_a_fit_does_not_depend_on_the_others(sensor, measured):
+    goal = objective(problem_of(sensor))
+    alone = np.concatenate([minimise(goal, each[None]) for each in measured[:4]])
+    np.testing.assert_allclose(minimise(goal, measured)[:4], alone, rtol=1e-9)
 
 
 def test_weighted_squares_sum_to_a_mean_square(sensor):

@@ -14,7 +14,9 @@ from uplift import build, read_atlas
 from uplift.colorimetry import observer
 from uplift.common.progress import ignore_progress
 from uplift.fit.base import smooth
-from uplift.fit.growth import Growth, grow_from_prior, improve, strides
+from uplift.fit.growth import Growth, improve
+from uplift.fit.growth_coarse import grow_coarse_to_fine, strides
+from uplift.fit.growth_outward import grow_outward, shells
 from uplift.fit.growth_thesis import grow_from_neighbours
 from uplift.fit.prior import Prior
 from uplift.fit.problem import Nodes, Problem, nodes_of
@@ -34,7 +36,7 @@ def all_nodes(lattice):
     return Nodes(lattice, np.arange(lattice.size), NO_SEEDS, NO_COLOURS)
 
 
-def fitted(model, sensor, lattice, rgb=NO_COLOURS):
+def fitted(model, sensor, lattice, rgb=NO_COLOURS, grow=grow_outward):
     """Fit a lattice with entries of grey spectra at linear RGB (E, 3): table of nodes, improvements."""
     problem, nodes, seeds = Problem(sensor, model), all_nodes(lattice), seed(lattice, rgb)
     prior = prior_of(problem)
@@ -43,7 +45,7 @@ def fitted(model, sensor, lattice, rgb=NO_COLOURS):
     def expected(points):
         return initial_guess(points, nodes.goal(points), prior, seeds, grey, FULL_ENTRY)
 
-    growth = grow_from_prior(problem, nodes, expected, seeds.points, ignore_progress)
+    growth = grow(problem, nodes, expected, seeds.points, ignore_progress)
     improvements = improve(growth)
     return store(growth, seeds, prior), improvements
 
@@ -78,7 +80,7 @@ def test_points_that_fail_from_their_start_are_fitted_from_their_neighbours(sens
     middle = LATTICE.size // 2
     start = np.full((LATTICE.size, 9), -1e9) * MODEL.constant()
     start[middle] = 0
-    grown = grow_from_prior(
+    grown = grow_coarse_to_fine(
         Problem(sensor, MODEL), all_nodes(LATTICE), lambda at: start[at], np.array([middle]), rounds.append
     )
     steps = np.abs(LATTICE.position(np.arange(LATTICE.size)) - LATTICE.position(np.array(middle))).max(axis=1)
@@ -93,44 +95,79 @@ def test_points_that_fail_from_their_start_are_fitted_from_their_neighbours(sens
 def test_growth_proceeds_from_a_coarse_lattice_to_finer_ones(sensor):
     lattice = Lattice(observer.axis_nodes("srgb", 17))
     assert strides(lattice.dim) == [4, 2, 1]
-    points, improvements = fitted(MODEL, sensor, lattice)
+    points, improvements = fitted(MODEL, sensor, lattice, grow=grow_coarse_to_fine)
     position = lattice.position(np.arange(lattice.size))
     for number, stride in enumerate(strides(lattice.dim)):
         np.testing.assert_array_equal(points.round <= number, (position % stride == 0).all(axis=1))
     assert improvements == []
 
 
-def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch):
-    """All at once, from every second node, and over three rounds; few points differ."""
+def test_growth_proceeds_outward_in_shells(sensor):
+    """Distances are those to the nearest seed, and most nodes have a nearer one on their way."""
+    lattice = Lattice(observer.axis_nodes("srgb", 9))
+    seeds = np.array([4, 300, 700])
+    distance, toward = shells(lattice, seeds)
+    position = lattice.position(np.arange(lattice.size))
+    steps = np.abs(position[:, None] - lattice.position(seeds)).max(axis=2).min(axis=1)
+    np.testing.assert_array_equal(distance, steps)
+    assert np.abs(position[toward] - position).max() == 1
+    np.testing.assert_array_equal(np.flatnonzero(toward == np.arange(lattice.size)), seeds)
+    assert (distance[toward] < distance).mean() > 0.8
+    points, _ = fitted(MODEL, sensor, lattice)
+    from_middle = np.abs(position - 4).max(axis=1)
+    assert (points.round == from_middle).mean() > 0.99
+
+
+@pytest.mark.parametrize("rgb", [NO_COLOURS, np.array([[0.2, 0.3, 0.4]])], ids=["no seeds", "seeds"])
+def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch, rgb):
+    """Outward, all at once, and from coarse lattices to finer ones; few points differ."""
     lattice = Lattice(observer.axis_nodes("srgb", 17))
-    spectra = {}
-    for order in ([1], [2, 1], [4, 2, 1]):
-        monkeypatch.setattr("uplift.fit.growth.strides", lambda dim, order=order: order)
-        points = fitted(MODEL, sensor, lattice, np.array([[0.2, 0.3, 0.4]]))[0]
+    spectra = [reflectance(MODEL, fitted(MODEL, sensor, lattice, rgb)[0].coefficients, sensor.wavelengths)]
+    for order in ([1], [4, 2, 1]):
+        monkeypatch.setattr("uplift.fit.growth_coarse.strides", lambda dim, order=order: order)
+        points = fitted(MODEL, sensor, lattice, rgb, grow_coarse_to_fine)[0]
         assert points.round.max() == len(order) - 1
-        spectra[len(order)] = reflectance(MODEL, points.coefficients, sensor.wavelengths)
-    for other in (2, 3):
-        difference = np.abs(spectra[other] - spectra[1]).max(axis=1)
+        spectra.append(reflectance(MODEL, points.coefficients, sensor.wavelengths))
+    for other in spectra[1:]:
+        difference = np.abs(other - spectra[0]).max(axis=1)
         assert np.median(difference) < 1e-6
         assert np.quantile(difference, 0.99) < 1e-5
         assert (difference > 2e-4).mean() < 1e-3  # nearly box-shaped spectra at the faces
 
 
-def test_a_correction_saves_steps(sensor, monkeypatch):
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+def test_nodes_of_a_scene_have_the_answers_of_the_whole_lattice(repository):
+    """Though shells have holes, and fewer corrections are known."""
+
+    class Some:
+        def required_points(self, boxes, sensor, progress):
+            return np.arange(boxes.lattice.size) % 5 == 0
+
+        def describe(self):
+            return []
+
+    whole, some = (build(repository / "atlases" / "macbeth.txt", dim=9, scene=scene).data for scene in (None, Some()))
+    rows = np.flatnonzero(some.points.present)
+    both = [reflectance(data.model, data.points.coefficients[rows], data.sensor.wavelengths) for data in (whole, some)]
+    assert len(rows) == 9**3 // 5 + 1
+    assert np.quantile(np.abs(np.subtract(*both)).max(axis=1), 0.98) < 1e-5
+
+
+@pytest.mark.parametrize("grow", [grow_outward, grow_coarse_to_fine])
+def test_a_correction_saves_steps(sensor, monkeypatch, grow):
     lattice = Lattice(observer.axis_nodes("srgb", 17))
     problem, nodes = Problem(sensor, MODEL), all_nodes(lattice)
     prior = prior_of(problem)
-
     solve, counts = Problem.solve, []
     monkeypatch.setattr(Problem, "solve", lambda self, *args: counts.append(len(args[0])) or solve(self, *args))
 
     def solved_again():
         counts.clear()
-        grow_from_prior(problem, nodes, lambda at: prior(nodes.goal(at)), NO_SEEDS, ignore_progress)
+        grow(problem, nodes, lambda at: prior(nodes.goal(at)), NO_SEEDS, ignore_progress)
         return sum(counts) - lattice.size
 
     with_corrections = solved_again()
-    monkeypatch.setattr("uplift.fit.growth.strides", lambda dim: [1])
+    monkeypatch.setattr("uplift.fit.growth.MAX_CORRECTION", 0.0)
     assert with_corrections < 0.9 * solved_again()
 
 
@@ -181,7 +218,7 @@ def test_without_seeds_rounds_are_the_shells_around_the_middle(sensor):
 @pytest.mark.parametrize("with_atlas", [True, False])
 def test_whole_builds_end_at_the_threshold(repository, model, with_atlas):
     atlas = read_atlas(repository / "atlases" / "macbeth.txt") if with_atlas else None
-    cube = build(atlas, dim=7, model=model, start="neighbours", debug=True)
+    cube = build(atlas, dim=7, model=model, growth="neighbours", debug=True)
     points = cube.data.points
     assert points.distance.max() <= 1e-4
     assert Status.UNFITTED not in points.status
@@ -194,18 +231,18 @@ def test_corners_start_from_the_entry_however_far_they_are(repository):
     """Those of 5³ are: from the prior, their starts depend on whether this is forced."""
     atlas = read_atlas(repository / "atlases" / "macbeth.txt")
 
-    def corners(start, seed_corners):
-        points = build(atlas, dim=5, start=start, seed_corners=seed_corners).data.points
+    def corners(growth, seed_corners):
+        points = build(atlas, dim=5, growth=growth, seed_corners=seed_corners).data.points
         return points.coefficients[points.status == Status.ATLAS_CORNER]
 
     np.testing.assert_array_equal(corners("neighbours", False), corners("neighbours", True))
-    assert not np.allclose(corners("prior", False), corners("prior", True), atol=0.01)
+    assert not np.allclose(corners("outward", False), corners("outward", True), atol=0.01)
 
 
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 def test_seeds_are_the_entries_with_the_coefficients_of_the_nodes(repository):
     """The zeroth and first moments of an entry do not depend on how many are kept."""
-    cube = build(repository / "atlases" / "macbeth.txt", dim=16, coefficients=9, start="neighbours")
+    cube = build(repository / "atlases" / "macbeth.txt", dim=16, coefficients=9, growth="neighbours")
     points, entries = cube.data.points, cube.data.atlas.spectra.coefficients
     primary = points.status == Status.ATLAS_PRIMARY
     moved = np.abs(points.coefficients[primary] - entries[points.entry[primary], :9]).max(axis=1)
