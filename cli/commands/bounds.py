@@ -10,7 +10,7 @@ import click
 from .. import options
 from ..output.answers import format_rgb, hex_code, patch
 from ..output.console import csv_writer, emit, make_table, print_fields, print_json_answers, say, show
-from .query import ColourCommand, ask, colour_options, result_object
+from .query import ColourCommand, QueryStream, ask, colour_options, result_object
 
 if TYPE_CHECKING:
     from uplift.lookup import Bounds, Cube, QueryResult
@@ -80,7 +80,7 @@ def command(
         write_look_page(stream.cube, next(iter(blocks))[1], html, force=force)
         say(f"{html}: page to choose a look on", err=True)
     if style == "json":
-        print_json_answers((each for block in blocks for each in _objects(stream.cube, *block)), single=single)
+        print_json_answers((each for block in blocks for each in _objects(stream, *block)), single=single)
     elif style == "csv":
         _print_csv(blocks)
     else:
@@ -88,7 +88,7 @@ def command(
     stream.warn()
 
 
-def _objects(cube: Cube, results: Sequence[QueryResult], found: Sequence[Bounds]) -> Iterable[dict[str, Any]]:
+def _objects(stream: QueryStream, results: Sequence[QueryResult], found: Sequence[Bounds]) -> Iterable[dict[str, Any]]:
     from uplift.colorimetry.delta_e import lab
     from uplift.lookup.light_errors import LIKELY
 
@@ -108,7 +108,7 @@ def _objects(cube: Cube, results: Sequence[QueryResult], found: Sequence[Bounds]
                 "likely": None if likely is None else likely.tolist(),
                 "likely_share": LIKELY,
             }
-        yield result_object(cube, result) | {"bounds": fields}
+        yield result_object(stream, result) | {"bounds": fields}
 
 
 def _print_csv(blocks: Iterable[Block]) -> None:

@@ -211,15 +211,24 @@ def command(
             inputs += scene.paths
         make = partial(_build, files, scale, **settings)
     path = check_output(name if output is None else output, inputs=inputs, force=force)
+    slices = path.with_suffix(".exr") if settings["debug"] else None
+    if slices is not None:
+        check_output(slices, inputs=inputs, force=force)
     begin = time.perf_counter()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
         cube = make(progress=progress)
     cube.save(path, force=force)
+    if slices is not None:
+        from uplift.io.exr import write_slices
+
+        write_slices(cube.data, slices, force=force)
     if verbose:
         for step in cube.data.provenance["improvements"]:
             say(f"improvement, {step['step']}: tried {step['tried']}, fixed {step['mended']}", err=True)
     if not quiet:
         _print_summary(cube, path, time.perf_counter() - begin)
+        if slices is not None:
+            say(f"{slices}: {cube.data.lattice.dim} blue slices")
 
 
 def _build(files: tuple[str, ...], scale: Any, **settings: Any) -> Cube:
@@ -262,7 +271,9 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
     measured, looks = data.atlas.measured_count, data.atlas.looks
     entries = f"{measured} atlas entries, " if data.provenance["atlases"] else ""
     entries += f"{looks} look{'s' * (looks != 1)}, " if looks else ""
+    steps = data.provenance["improvements"]
+    improved = f"{sum(step['mended'] for step in steps)} of {steps[0]['tried']} improved" if steps else "0 improved"
     say(
         f"{path}: {nodes}, {entries}{accuracy} (worst {worst:.1e}), "
-        f"{counts['improved']} improved, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
+        f"{improved}, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
     )

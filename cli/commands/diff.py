@@ -8,20 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..completion import complete_cube
+from .. import options
 from ..inputs import expand_patterns, find_input_space
-from ..options import (
-    NUMBER,
-    Whole,
-    encoding_option,
-    force_option,
-    format_option,
-    input_space_option,
-    light_option,
-    out_of_gamut_option,
-)
 from ..output.console import make_table, print_json, say, show
-from ..output.progress import spinner
+from ..output.progress import progress_bar
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -32,24 +22,26 @@ MAX_SIDE = 960
 
 
 @click.command("diff")
-@click.argument("first", metavar="CUBE", shell_complete=complete_cube)
-@click.argument("second", metavar="CUBE", shell_complete=complete_cube)
+@click.argument("first", metavar="CUBE", shell_complete=options.complete_cube)
+@click.argument("second", metavar="CUBE", shell_complete=options.complete_cube)
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
-@light_option("Illuminant", "D65 A FL2 FL11 LED-B3")
+@options.light("Illuminant", "D65 A FL2 FL11 LED-B3")
 @click.option(
     "--tolerance",
-    type=NUMBER,
+    type=options.NUMBER,
     metavar="DE",
     help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by more, or if entries were added or "
     "removed.",
 )
-@click.option("--worst", type=Whole(0), default=5, show_default=True, help="Number of worst colours of each set.")
-@encoding_option("the images")
-@input_space_option("the images")
-@out_of_gamut_option("clip", "pixels")
-@click.option("-o", "--output", metavar="FILE", help="HTML page with pictures of where the cubes differ.")
-@format_option("table", "json")
-@force_option
+@click.option(
+    "--worst", type=options.Whole(0), default=5, show_default=True, help="Number of worst colours of each set."
+)
+@options.encoding("the images")
+@options.input_space("the images")
+@options.out_of_gamut("clip", "pixels")
+@options.output("HTML page with pictures of where the cubes differ.")
+@options.output_format("table", "json")
+@options.force
 def command(
     first: str,
     second: str,
@@ -92,7 +84,7 @@ def command(
         check_output(output, inputs=(first, second, *paths), force=force)
     names = (first, second) if first != second else (first, f"{second} (again)")
     cubes = dict(zip(names, map(load, (first, second)), strict=True))
-    with spinner("comparing answers"):
+    with progress_bar("comparing answers"):
         pictures = {path: _read(path, next(iter(cubes.values())), encoding, input_space, method) for path in paths}
         found = diff_cubes(cubes, lights or SCENE_LIGHTS, pictures)
         if output is not None:

@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
     from uplift.lookup import Cube, QueryResult
 
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
+PACKAGED = "packaged"
+"""Name of the cube that answers without --cube."""
 LARGEST = 1e30
 """Limit of requested colours: ΔE00 of larger ones overflows."""
 
@@ -95,7 +98,7 @@ def ask(
 
         lit = (light(name, cube.observer, *cube.data.sensor.range) for name in lights)
         found = list({each.name: each for each in lit}.values())
-    stream = QueryStream(cube, method, wavelengths, mode, found, fill_missing=fill_missing)
+    stream = QueryStream(cube, cube_path, method, wavelengths, mode, found, fill_missing=fill_missing)
     if point is not None:
         return stream, [list(query_xyz(cube, [point], wavelengths, mode, found))], single
     bounded = method == "error" and input_space is None
@@ -146,17 +149,20 @@ def command(lights: tuple[str, ...], style: str, plot_path: str | None, force: b
         plot_spectra(stream.cube, list(chain.from_iterable(results)), plot_path, force=force)
     if style == "json":
         answers = chain.from_iterable(results)
-        print_json_answers((result_object(stream.cube, answer) for answer in answers), single=single)
+        print_json_answers((result_object(stream, answer) for answer in answers), single=single)
     elif style == "csv":
         _print_csv(stream.cube, chain.from_iterable(results))
     elif single:
         (result,) = chain.from_iterable(results)
-        print_fields(_fields(stream.cube, result), {"linear RGB": patch(stream.cube, result.rgb)})
+        print_fields(_fields(stream, result), {"linear RGB": patch(stream.cube, result.rgb)})
         emit("")
         print_columns(result.wavelengths, result.reflectance)
     else:
-        _print_lines(stream.cube, chain.from_iterable(results))
+        _print_lines(stream, chain.from_iterable(results))
     stream.warn()
+    cubes = list(Path().glob("*.uplift")) if style == "table" and stream.path is None else []
+    if len(cubes) == 1:
+        say(f"hint: the cube of this folder answers with --cube {cubes[0]}", err=True)
 
 
 @dataclass
@@ -164,6 +170,7 @@ class QueryStream:
     """Answers to blocks of linear RGB (n, 3), and the numbers of colours that were mapped or filled."""
 
     cube: Cube
+    path: str | None
     method: str
     wavelengths: Array | None
     mode: str
@@ -173,6 +180,18 @@ class QueryStream:
     mapped: int = 0
     filled: int = 0
     max_change: float = 0.0
+
+    def source(self) -> dict[str, Any]:
+        """Return which cube answers: its file, dim and atlases."""
+        data = self.cube.data
+        atlases = [source["name"] for source in data.provenance.get("atlases", ())]
+        return {"file": self.path or PACKAGED, "dim": data.lattice.dim, "atlases": atlases}
+
+    def describe(self) -> str:
+        """Return which cube answers on one line."""
+        source = self.source()
+        atlases = ", ".join(source["atlases"]) or "no atlas"
+        return f"{source['file']}: {source['dim']}³ nodes, {atlases}"
 
     def results(self, blocks: Iterable[Array]) -> Iterator[list[QueryResult]]:
         """Answer block by block, each before the next one is read."""
@@ -204,9 +223,11 @@ class QueryStream:
             warnings.warn(UpliftWarning(problem), stacklevel=1)
 
 
-def result_object(cube: Cube, result: QueryResult) -> dict[str, Any]:
+def result_object(stream: QueryStream, result: QueryResult) -> dict[str, Any]:
     """Return an answer as JSON values."""
+    cube = stream.cube
     return {
+        "cube": stream.source(),
         "rgb": result.rgb.tolist(),
         "requested_rgb": result.requested_rgb.tolist(),
         "wavelengths": result.wavelengths.tolist(),
@@ -231,10 +252,11 @@ def result_object(cube: Cube, result: QueryResult) -> dict[str, Any]:
     }
 
 
-def _fields(cube: Cube, result: QueryResult) -> dict[str, str]:
+def _fields(stream: QueryStream, result: QueryResult) -> dict[str, str]:
     """Return the fields of a single colour by name."""
     from uplift.colorimetry.delta_e import delta_e_rgb
 
+    cube = stream.cube
     data, atlas, rgb = cube.data, cube.data.atlas, result.rgb
     fields = {}
     if (result.requested_rgb != rgb).any():
@@ -242,6 +264,7 @@ def _fields(cube: Cube, result: QueryResult) -> dict[str, str]:
         fields["requested"] = f"{format_rgb(result.requested_rgb)}  outside [0, 1], mapped by ΔE00 {moved:.2g}"
     fields["linear RGB"] = f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"
     fields |= describe_coordinates(cube, rgb)
+    fields["cube"] = stream.describe()
     fields["cell"] = f"{result.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in result.statuses)}"
     round_trip = f"{format_rgb(result.round_trip)}  ΔE00 {result.delta_e_2000:.2g} ({data.sensor.illuminant})"
     fields["round trip"] = round_trip
@@ -285,13 +308,15 @@ def _print_csv(cube: Cube, results: Iterable[QueryResult]) -> None:
         writer.write([*map(cells.get, columns), *result.reflectance.tolist()])
 
 
-def _print_lines(cube: Cube, results: Iterable[QueryResult]) -> None:
-    """Print a heading and a line per colour; the entry, of any length, comes last."""
+def _print_lines(stream: QueryStream, results: Iterable[QueryResult]) -> None:
+    """Print the cube, a heading, and a line per colour; the entry, of any length, comes last."""
     for number, result in enumerate(results):
+        cube = stream.cube
         errors = {f"± {light}": f"{error:.2f}" for light, error, _ in _errors(cube, result)}
         if number == 0:
             names = list(errors) or [f"{'spectrum':<16}"]
             swatch = " " * 5 * has_colours()
+            say(f"cube     {stream.describe()}")
             say(f"{swatch}hex      {'linear RGB':<17}  {'ΔE00':<7}  {'  '.join(names)}  atlas entry")
         last = [f"{error:>{len(name)}}" for name, error in errors.items()] or [sparkline(result.reflectance, 16)]
         rgb = " ".join(f"{value:.3f}" for value in result.rgb)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
 from .. import options
@@ -10,7 +12,7 @@ from ..output.console import say
 
 @click.command("slices")
 @options.cube_argument
-@options.output("Slices to write, as .exr.")
+@options.output("Slices to write, as .exr. [default: CUBE's name with .exr, in the current folder]")
 @click.option("--plot", "sheet", metavar="FILE", type=click.Path(), help="Contact sheet to write, as .exr or .png.")
 @options.force
 def command(cube: str, output: str | None, sheet: str | None, force: bool) -> None:
@@ -25,12 +27,14 @@ def command(cube: str, output: str | None, sheet: str | None, force: bool) -> No
 
     \b
     Examples:
-      uplift slices macbeth-32.uplift -o macbeth-32.exr --plot macbeth-32.png
+      uplift slices macbeth-32.uplift
       uplift slices macbeth-32.uplift --plot sheet.png
-      uplift slices macbeth-32.uplift -o macbeth-32.exr --plot sheet.exr --force
+      uplift slices macbeth-32.uplift -o macbeth.exr --plot sheet.exr --force
+
+    With --plot alone, only the contact sheet is written.
     """
     if output is None and sheet is None:
-        raise click.UsageError("Nothing to write: give --output FILE, --plot FILE, or both.")
+        output = f"{Path(cube).stem}.exr"
     from uplift.common.files import check_outputs
     from uplift.cube import read
     from uplift.io.exr import write_slices

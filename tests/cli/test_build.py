@@ -115,7 +115,7 @@ def test_verbose_prints_every_round_and_storing(run, home):
     ],
 )
 def test_invalid_input_is_reported_before_the_build(refuse, monkeypatch, home, args, code):
-    monkeypatch.setattr("uplift.pipeline.build.grow_from_prior", lambda *_, **__: pytest.fail("built"))
+    monkeypatch.setattr("uplift.pipeline.build.learn_base", lambda *_, **__: pytest.fail("built"))
     (home / "mine").write_text("")
     assert refuse("build", "--dim", "2", *args.split()).code == code
     assert os.listdir(home) == ["mine"]

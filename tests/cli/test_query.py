@@ -231,10 +231,11 @@ def test_json_has_every_field(ask, macbeth_cube):
     row = cube.data.atlas.names.index("red")
     answer = ask("query", "--cube", macbeth_cube, *cube.data.atlas.rgb[row].tolist())
     assert answer.keys() == {
-        *("rgb", "requested_rgb", "wavelengths", "reflectance", "xyz", "round_trip", "cell", "status"),
+        *("cube", "rgb", "requested_rgb", "wavelengths", "reflectance", "xyz", "round_trip", "cell", "status"),
         *("realisable", "entry", "standard_error", "error_bound", "reference", "standard_errors", "error_bounds"),
         *("lights", "unlike_atlas", "hsv", "hsl", "yiq", "dominant_wavelength", "complementary", "purity"),
     }
+    assert answer["cube"] == {"file": str(macbeth_cube), "dim": cube.data.lattice.dim, "atlases": ["macbeth.txt"]}
     assert (answer["lights"], answer["standard_errors"], answer["unlike_atlas"]) == ({}, {}, False)
     assert answer["standard_error"] == pytest.approx(cube.data.atlas.error[row])
     assert answer["error_bound"] == pytest.approx(answer["standard_error"])
@@ -329,7 +330,18 @@ def test_texts(run, table, macbeth_cube):
     assert all(word in text for word in ("#cc3319", *(f"{wavelength} nm" for wavelength in range(380, 781, 5))))
     assert "\x1b" not in text
     lines = run("query", "--input", table("#cc3319\n#ffffff\n#000000\n")).stdout.splitlines()
-    assert [line.split()[0] for line in lines[1:]] == ["#cc3319", "#ffffff", "#000000"]
+    assert lines[0] == "cube     packaged: 16³ nodes, no atlas"
+    assert [line.split()[0] for line in lines[2:]] == ["#cc3319", "#ffffff", "#000000"]
+
+
+def test_a_hint_names_the_only_cube_of_the_folder(run, home, plain_cube):
+    assert "--cube" not in run("query", "#cc3319").stderr
+    plain_cube.save(home / "mine.uplift")
+    assert "--cube mine.uplift" in run("query", "#cc3319").stderr
+    assert "--cube" not in run("query", "#cc3319", "--cube", "mine.uplift").stderr
+    assert "--cube" not in run("query", "#cc3319", "--format", "json").stderr
+    plain_cube.save(home / "other.uplift")
+    assert "--cube" not in run("query", "#cc3319").stderr
 
 
 def test_plot(run, refuse, home, table):

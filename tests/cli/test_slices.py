@@ -23,8 +23,12 @@ def test_slices_and_sheet(run, cube, home):
     assert (home / "sheet.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_bad_input_is_refused(run, refuse, misuse, cube, home):
-    assert "--plot" in misuse("slices", cube)
+def test_slices_have_the_name_of_the_cube(run, cube, home):
+    assert run("slices", cube).stdout == "small.exr: 4 blue slices\n"
+    assert len(OpenEXR.File(str(home / "small.exr")).parts) == 4
+
+
+def test_bad_input_is_refused(run, refuse, cube, home):
     assert refuse("slices", "missing.uplift", "-o", "out.exr").code == "cube-not-found"
     for exists, other in (("out.exr", "sheet.png"), ("sheet.png", "out.exr")):
         (home / exists).write_text("old")

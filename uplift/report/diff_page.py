@@ -10,7 +10,7 @@ from markupsafe import Markup
 
 from uplift.colorimetry.srgb import hex_codes, to_display_codes
 from uplift.common.arrays import Array
-from uplift.io.slices import blue_slices
+from uplift.io.exr import blue_slices
 from uplift.report.charts import spectra_chart
 from uplift.report.diff import Changes, CubeDiff, to_json
 from uplift.viz.figure import PALE, STYLE, colour_map, new_figure, to_page_svg
