@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from uplift.common.errors import UpliftError
+from uplift.common.errors import UpliftError, UpliftWarning
 
 from .. import options
 from ..output.console import make_table, print_json, say, show
@@ -44,7 +45,8 @@ def command(
     The comparison covers lattice RGB, spectra (largest and rms difference), ΔE00 under D65, A and FL11, and the number
     of nodes by status. The exit code is 0 if all differences are within their limits and 1 otherwise.
 
-    A cube that cannot be read or rebuilt, or that has another lattice, has failed; the others are still checked.
+    A cube that cannot be read or rebuilt, or that has another lattice, has failed; the others are still checked. If an
+    atlas has changed, its cube has failed: the entries that were added, removed or moved are listed, by ΔE00.
     --update replaces every failed cube that can be rebuilt.
 
     Atlases are identified by name and content. They are searched for in --atlas-dir, the cube's folder, 'atlases'
@@ -57,6 +59,8 @@ def command(
         print_json([_object(result) for result in results])
     elif not quiet:
         _print_table(results)
+        for result in results:
+            _explain(result)
     is_failed = False
     for result in results:
         if result.failures and update and result.rebuilt:
@@ -78,13 +82,15 @@ class _Result:
     rebuilt: Cube | None
     comparison: RebuildDifference | None = None
     error: UpliftError | None = None
+    changed: tuple[UpliftWarning, ...] = ()
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Measures over their limits, or the code of the error."""
+        """Measures over their limits, or the code of the error, and those of changed atlases."""
+        changed = tuple(dict.fromkeys(warning.code for warning in self.changed))
         if self.comparison:
-            return self.comparison.failures
-        return (self.error.code,) if self.error else ()
+            return self.comparison.failures + changed
+        return (self.error.code,) if self.error else changed
 
 
 def _check(path: Path, folders: Sequence[str], progress: ProgressCallback) -> _Result:
@@ -93,12 +99,24 @@ def _check(path: Path, folders: Sequence[str], progress: ProgressCallback) -> _R
     from uplift.report.regression import compare_rebuilt
 
     rebuilt = None
-    try:
-        stored = load(path)
-        rebuilt = rebuild(stored, path, folders, progress=progress)
-        return _Result(path, rebuilt, comparison=compare_rebuilt(path, stored.data, rebuilt.data))
-    except UpliftError as error:
-        return _Result(path, rebuilt, error=error)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", UpliftWarning)
+        try:
+            stored = load(path)
+            rebuilt = rebuild(stored, path, folders, progress=progress)
+            changed = tuple(each.message for each in caught if isinstance(each.message, UpliftWarning))
+            return _Result(path, rebuilt, compare_rebuilt(path, stored.data, rebuilt.data), changed=changed)
+        except UpliftError as error:
+            return _Result(path, rebuilt, error=error)
+
+
+def _explain(result: _Result) -> None:
+    """Print what has changed in the atlas of a cube."""
+    for warning in result.changed:
+        say(f"{result.path}: {warning.problem}")
+    for entry in result.comparison.entries if result.comparison else ():
+        by = "" if entry.delta_e is None else f", ΔE00 {entry.delta_e:.2g}"
+        say(f"  {entry.name}: {entry.change}{by}")
 
 
 def _object(result: _Result) -> dict[str, object]:
@@ -109,6 +127,8 @@ def _object(result: _Result) -> dict[str, object]:
         "failures": list(result.failures),
         "measures": comparison.measures if comparison else {},
         "status": {"stored": comparison.stored_counts, "rebuilt": comparison.rebuilt_counts} if comparison else {},
+        "atlas_changed": [warning.problem for warning in result.changed],
+        "entries": [asdict(entry) for entry in comparison.entries] if comparison else [],
         "error": error_object(error) if error else None,
     }
 

@@ -112,9 +112,30 @@ def test_atlases_are_searched_for_in_given_folders(run, shown, home, monkeypatch
     (home / "there").mkdir()
     shutil.copy(macbeth, home / "there")
     assert "passed" in run("check", "cube.uplift", "--atlas-dir", "there").stdout
-    (home / "there" / "macbeth.txt").write_text("Entry ID: changed\n")
-    result = run("check", "cube.uplift", "--atlas-dir", "there", code=1)
-    assert [code for code, _ in reported(result, shown)] == ["atlas-changed"]
+
+
+def test_a_changed_atlas_is_explained_and_the_cube_updated(run, ask, home):
+    """One entry has other values and one another name."""
+    wavelengths = list(range(380, 781, 10))
+
+    def write(**entries):
+        rows = [("name", *wavelengths), *((name, *values) for name, values in entries.items())]
+        (home / "mine.csv").write_text("".join(",".join(map(str, row)) + "\n" for row in rows))
+
+    red, grey, dark = np.linspace(0.1, 0.6, 41), np.full(41, 0.5), np.full(41, 0.3)
+    write(red=red, grey=grey, dark=dark)
+    uplift.build(home / "mine.csv", dim=9, coefficients=4).save(home / "cube.uplift")
+    assert ask("check", "cube.uplift")[0]["passed"]
+    write(red=red, grey=grey + 0.02, new=dark)
+    (answer,) = ask("check", "cube.uplift", code=1)
+    assert {"atlas-changed", "entries", "delta_e_A"} <= set(answer["failures"])
+    changes = {entry["name"]: entry["change"] for entry in answer["entries"]}
+    assert changes == {"grey": "moved", "dark": "removed", "new": "added"}
+    assert answer["entries"][-1]["delta_e"] > 0.5
+    shown = run("check", "cube.uplift", "--update").stdout
+    assert "mine.csv" in shown
+    assert "grey: moved" in shown
+    run("check", "cube.uplift")
 
 
 @pytest.mark.parametrize("cube", CUBES, ids=lambda path: path.stem)

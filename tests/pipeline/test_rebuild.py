@@ -8,12 +8,12 @@ import shutil
 import pytest
 
 import uplift
-from tests.helpers import raises
+from tests.helpers import raises, warns
 from uplift.common.errors import CubeFileError
 from uplift.cube import digest
 from uplift.lookup import Cube
 from uplift.pipeline.options import recorded_options
-from uplift.pipeline.rebuild import rebuild
+from uplift.pipeline.rebuild import rebuild, recorded_atlas
 from uplift.report.regression import compare_rebuilt
 
 
@@ -92,11 +92,14 @@ def test_a_shipped_atlas_is_found_by_its_digest_in_any_folder(tiny_cube, tmp_pat
     rebuild_error("atlas-not-found", cube, tmp_path / "cube.uplift")
 
 
-def test_a_changed_atlas_is_refused(tiny_cube, repository, home):
+def test_a_changed_atlas_is_used_with_a_warning(tiny_cube, repository, home):
     text = (repository / "atlases" / "macbeth.txt").read_text(encoding="utf-8")
     (home / "macbeth.txt").write_text(text + "\n", encoding="utf-8")
-    error = rebuild_error("atlas-changed", tiny_cube, home / "cube.uplift")
-    assert str(home / "macbeth.txt") in error.problem
+    with warns("atlas-changed") as caught:
+        rebuild(tiny_cube, home / "cube.uplift")
+    assert str(home / "macbeth.txt") in caught[0].problem
+    with raises(CubeFileError, "atlas-changed"):
+        recorded_atlas(tiny_cube.data, home / "cube.uplift")
     # It does not hide the recorded one.
     again = rebuild(tiny_cube, home / "cube.uplift", [home, repository / "atlases"])
     assert digest(again.data) == digest(tiny_cube.data)

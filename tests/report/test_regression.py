@@ -14,7 +14,7 @@ from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.common.errors import CubeFileError
 from uplift.lattice import Lattice, Status
-from uplift.report.regression import LIMITS, RebuildDifference, compare_rebuilt
+from uplift.report.regression import LIMITS, EntryChange, RebuildDifference, compare_rebuilt
 
 PATH = Path("cube.uplift")
 
@@ -66,7 +66,7 @@ def test_measures_fail_above_their_limits_and_as_nan(name):
         (float("nan"), (name,)),
         (float("inf"), (name,)),
     ]:
-        assert RebuildDifference(PATH, measures | {name: value}, {}, {}).failures == failures
+        assert RebuildDifference(PATH, measures | {name: value}, {}, {}, ()).failures == failures
 
 
 def test_nan_in_the_spectra_fails(data):
@@ -79,9 +79,15 @@ def with_atlas(data, **changes):
     return dataclasses.replace(data, atlas=dataclasses.replace(data.atlas, **changes))
 
 
-def test_other_entries_cannot_be_compared(data):
-    with raises(CubeFileError, "entries-mismatch"):
-        compare_rebuilt(PATH, data, with_atlas(data, names=data.atlas.names[::-1]))
+def test_entries_are_compared_by_name(data):
+    names = ("new", *data.atlas.names[1:])
+    found = compare_rebuilt(PATH, data, with_atlas(data, names=names))
+    assert found.entries == (EntryChange(data.atlas.names[0], "removed"), EntryChange("new", "added"))
+    assert found.failures == ("entries",)
+    assert max(found.measures.values()) == 0
+    reordered = compare_rebuilt(PATH, data, with_atlas(data, names=data.atlas.names[::-1]))
+    assert {entry.change for entry in reordered.entries} == {"moved"}
+    assert max(entry.delta_e for entry in reordered.entries) > 1
 
 
 def test_measures_are_the_largest_and_the_rms(plain_cube):

@@ -54,19 +54,21 @@ def rebuild(
 ) -> Cube:
     """Build a cube, read from ``path``, again. Warnings of the first build are not repeated.
 
-    Atlas files are searched as by `recorded_atlas`. Raises `CubeFileError` if the cube does not record its options, was
-    filled from another cube, or an atlas file is missing or has changed.
+    Atlas files are searched as by `recorded_atlas`. A file that has changed is used, with the `UpliftWarning`
+    ``atlas-changed``. Raises `CubeFileError` if the cube does not record its options, was filled from another cube, or
+    an atlas file is missing.
     """
     options = _read_options(stored.data, path)
     if "filled" in stored.data.provenance:
         raise CubeFileError(
             "was filled from another cube and cannot be rebuilt", path=path, hint="rebuild the cube that was filled"
         )
-    folders = tuple(folders)
-    atlas = recorded_atlas(stored.data, path, folders)
     candidates = _search_path(path, folders)
-    sources = stored.data.provenance.get("libraries", ())
-    library = tuple(_find(path, source["name"], source["digest"], candidates) for source in sources)
+    atlases, libraries = (_find_all(stored.data, path, kind, candidates) for kind in ("atlases", "libraries"))
+    for error in (*atlases.values(), *libraries.values()):
+        if error is not None:
+            warnings.warn(UpliftWarning(error.problem, code=error.code, path=path), stacklevel=2)
+    atlas, library = _read(stored.data, atlases), tuple(libraries)
     scene = StoredScene(stored.data) if "scene" in stored.data.provenance else None
     given = asdict(options)
     sensor = stored.data.sensor
@@ -88,17 +90,28 @@ def recorded_atlas(data: CubeData, path: StrPath, folders: Iterable[StrPath] = (
     these, and by digest among the shipped atlases. A recorded name never opens a file elsewhere. Warnings are not
     repeated. Raises `CubeFileError` if the cube does not record its atlas, or a file is missing or has changed.
     """
-    if "atlases" not in data.provenance:
-        raise _missing_provenance(path)
-    sources = data.provenance["atlases"]
-    if not sources:
-        return None
-    candidates = _search_path(path, folders)
-    files = [_find(path, source["name"], source["digest"], candidates) for source in sources]
-    scales = [source.get("measured", "auto") for source in sources]
+    files = _find_all(data, path, "atlases", _search_path(path, folders))
+    for error in files.values():
+        if error is not None:
+            raise error
+    return _read(data, files)
+
+
+def _read(data: CubeData, files: Iterable[Path]) -> Atlas | None:
+    """Read the recorded atlas from its files."""
+    scales = [source.get("measured", "auto") for source in data.provenance["atlases"]]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
-        return merge(read_atlas(file, measured=scale) for file, scale in zip(files, scales, strict=True))
+        atlases = [read_atlas(file, measured=scale) for file, scale in zip(files, scales, strict=True)]
+    return merge(atlases) if atlases else None
+
+
+def _find_all(data: CubeData, path: StrPath, kind: str, folders: Sequence[Path]) -> dict[Path, CubeFileError | None]:
+    """Find the recorded files of a kind, each with an error if it has changed."""
+    if kind == "atlases" and kind not in data.provenance:
+        raise _missing_provenance(path)
+    sources = data.provenance.get(kind, ())
+    return dict(_find(path, source["name"], source["digest"], folders) for source in sources)
 
 
 def _search_path(path: StrPath, folders: Iterable[StrPath]) -> list[Path]:
@@ -106,20 +119,23 @@ def _search_path(path: StrPath, folders: Iterable[StrPath]) -> list[Path]:
     return [folder for root in roots for folder in (root, root / "atlases")]
 
 
-def _find(path: StrPath, name: str, digest: str, folders: Sequence[Path]) -> Path:
-    """Return the file of a name and digest; only a plain name is searched in folders, no path on any system."""
+def _find(path: StrPath, name: str, digest: str, folders: Sequence[Path]) -> tuple[Path, CubeFileError | None]:
+    """Return the file of a name and digest, or one of the name with an error.
+
+    Only a plain name is searched in folders, no path on any system.
+    """
     plain = not set(name) & set("/\\:\0") and name not in ("", ".", "..") and len(name) <= MAX_FILE_NAME
     candidates = [file for folder in folders if (file := folder / name).is_file()] if plain else []
     for candidate in candidates:
         if read_document(candidate).digest == digest:
-            return candidate
+            return candidate, None
     for shipped in shipped_atlases():
         if shipped.digest == digest:
-            return shipped.path
+            return shipped.path, None
     hint = "pass the folder that contains it, or build the cube again"
     if candidates:
         problem = f"its atlas '{name}' has changed ({candidates[0]})"
-        raise CubeFileError(problem, code="atlas-changed", path=path, hint=hint)
+        return candidates[0], CubeFileError(problem, code="atlas-changed", path=path, hint=hint)
     raise CubeFileError(f"its atlas '{name}' was not found", code="atlas-not-found", path=path, hint=hint)
 
 

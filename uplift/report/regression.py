@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
-from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import CubeFileError
@@ -23,12 +24,22 @@ from uplift.models import reflectance
 LIMITS = {"rgb": 1e-6, "spectra_max": 1e-5, "spectra_rms": 1e-7} | {
     f"delta_e_{name}": 1e-4 for name in REGRESSION_LIGHTS
 }
+MOVED = LIMITS[f"delta_e_{REGRESSION_LIGHTS[0]}"]
 # Largest difference of lattice nodes. They are the same on every CPU since version 0.2. Cubes of earlier versions have
 # the powers of numpy, which instruction sets round differently.
 NODE_TOLERANCE = 1e-12
 # Linear RGB within the object-colour solid. Points of wide gamuts nearer to its boundary have spectra close to box
 # functions, and many of these meet the colour equally well: rounding decides between them.
 BOUNDARY_MARGIN = 1e-3
+
+
+@dataclass(frozen=True)
+class EntryChange:
+    """An atlas entry that was removed, added, or moved: by the largest ΔE00 under `REGRESSION_LIGHTS`."""
+
+    name: str
+    change: Literal["removed", "added", "moved"]
+    delta_e: float | None = None
 
 
 @dataclass(frozen=True)
@@ -41,12 +52,14 @@ class RebuildDifference:
     measures: dict[str, float]
     stored_counts: dict[str, int]  # Number of these points by status, and of all unfitted points
     rebuilt_counts: dict[str, int]  # Number of these points by status, and of all unfitted points
+    entries: tuple[EntryChange, ...]  # Entries that differ
 
     @property
     def failures(self) -> tuple[str, ...]:
-        """Return the measures over their limits or NaN, and ``status`` if the counts differ."""
+        """Return the measures over their limits or NaN, ``status`` if the counts differ, and ``entries`` likewise."""
         over = [name for name, value in self.measures.items() if not value <= LIMITS[name]]
-        return (*over, *(["status"] if self.stored_counts != self.rebuilt_counts else []))
+        status = ["status"] if self.stored_counts != self.rebuilt_counts else []
+        return (*over, *status, *(["entries"] if self.entries else []))
 
 
 def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildDifference:
@@ -58,24 +71,29 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
             path=path,
             hint="build the cube again",
         )
-    if stored.atlas.names != rebuilt.atlas.names:
-        raise CubeFileError(
-            "its entries are not those that its atlas gives",
-            code="entries-mismatch",
-            path=path,
-            hint="build the cube again",
-        )
     compared = _well_determined(stored) & (stored.points.present | rebuilt.points.present)
-    first, second = (_spectra(data, compared) for data in (stored, rebuilt))
+    wavelengths = stored.sensor.wavelengths
+    nodes = [reflectance(data.model, data.points.coefficients[compared], wavelengths) for data in (stored, rebuilt)]
+    shared = [name for name in stored.atlas.names if name in rebuilt.atlas.names]
+    entries = [_entry_spectra(data, shared) for data in (stored, rebuilt)]
+    first, second = (np.concatenate(spectra) for spectra in zip(nodes, entries, strict=True))
     difference = np.abs(first - second)
     measures = {
         "rgb": float(np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[compared].max()),
         "spectra_max": float(difference.max()),
         "spectra_rms": float(np.sqrt((difference**2).mean())),
     }
+    moved = np.zeros(len(shared))
     for name in REGRESSION_LIGHTS:
-        measures[f"delta_e_{name}"] = _largest_delta_e(name, stored.sensor, first, second)
-    return RebuildDifference(path, measures, _counts(stored, compared), _counts(rebuilt, compared))
+        under = light(name, stored.sensor.observer, *stored.sensor.range)
+        delta_e = delta_e_spectra(under, first, second)
+        measures[f"delta_e_{name}"] = float(delta_e.max())
+        moved = np.maximum(moved, delta_e[len(nodes[0]) :])
+    changes = [EntryChange(name, "removed") for name in stored.atlas.names if name not in shared]
+    changes += [EntryChange(name, "added") for name in rebuilt.atlas.names if name not in shared]
+    changes += [EntryChange(shared[row], "moved", float(moved[row])) for row in np.flatnonzero(moved > MOVED)]
+    counts = (_counts(data, compared) for data in (stored, rebuilt))
+    return RebuildDifference(path, measures, *counts, tuple(changes))
 
 
 def _same_lattice(stored: CubeData, rebuilt: CubeData) -> bool:
@@ -83,12 +101,10 @@ def _same_lattice(stored: CubeData, rebuilt: CubeData) -> bool:
     return nodes.shape == other.shape and bool((np.abs(nodes - other) <= NODE_TOLERANCE).all())
 
 
-def _spectra(data: CubeData, points: Mask) -> Array:
-    """Reflectance (k, N) of lattice points (n,) and of all entries."""
-    wavelengths = data.sensor.wavelengths
-    lattice = reflectance(data.model, data.points.coefficients[points], wavelengths)
-    entries = np.arange(len(data.atlas.names))
-    return np.concatenate([lattice, data.entry_spectra.reflectance(entries, wavelengths)])
+def _entry_spectra(data: CubeData, names: Sequence[str]) -> Array:
+    """Reflectance (E, N) of entries by name."""
+    rows = np.array([data.atlas.names.index(name) for name in names], dtype=np.intp)
+    return data.entry_spectra.reflectance(rows, data.sensor.wavelengths)
 
 
 def _well_determined(data: CubeData) -> Mask:
@@ -101,7 +117,3 @@ def _well_determined(data: CubeData) -> Mask:
 def _counts(data: CubeData, compared: Mask) -> dict[str, int]:
     counts = replace(data.points, status=data.points.status[compared]).counts()
     return counts | {Status.UNFITTED.label: int((data.points.status == Status.UNFITTED).sum())}
-
-
-def _largest_delta_e(name: str, sensor: Sensor, first: Array, second: Array) -> float:
-    return float(delta_e_spectra(light(name, sensor.observer, *sensor.range), first, second).max())
