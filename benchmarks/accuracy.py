@@ -1,27 +1,33 @@
-"""Round trips, ranges, starts and solvers of cubes, for docs/accuracy.md."""
+"""Round trips, ranges, orders of growth and solvers of cubes, for docs/accuracy.md."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
 from typing import Any
+from unittest import mock
 
 import numpy as np
 
 import uplift
-from benchmarks import MACBETH, record
+from benchmarks import MACBETH, ROOT, record
 from benchmarks.materials import errors, materials
 from uplift.atlas import on_grid
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
+from uplift.fit.growth_outward import shells
+from uplift.fit.problem import Problem
+from uplift.io.exr import blue_slices
 from uplift.lab.chart.method import at_1_nm
 from uplift.lab.timing import time_calls
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
+from uplift.report.diff_page import mosaic
+from uplift.viz.figure import colour_map, new_figure, write_figure
 
 RANGES = (
     (380, 780, 10),
@@ -36,7 +42,7 @@ RANGES = (
 VISIBLE = np.arange(400, 701, 5)
 DIMS = (16, 32, 64)
 QUERIES = np.random.default_rng(20000).random((20000, 3))
-START_DIM, SOLVER_DIM, RUNS = 32, 8, 3
+ORDER_DIM, SOLVER_DIM, RUNS = 32, 16, 3
 SPACES = ("sRGB", "ITU-R BT.2020", "ProPhoto RGB")
 OTHERS = ("rawtoaces", "cie2017")
 """Materials that a cube of the ColorChecker answers for."""
@@ -60,13 +66,14 @@ def main() -> None:
         )
     ranges = [at_range(*each) for each in RANGES]
     record("accuracy", queries=len(QUERIES), fitted=fitted, round_trips=round_trips, ranges=ranges)
+    draw_rounds()
     record(
         "accuracy",
         "growth",
         runs=RUNS,
-        starts=[start(name, space) for space in SPACES for name in ("outward", "coarse-to-fine", "neighbours")],
+        orders=[growth(name, space) for space in SPACES for name in ("outward", "coarse-to-fine", "neighbours")],
         solvers=[solver(name) for name in SOLVERS],
-        start_dim=START_DIM,
+        order_dim=ORDER_DIM,
         solver_dim=SOLVER_DIM,
         materials=[{"name": name, "count": len(materials(name).rgb)} for name in OTHERS],
     )
@@ -108,9 +115,23 @@ def at_range(shortest: int, longest: int, step: int) -> Row:
     return {"range": f"{shortest}–{longest} nm", "step": step, "fine": fine, "rms": rms}
 
 
-def start(name: str, space: str) -> Row:
-    """Build with a start, and compare answers for materials that neither atlas nor library contains."""
-    build = partial(uplift.build, MACBETH, dim=START_DIM, growth=name, space=space, leave_out=OTHERS, debug=True)
+def draw_rounds() -> None:
+    """Draw the round of each node of the ColorChecker, a tile for each blue."""
+    data = uplift.build(MACBETH, dim=ORDER_DIM, debug=True).data
+    rounds = mosaic(blue_slices(data.points.round.astype(float), ORDER_DIM))
+    figure = new_figure(7.2, 6.0)
+    axes = figure.subplots()
+    drawn = axes.imshow(rounds, cmap=colour_map(), interpolation="nearest")
+    axes.set(xticks=(), yticks=())
+    axes.spines[:].set_visible(False)
+    bar = figure.colorbar(drawn, ax=axes, fraction=0.04, pad=0.02, label="round")
+    bar.outline.set_visible(False)
+    write_figure(figure, ROOT / "docs" / "accuracy" / "rounds.png", force=True)
+
+
+def growth(name: str, space: str) -> Row:
+    """Build in an order of growth, and compare answers for materials that neither atlas nor library contains."""
+    build = partial(uplift.build, MACBETH, dim=ORDER_DIM, growth=name, space=space, leave_out=OTHERS, debug=True)
     cube = build()
     _, seconds = time_calls(build, RUNS)
     answers = {}
@@ -118,14 +139,24 @@ def start(name: str, space: str) -> Row:
         answers = {each: errors(cube.reflectance(materials(each).rgb), materials(each)) for each in OTHERS}
     status = cube.data.points.status
     return {
-        "start": name,
+        "growth": name,
         "space": space,
         "seconds": seconds,
         "rounds": fit_quality(cube)["rounds"],
+        "outward": share_outward(cube),
         "unfitted": int((status == Status.UNFITTED).sum()),
         "unrealisable": int((status == Status.UNREALISABLE).sum()),
         "answers": answers,
     }
+
+
+def share_outward(cube: Cube) -> float:
+    """Return the share of nodes whose round is their distance from the nearest seed, in steps to 26 neighbours."""
+    points, lattice = cube.data.points, cube.data.lattice
+    seeds = np.flatnonzero(np.isin(points.status, (Status.ATLAS_PRIMARY, Status.ATLAS_CORNER)))
+    distance, _ = shells(lattice, seeds)
+    fitted = points.round >= 0
+    return float((points.round == distance)[fitted].mean())
 
 
 def solver(name: str) -> Row:
@@ -134,16 +165,31 @@ def solver(name: str) -> Row:
     _, first = time_calls(build, 1)
     default, cube = uplift.build(MACBETH, dim=SOLVER_DIM), build()
     _, seconds = time_calls(build, RUNS)
+    improvements = cube.data.provenance["improvements"]
     difference = np.abs(node_spectra(cube) - node_spectra(default)).max(axis=1)
     inner = ~np.isin(cube.data.lattice.points, (0, 1)).any(axis=1)
     return {
         "solver": name,
         "first": first.median,
         "seconds": seconds,
+        "steps": steps_per_node(build),
+        "before": improvements[0]["tried"] if improvements else 0,
         "unfitted": cube.data.points.counts()["unfitted"],
         "inner": difference[inner].max(),
         "faces": difference[~inner].max(),
     }
+
+
+def steps_per_node(build: Callable[[], Cube]) -> float:
+    """Return the mean steps of a node's batches."""
+    solve, steps = Problem.solve, []
+
+    def counted(*args: Any) -> Any:
+        steps.append((solution := solve(*args)).steps.sum())
+        return solution
+
+    with mock.patch.object(Problem, "solve", counted):
+        return float(sum(steps) / build().data.lattice.size)
 
 
 def node_spectra(cube: Cube) -> Array:

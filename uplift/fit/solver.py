@@ -17,6 +17,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import optimistix
+from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
 from uplift.fit.batch import map_batches
@@ -156,6 +157,8 @@ class Solution(NamedTuple):
     """(n, 3) target minus RGB."""
     distance: Array
     """(n,) max |target − RGB|."""
+    steps: NDArray[np.int64]
+    """(n,) steps that the batches of a problem took."""
 
 
 def solve(
@@ -175,14 +178,16 @@ def solve(
     not depend on the others.
     """
     count = len(start)
-    solution = Solution(start.copy(), np.full((count, 3), np.inf), np.full(count, np.inf))
+    steps_taken = np.zeros(count, dtype=np.int64)
+    solution = Solution(start.copy(), np.full((count, 3), np.inf), np.full(count, np.inf), steps_taken)
     rows, stale, options = np.arange(count), np.zeros(count, dtype=np.int64), method.options(start, prior)
     for steps in islice(method.schedule(), max_passes):
         if not rows.size:
             break
         given = (solution.multipliers[rows], target[rows], options)
         advance = partial(_advance, method, tolerance=tolerance, max_steps=steps)
-        y, residual, options = map_batches(advance, forward, *given, max_small=MAX_SMALL_BATCHES)
+        y, residual, taken, options = map_batches(advance, forward, *given, max_small=MAX_SMALL_BATCHES)
+        steps_taken[rows] += taken
         before = solution.distance[rows]
         closer = (residual**2).sum(axis=1) <= (solution.residual[rows] ** 2).sum(axis=1)
         better = rows[closer]
@@ -206,16 +211,17 @@ def _advance(
     *,
     tolerance: float,
     max_steps: int,
-) -> tuple[jax.Array, jax.Array, Options]:
+) -> tuple[jax.Array, jax.Array, jax.Array, Options]:
     """Take up to ``max_steps`` steps in a batch; the options go on from there."""
     solver = method(forward, tolerance)
-    y, state = iterate(solver, lambda p, goal: (forward.residual(p, goal), None), y, target, options, max_steps)
-    return y, state.residual, solver.resume(options, y, state)
+    y, state, steps = iterate(solver, lambda p, goal: (forward.residual(p, goal), None), y, target, options, max_steps)
+    return y, state.residual, jnp.full(len(y), steps), solver.resume(options, y, state)
 
 
-def iterate(solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps: Any) -> tuple[Any, Any]:
+def iterate(solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps: Any) -> tuple[Any, Any, Any]:
     """Step a solver of optimistix by hand until it terminates, as its documentation shows for interactive use.
 
+    Returns the last ``y``, the state and the number of steps.
     `optimistix.least_squares` takes the same steps, and seconds more to compile.
     """
     state = solver.init(fn, y, args, options, *jax.eval_shape(fn, y, args), NO_TAGS)
@@ -231,8 +237,8 @@ def iterate(solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps
         done, _ = solver.terminate(fn, y, args, options, equinox.combine(arrays, static), NO_TAGS)
         return (count < max_steps) & ~done
 
-    _, y, arrays = jax.lax.while_loop(unfinished, step, (jnp.asarray(0), y, arrays))
-    return y, equinox.combine(arrays, static)
+    count, y, arrays = jax.lax.while_loop(unfinished, step, (jnp.asarray(0), y, arrays))
+    return y, equinox.combine(arrays, static), count
 
 
 def solve_singly(forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int) -> Array:

@@ -330,6 +330,9 @@ def _build(
     grown = GROWTH[options.growth](problem, nodes, expected, seeds.points, progress)
     improvements = improve(grown, THESIS_STEPS if neighbours else STEPS)
     points = store(grown, seeds, prior)
+    if options.solver != SOLVERS[0] and (unfitted := points.counts()["unfitted"]):
+        problem_text = f"{unfitted} nodes are over the threshold with the solver '{options.solver}'"
+        spectra.warn(problem_text, "nodes-unfitted", hint="use the default solver")
     points = points if kept is None else points.restricted_to(kept)
 
     table = constraints.table(model, boxes, prior)

@@ -34,13 +34,13 @@ def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
         lead="Where the answers of two cubes differ: ΔE00 between their spectra, the largest under any of the lights.",
         diff=diff,
         figures=to_json(diff, None, worst),
-        lattice=_map(_mosaic(nodes), limit, "ΔE00 over the lattice, a tile for each blue"),
+        lattice=_map(mosaic(nodes), limit, "ΔE00 over the lattice, a tile for each blue"),
         images=[_image(diff, each, images[each.name], limit) for each in diff.images],
         spectra=[_spectra(diff, each, int(row)) for each in diff.sets for row in each.worst(worst)],
     )
 
 
-def _mosaic(slices: Array) -> Array:
+def mosaic(slices: Array) -> Array:
     """Arrange square slices (dim, dim, dim) in reading order, with a gap between them."""
     dim = len(slices)
     columns = math.ceil(math.sqrt(dim))
