@@ -12,7 +12,7 @@ from scipy.optimize import least_squares
 from benchmarks import record
 from benchmarks.choices import ALONE, OURS, mark
 from uplift.atlas import Atlas, on_grid, read_atlas
-from uplift.colorimetry import observer
+from uplift.colorimetry import observer, tables
 from uplift.colorimetry.camera import CAMERA
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.sensor import Sensor
@@ -120,7 +120,7 @@ def compare(camera: str, illuminant: str) -> dict[str, Any]:
 def main() -> None:
     """Measure, and write the data of the page."""
     warnings.simplefilter("ignore", UpliftWarning)
-    rows = [compare(camera, light) for camera in observer.names("camera") for light in LIGHTS]
+    rows = [compare(camera, light) for camera in tables.names("camera") for light in LIGHTS]
     record(
         "cameras",
         atlas=ATLAS,

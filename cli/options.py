@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
-SPACE_NAMES = "colorimetry.observer:names:RGB space"
-OBSERVER_NAMES = ("colorimetry.observer:names:observer", "colorimetry.observer:names:camera")
-ILLUMINANT_NAMES = "colorimetry.observer:names:illuminant"
+SPACE_NAMES = "colorimetry.tables:names:RGB space"
+OBSERVER_NAMES = ("colorimetry.tables:names:observer", "colorimetry.observer:names:camera")
+ILLUMINANT_NAMES = "colorimetry.tables:names:illuminant"
 
 
 class Number(click.ParamType):  # type: ignore[type-arg]

@@ -59,7 +59,7 @@ def test_builds_and_queries_load_only_the_core():
 )
 def test_settings_of_jax_numpy_and_warnings_are_unchanged(use):
     code = (
-        "import numpy, warnings\n"
+        "import numpy, warnings, scipy.special, scipy.sparse\n"  # these two add filters of warnings themselves
         "def settings():\n"
         "    return numpy.geterr(), numpy.get_printoptions(), list(warnings.filters), warnings.showwarning\n"
         "before = settings()\n"

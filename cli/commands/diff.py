@@ -103,6 +103,8 @@ def command(
 
 
 def _read(path: str, cube: Cube, encoding: str, input_space: str | None, method: str) -> Array:
+    import numpy as np
+
     from uplift.io.texture.picture import read_picture
 
     space = find_input_space(input_space)
@@ -111,7 +113,7 @@ def _read(path: str, cube: Cube, encoding: str, input_space: str | None, method:
     )
     for warning in picture.warnings:
         warnings.warn(warning, stacklevel=1)
-    return picture.rgb
+    return np.asarray(picture.rgb, dtype=float)
 
 
 def _print(figures: dict[str, Any]) -> None:

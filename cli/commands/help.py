@@ -48,19 +48,19 @@ def _gamut() -> str:
 
 def _illuminants() -> str:
     from uplift.colorimetry import lights
-    from uplift.colorimetry.observer import names
+    from uplift.colorimetry.tables import names
 
     return f"{inspect.getdoc(lights)}\n\n" + ", ".join(names("illuminant"))
 
 
 def _observers() -> str:
-    from uplift.colorimetry.observer import names
+    from uplift.colorimetry.tables import names
 
     return "Standard observers of colour-science:\n\n" + ", ".join(names("observer"))
 
 
 def _spaces() -> str:
-    from uplift.colorimetry.observer import names
+    from uplift.colorimetry.tables import names
 
     return "RGB spaces of colour-science:\n\n" + ", ".join(names("RGB space"))
 

@@ -8,7 +8,7 @@ import pytest
 from benchmarks import palette_dial as scan
 from benchmarks.cameras import lab_matrix, realisable_share, xyz_matrix
 from benchmarks.representations import Printed, closed, enhanced, printed_filters, printed_tables
-from uplift.colorimetry import observer
+from uplift.colorimetry import observer, tables
 from uplift.design.palette.picture import read_weights
 from uplift.scene.representations.samples import xyz_weights
 
@@ -32,7 +32,7 @@ def test_known_camera_matrices_are_found_and_keep_white(known):
 
 
 def test_overlapping_channels_leave_few_raw_values():
-    shares = [realisable_share(observer.sensor("camera", "D65", name), 12) for name in observer.names("camera")]
+    shares = [realisable_share(observer.sensor("camera", "D65", name), 12) for name in tables.names("camera")]
     assert 0 < shares[1] < shares[0] < 1
 
 

@@ -6,7 +6,6 @@ Names that are unknown raise `UnknownNameError`, whose hint gives the nearest on
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -14,12 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.colorimetry import tables
 from uplift.colorimetry.camera import CAMERA, Camera, camera_sensor, read_camera
 from uplift.colorimetry.gamut import Primaries
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, Lamps
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.colorimetry.spaces import look_up_space, primaries_of
 from uplift.colorimetry.srgb import decode_portably
+from uplift.colorimetry.tables import WAVELENGTHS, samples
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import OptionError, unknown_name
@@ -27,21 +28,12 @@ from uplift.common.errors import OptionError, unknown_name
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
 COMMON_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 """Names of colour-science, by the area of the gamut in CIE 1976 u′, v′."""
-TABLES = {
-    "illuminant": "SDS_ILLUMINANTS",
-    "light source": "SDS_LIGHT_SOURCES",
-    "observer": "MSDS_CMFS",
-    "camera": "MSDS_CAMERA_SENSITIVITIES",
-    "display": "MSDS_DISPLAY_PRIMARIES",
-    "RGB space": "RGB_COLOURSPACES",
-}
-"""Tables of colour-science by the kind of their names."""
+START, END, STEP = WAVELENGTHS
+"""Range and step in nm that every table of the CIE covers."""
 VISIBLE = (400.0, 700.0)
 """Range in nm that a lamp must cover."""
 SAME_LAMP = 1e-3
 """Difference, as a fraction of the largest power, below which two lamps are one."""
-START, END, STEP = 380.0, 780.0, 5.0
-"""Range and step in nm that every table of the CIE covers."""
 AXES = ("srgb", "linear")
 """Spacings of `axis_nodes`."""
 
@@ -89,31 +81,30 @@ def sensor(
     """
     if space == CAMERA:
         camera = find_camera(observer)
-        if camera.name in colour_science().RGB_COLOURSPACES:
+        if tables.rgb_space(camera.name) is not None:
             raise OptionError(f"a camera must not have the name of an RGB space, got '{camera.name}'")
         return camera_sensor(camera, sensor(illuminant=illuminant))
-    if isinstance(observer, Camera) or observer in colour_science().MSDS_CAMERA_SENSITIVITIES:
+    if isinstance(observer, Camera) or observer in tables.names("camera"):
         raise OptionError(
             "a camera in place of an observer has its own RGB space",
             code="camera-without-space",
             hint=f'use space="{CAMERA}"',
         )
-    colour = colour_science()
     rgb_space = look_up_space(space)
     build_light = light(illuminant, observer)
     # XYZ to RGB is M_space · M_Bradford: the white of the illuminant becomes the white of the space.
-    white = colour.xy_to_XYZ(rgb_space.whitepoint)
-    adapt = colour.adaptation.matrix_chromatic_adaptation_VonKries(build_light.white, white, transform="Bradford")
+    x, y = rgb_space.whitepoint
+    adapt = tables.bradford(build_light.white, np.array([x / y, 1.0, (1 - x - y) / y]))
     matrix = rgb_space.matrix_XYZ_to_RGB @ adapt
     return Sensor(
         space=rgb_space.name,
         illuminant=build_light.name,
-        observer=_look_up("observer", observer).name,
+        observer=tables.stated_name("observer", observer),
         wavelengths=grid(),
         cmfs=matching_functions(observer),
         power=illuminant_spd(illuminant),
         xyz_to_rgb=matrix / (matrix @ build_light.white)[:, None],
-        decoding=np.asarray(rgb_space.cctf_decoding(np.arange(256) / 255), dtype=float),
+        decoding=rgb_space.decoding,
     )
 
 
@@ -142,7 +133,7 @@ def find_camera(camera: str | Camera) -> Camera:
         return camera
     if camera.casefold().endswith(".csv"):
         return read_camera(camera)
-    found = _look_up("camera", camera)
+    found = tables.look_up("camera", camera)
     return Camera(found.name, found.wavelengths, found.values)
 
 
@@ -187,13 +178,13 @@ def light(
     """
     power = illuminant_spd(illuminant, start, end, step)
     weights = matching_functions(observer, start, end, step) * power[:, None]
-    return Light(_look_up("illuminant", illuminant).name, (weights / weights[:, 1].sum()).T)
+    return Light(tables.stated_name("illuminant", illuminant), (weights / weights[:, 1].sum()).T)
 
 
 def aligned(sensor: Sensor, start: float = START, end: float = END, step: float = STEP) -> tuple[Any, Any]:
     """Return the observer and illuminant of a sensor as objects of colour-science."""
     shape = colour_science().SpectralShape(start, end, step)
-    found = _look_up("observer", sensor.observer), _look_up("illuminant", sensor.illuminant)
+    found = tables.look_up("observer", sensor.observer), tables.look_up("illuminant", sensor.illuminant)
     return found[0].copy().align(shape), found[1].copy().align(shape)
 
 
@@ -224,35 +215,6 @@ def illuminant_spd(illuminant: str, start: float = START, end: float = END, step
     return samples("illuminant", illuminant, start, end, step)
 
 
-@functools.cache
-def samples(kind: str, name: str, start: float = START, end: float = END, step: float = STEP) -> Array:
-    """Sample spectra by name, with constant extrapolation; the result is read-only. Shape (N,) or (N, 3).
-
-    ``kind`` is one of the keys of `TABLES`, such as ``"display"`` for the power of the primaries of a display.
-    """
-    found = _look_up(kind, name).copy().align(colour_science().SpectralShape(start, end, step))
-    values = np.array(found.values, dtype=float)
-    values.setflags(write=False)
-    return values
-
-
-def names(kind: str) -> tuple[str, ...]:
-    """Return the names that `sensor` takes: of an ``"illuminant"``, ``"observer"``, ``"camera"`` or ``"RGB space"``.
-
-    >>> names("camera")
-    ('Nikon 5100 (NPL)', 'Sigma SDMerill (NPL)')
-    """
-    return tuple(getattr(colour_science(), TABLES[kind]))
-
-
-def _look_up(kind: str, name: str) -> Any:
-    table = getattr(colour_science(), TABLES[kind])
-    try:
-        return table[name]
-    except KeyError:
-        raise unknown_name(name, table, kind) from None
-
-
 def lamps(observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP) -> Lamps:
     """Return the lights of colour-science: CIE illuminants and measured lamps.
 
@@ -261,8 +223,8 @@ def lamps(observer: str = DEFAULT_OBSERVER, start: float = START, end: float = E
     luminance = matching_functions(observer, start, end, step)[:, 1]
     found: dict[str, Array] = {}
     for kind in ("illuminant", "light source"):
-        for name in names(kind):
-            nm = _look_up(kind, name).wavelengths
+        for name in tables.names(kind):
+            nm = tables.look_up(kind, name).wavelengths
             if nm[0] > VISIBLE[0] or nm[-1] < VISIBLE[1]:
                 continue
             power = np.maximum(samples(kind, name, start, end, step), 0.0)

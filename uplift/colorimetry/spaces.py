@@ -11,11 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from uplift.colorimetry import tables
 from uplift.colorimetry.gamut import Gamut, Primaries, conversion
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import encode
+from uplift.colorimetry.tables import RgbSpace
 from uplift.common.arrays import Array
-from uplift.common.colour_science import colour_science
 from uplift.common.errors import OptionError, unknown_name
 from uplift.common.text import format_value, parse_float
 
@@ -132,25 +133,26 @@ def find_space(text: str) -> ImageSpace:
         if (found := find_ocio_space(text)) is not None:
             return found.as_image_space()
         names = _configuration(BUILT_IN).getColorSpaceNames()
-        raise unknown_name(text, (*colour_science().RGB_COLOURSPACES, *names), "RGB space") from None
+        raise unknown_name(text, (*tables.names("RGB space"), *names), "RGB space") from None
     return ImageSpace(space.name, primaries_of(space), space.cctf_decoding)
 
 
-def look_up_space(name: str, *, ocio: bool = True) -> Any:
+def look_up_space(name: str, *, ocio: bool = True) -> RgbSpace:
     """Find an RGB space of colour-science, also by the name of OpenColorIO of a space with the same primaries."""
-    table = colour_science().RGB_COLOURSPACES
-    for each in (name, SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name)):
-        if each in table:
-            return table[each]
-    if ocio and (found := find_ocio_space(name)) is not None:
-        for each in (*FIRST_SPACES, *table):
-            difference = found.matrix - conversion(primaries_of(table[each]), AP0)
-            if np.abs(difference).max() <= MAX_MATRIX_DIFFERENCE:
-                return table[each]
-    raise unknown_name(name, table, "RGB space")
+    short = SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name)
+    found = tables.rgb_space(short) or tables.rgb_space(name)
+    if found is not None:
+        return found
+    if ocio and (space := find_ocio_space(name)) is not None:
+        for each in map(tables.rgb_space, (*FIRST_SPACES, *tables.names("RGB space"))):
+            if each is not None:
+                difference = space.matrix - conversion(primaries_of(each), AP0)
+                if np.abs(difference).max() <= MAX_MATRIX_DIFFERENCE:
+                    return each
+    raise unknown_name(name, tables.names("RGB space"), "RGB space")
 
 
-def primaries_of(space: Any) -> Primaries:
+def primaries_of(space: RgbSpace) -> Primaries:
     """Return the primaries and white of an RGB space of colour-science."""
     return Primaries.of([*space.primaries.ravel(), *space.whitepoint])
 

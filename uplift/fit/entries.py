@@ -11,11 +11,12 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import equinox
+import jax
 import numpy as np
 import optimistix
 
 from uplift.colorimetry.delta_e import delta_e_spectra, lab_jacobian, lab_of
-from uplift.common.arrays import Array, blocks
+from uplift.common.arrays import Array, Mask, blocks
 from uplift.fit.problem import Problem
 from uplift.fit.solver import NO_TAGS, Options, solve_singly
 from uplift.models.model import Model
@@ -122,7 +123,7 @@ class MarquardtState(NamedTuple):
     """(n,) μ, 0 before the first step."""
     growth: Array
     """(n,) factor of μ after the next rejected step."""
-    done: Array
+    done: Mask
     """(n,) whether the fit has ended."""
 
 
@@ -200,7 +201,7 @@ def minimise(goal: Objective, measured: Array) -> Array:
         for _ in range(MAX_STEPS):
             multipliers[rows], state, _ = solver.step(fn, multipliers[rows], rows, options, state, NO_TAGS)
             kept = ~state.done
-            rows, state = rows[kept], MarquardtState(*(each[kept] for each in state))
+            rows, state = rows[kept], jax.tree.map(lambda each, kept=kept: each[kept], state)
             if solver.terminate(fn, multipliers[rows], rows, options, state, NO_TAGS)[0]:
                 break
     return multipliers

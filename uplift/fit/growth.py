@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices, Mask, blocks
 from uplift.common.progress import Progress, ProgressCallback
@@ -77,7 +78,7 @@ class Growth:
         self,
         points: Indices,
         start: Array,
-        number: int | Indices,
+        number: int | NDArray[np.signedinteger],
         prior: Array | None = None,
         max_passes: int = MAX_PASSES,
     ) -> Solution:

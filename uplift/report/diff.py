@@ -87,8 +87,8 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
     first, second = cubes.values()
     under = [light(name, sensor.observer, *sensor.range) for name in lights]
 
-    lattices = [cube.data.lattice.points for cube in (first, second)]
-    nodes = lattices[0] if np.array_equal(*lattices) else np.concatenate(lattices)
+    nodes, others = (cube.data.lattice.points for cube in (first, second))
+    nodes = nodes if np.array_equal(nodes, others) else np.concatenate([nodes, others])
     colours = {NODES: nodes, **{name: rgb.reshape(-1, 3) for name, rgb in (images or {}).items()}}
     covered = {name: first.covers(rgb) & second.covers(rgb) for name, rgb in colours.items()}
     changes = []
@@ -103,17 +103,18 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
 
     rows_of = [{name: row for row, name in enumerate(cube.data.atlas.names)} for cube in (first, second)]
     shared = tuple(name for name in rows_of[0] if name in rows_of[1])
-    rows = [np.array([each[name] for name in shared], dtype=np.intp) for each in rows_of]
+    entries = [np.array([each[name] for name in shared], dtype=np.int64) for each in rows_of]
     spectra = [
         cube.data.entry_spectra.reflectance(found, sensor.wavelengths)
-        for cube, found in zip((first, second), rows, strict=True)
+        for cube, found in zip((first, second), entries, strict=True)
     ]
+    first_name, second_name = cubes
     return CubeDiff(
-        names=tuple(cubes),
+        names=(first_name, second_name),
         cubes=(first, second),
         lights=tuple(each.name for each in under),
         nodes=changes[0],
-        entries=Changes(ENTRIES, first.data.atlas.rgb[rows[0]], _delta_e(under, *spectra)),
+        entries=Changes(ENTRIES, first.data.atlas.rgb[entries[0]], _delta_e(under, *spectra)),
         images=tuple(changes[1:]),
         entry_names=shared,
         removed=tuple(name for name in rows_of[0] if name not in rows_of[1]),

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 from markupsafe import Markup
+from numpy.typing import NDArray
 
 from uplift.colorimetry.srgb import hex_codes, to_display_codes
 from uplift.common.arrays import Array
@@ -52,7 +53,7 @@ def mosaic(slices: Array) -> Array:
     return sheet
 
 
-def _map(values: Array, limit: float, label: str, picture: Array | None = None) -> Markup:
+def _map(values: Array, limit: float, label: str, picture: NDArray[np.uint8] | None = None) -> Markup:
     """Draw a map of ΔE00 (height, width), next to a picture of 8-bit codes if one is given."""
     import matplotlib
 
@@ -79,8 +80,8 @@ def _image(diff: CubeDiff, changes: Changes, rgb: Array, limit: float) -> tuple[
 
 def _spectra(diff: CubeDiff, changes: Changes, row: int) -> dict[str, object]:
     """The two spectra of a colour, or of an entry."""
-    first, second = diff.cubes
-    wavelengths, rgb = first.data.sensor.wavelengths, changes.rgb[row]
+    sensor, rgb = diff.cubes[0].data.sensor, changes.rgb[row]
+    wavelengths = sensor.wavelengths
     if changes is diff.entries:
         name = diff.entry_names[row]
         rows = [np.array([cube.data.atlas.names.index(name)]) for cube in diff.cubes]
@@ -90,11 +91,11 @@ def _spectra(diff: CubeDiff, changes: Changes, row: int) -> dict[str, object]:
         ]
     else:
         name = changes.name
-        answers = [cube.reflectance(rgb, wavelengths) for cube in (first, second)]
+        answers = [cube.reflectance(rgb, wavelengths) for cube in diff.cubes]
     return {
         "name": name,
-        "code": hex_codes(rgb[None], first.data.sensor)[0],
+        "code": hex_codes(rgb[None], sensor)[0],
         "light": diff.lights[int(changes.delta_e[:, row].argmax())],
         "delta_e": float(changes.largest[row]),
-        "chart": spectra_chart(wavelengths, *answers, None),
+        "chart": spectra_chart(wavelengths, answers[0], answers[1], None),
     }

@@ -92,8 +92,8 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
     changes = [EntryChange(name, "removed") for name in stored.atlas.names if name not in shared]
     changes += [EntryChange(name, "added") for name in rebuilt.atlas.names if name not in shared]
     changes += [EntryChange(shared[row], "moved", float(moved[row])) for row in np.flatnonzero(moved > MOVED)]
-    counts = (_counts(data, compared) for data in (stored, rebuilt))
-    return RebuildDifference(path, measures, *counts, tuple(changes))
+    before, after = (_counts(data, compared) for data in (stored, rebuilt))
+    return RebuildDifference(path, measures, before, after, tuple(changes))
 
 
 def _same_lattice(stored: CubeData, rebuilt: CubeData) -> bool:

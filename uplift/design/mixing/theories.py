@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.tables import samples
 from uplift.common.arrays import Array
 from uplift.design.mixing.coats import dye_absorption, dye_transmittance
 from uplift.design.mixing.optics import Surface, as_shares, average_areas, stack_filters, weighted_sum
@@ -164,7 +165,7 @@ def phosphor_curves() -> tuple[Array, Array]:
 
     The curve of white is scaled to a maximum of 1 (Fishkin 1983, section 7.2), so that no curve amplifies light.
     """
-    phosphors = observer.samples("display", CRT).T
+    phosphors = samples("display", CRT).T
     matching = observer.matching_functions()
     white = observer.light(DEFAULT_ILLUMINANT).white
     curves = phosphors * np.linalg.solve((phosphors @ matching).T, white)[:, None]

@@ -1,0 +1,41 @@
+"""Write the tables of colour-science that most commands need: ``python -m tools.ship_tables``.
+
+`uplift.colorimetry.tables` reads them; tests/colorimetry/test_tables.py compares them with colour-science.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import colour
+import numpy as np
+
+from uplift.colorimetry.tables import PATH, SPECTRA, TABLES, WAVELENGTHS
+
+
+def tables() -> dict[str, np.ndarray]:
+    """Return the arrays of the file by name."""
+    first, last, step = WAVELENGTHS
+    shape = colour.SpectralShape(first, last, step)
+    arrays = {
+        "version": np.array(colour.__version__),
+        "bradford": colour.adaptation.CHROMATIC_ADAPTATION_TRANSFORMS["Bradford"],
+    }
+    for kind, table in TABLES.items():
+        found: Mapping[str, Any] = getattr(colour, table)
+        arrays[f"{kind}: names"] = np.array(list(found))
+        arrays[f"{kind}: stated"] = np.array([each.name for each in found.values()])
+        if kind in SPECTRA:
+            arrays[f"{kind}: samples"] = np.array([each.copy().align(shape).values for each in found.values()])
+    spaces = colour.RGB_COLOURSPACES
+    arrays["RGB space: primaries"] = np.array([each.primaries for each in spaces.values()], dtype=float)
+    arrays["RGB space: whitepoint"] = np.array([each.whitepoint for each in spaces.values()], dtype=float)
+    arrays["RGB space: matrix"] = np.array([each.matrix_XYZ_to_RGB for each in spaces.values()], dtype=float)
+    codes = np.arange(256) / 255
+    arrays["RGB space: decoding"] = np.array([each.cctf_decoding(codes) for each in spaces.values()], dtype=float)
+    return arrays
+
+
+if __name__ == "__main__":
+    np.savez_compressed(PATH, **tables())

@@ -1,0 +1,121 @@
+"""Tables of colour-science by name: observers, illuminants, lamps, cameras and RGB spaces.
+
+Importing colour-science takes a second, so what most commands need is in a file that ``tools/ship_tables.py`` makes of
+it: spectra on 380–780 nm every 5 nm, and RGB spaces. Everything else comes from colour-science itself.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from uplift.common.arrays import Array
+from uplift.common.colour_science import colour_science
+from uplift.common.errors import unknown_name
+
+PATH = Path(__file__).parent / "tables.npz"
+START, END, STEP = WAVELENGTHS = (380.0, 780.0, 5.0)
+"""Range and step in nm of the spectra of the file, which every table of the CIE covers."""
+SPECTRA = {"illuminant": "SDS_ILLUMINANTS", "observer": "MSDS_CMFS"}
+"""Tables of colour-science whose spectra the file has, by the kind of their names."""
+TABLES = {
+    **SPECTRA,
+    "light source": "SDS_LIGHT_SOURCES",
+    "camera": "MSDS_CAMERA_SENSITIVITIES",
+    "display": "MSDS_DISPLAY_PRIMARIES",
+    "RGB space": "RGB_COLOURSPACES",
+}
+"""All tables of colour-science that are used."""
+
+
+@dataclass(frozen=True, eq=False)
+class RgbSpace:
+    """An RGB space of colour-science."""
+
+    name: str
+    primaries: Array
+    """(3, 2) chromaticities."""
+    whitepoint: Array
+    """(2,) chromaticity."""
+    matrix_XYZ_to_RGB: Array  # noqa: N815 — the name of colour-science
+    """(3, 3)."""
+    decoding: Array
+    """(256,) linear values of the 8-bit codes."""
+
+    def cctf_decoding(self, values: Any) -> Any:
+        """Decode values from 0 to 1 by the transfer function of colour-science."""
+        return colour_science().RGB_COLOURSPACES[self.name].cctf_decoding(values)
+
+
+@functools.cache
+def _file() -> Mapping[str, Array]:
+    with np.load(PATH) as arrays:
+        return dict(arrays)
+
+
+@functools.cache
+def names(kind: str) -> tuple[str, ...]:
+    """Return the names of a kind: ``"illuminant"``, ``"observer"``, ``"camera"``, ``"RGB space"``…
+
+    >>> names("camera")
+    ('Nikon 5100 (NPL)', 'Sigma SDMerill (NPL)')
+    """
+    return tuple(_file()[f"{kind}: names"].tolist())
+
+
+@functools.cache
+def _rows(kind: str) -> dict[str, int]:
+    return {name: row for row, name in enumerate(names(kind))}
+
+
+def stated_name(kind: str, name: str) -> str:
+    """Return the name that colour-science states for a name, which may be an alias or have other capitals."""
+    if name in _rows(kind):
+        return str(_file()[f"{kind}: stated"][_rows(kind)[name]])
+    return str(look_up(kind, name).name)
+
+
+@functools.cache
+def samples(kind: str, name: str, start: float = START, end: float = END, step: float = STEP) -> Array:
+    """Sample spectra by name, with constant extrapolation; the result is read-only. Shape (N,) or (N, 3).
+
+    ``kind`` is one of the keys of `TABLES`, such as ``"display"`` for the power of the primaries of a display.
+    """
+    if kind in SPECTRA and (start, end, step) == WAVELENGTHS and name in _rows(kind):
+        values = _file()[f"{kind}: samples"][_rows(kind)[name]]
+    else:
+        shape = colour_science().SpectralShape(start, end, step)
+        values = np.array(look_up(kind, name).copy().align(shape).values, dtype=float)
+    values.setflags(write=False)
+    return values
+
+
+def rgb_space(name: str) -> RgbSpace | None:
+    """Return an RGB space by a name of colour-science, None if it has none of the name."""
+    rows = _rows("RGB space")
+    if name not in rows and name not in (table := colour_science().RGB_COLOURSPACES):
+        return None
+    row = rows[name] if name in rows else rows[table[name].name]
+    parts = (_file()[f"RGB space: {part}"][row] for part in ("primaries", "whitepoint", "matrix", "decoding"))
+    return RgbSpace(stated_name("RGB space", name), *parts)
+
+
+def bradford(source: Array, target: Array) -> Array:
+    """Compute the matrix (3, 3) of Bradford's adaptation from one white XYZ (3,) to another."""
+    matrix = _file()["bradford"]
+    # M⁻¹ diag(M w′ / M w) M
+    return np.linalg.inv(matrix) @ np.diag((matrix @ target) / (matrix @ source)) @ matrix
+
+
+def look_up(kind: str, name: str) -> Any:
+    """Return an object of colour-science by its name."""
+    table = getattr(colour_science(), TABLES[kind])
+    try:
+        return table[name]
+    except KeyError:
+        raise unknown_name(name, table, kind) from None
