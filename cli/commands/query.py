@@ -29,7 +29,7 @@ from ..output.answers import (
     print_columns,
     sparkline,
 )
-from ..output.console import csv_writer, emit, has_colours, print_fields, print_json_answers, say
+from ..output.console import csv_writer, emit, has_colours, print_fields, print_json, print_json_answers, say
 from ..startup import hide_drawing_notes
 
 if TYPE_CHECKING:
@@ -111,8 +111,24 @@ def ask(
 @options.light("Illuminant under which colour and standard error are shown", "none")
 @options.output_format("table", "json", "csv")
 @options.plot("Plot the spectra")
+@click.option("--check", "answers", metavar="FILE", help="Compare answers that --format csv has stored; exit code 1.")
+@click.option(
+    "--tolerance",
+    type=options.NUMBER,
+    default=1e-4,
+    show_default=True,
+    help="Largest difference in reflectance that --check accepts.",
+)
 @options.force
-def command(lights: tuple[str, ...], style: str, plot_path: str | None, force: bool, **colours: Any) -> None:
+def command(
+    lights: tuple[str, ...],
+    style: str,
+    plot_path: str | None,
+    answers: str | None,
+    tolerance: float,
+    force: bool,
+    **colours: Any,
+) -> None:
     """Query the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
 
     Numbers are linear RGB from 0 to 1 in the cube's space, or in that of --input-space. Hex colours, and numbers with
@@ -130,6 +146,7 @@ def command(lights: tuple[str, ...], style: str, plot_path: str | None, force: b
       uplift query --xy 0.17 0.7 --luminance 0.15 --format json
       echo 0.5,0.5,0.5 | uplift query - --format json
       uplift query '#cc3319' --cube macbeth-32.uplift --light FL11 --light HP1
+      uplift query --check spectra.csv
 
     Standard errors are those of materials like the entries of the cube's atlas. RGB does not identify a material:
     others of the same colour may differ by more, at most as 'uplift bounds' states.
@@ -139,6 +156,9 @@ def command(lights: tuple[str, ...], style: str, plot_path: str | None, force: b
     """
     from uplift.common.files import check_outputs
 
+    if answers is not None:
+        _check(answers, colours["cube_path"], colours["mode"], tolerance, style)
+        return
     check_outputs((plot_path,), inputs=(colours["cube_path"], colours["input_path"]), force=force)
     stream, results, single = ask(lights=lights, **colours)
     if plot_path is not None:
@@ -148,8 +168,8 @@ def command(lights: tuple[str, ...], style: str, plot_path: str | None, force: b
         results = list(results)
         plot_spectra(stream.cube, list(chain.from_iterable(results)), plot_path, force=force)
     if style == "json":
-        answers = chain.from_iterable(results)
-        print_json_answers((result_object(stream, answer) for answer in answers), single=single)
+        objects = (result_object(stream, each) for each in chain.from_iterable(results))
+        print_json_answers(objects, single=single)
     elif style == "csv":
         _print_csv(stream.cube, chain.from_iterable(results))
     elif single:
@@ -163,6 +183,36 @@ def command(lights: tuple[str, ...], style: str, plot_path: str | None, force: b
     cubes = list(Path().glob("*.uplift")) if style == "table" and stream.path is None else []
     if len(cubes) == 1:
         say(f"hint: the cube of this folder answers with --cube {cubes[0]}", err=True)
+
+
+def _check(path: str, cube_path: str | None, mode: str, tolerance: float, style: str) -> None:
+    """Compare stored answers with those of a cube; exit with 1 if one differs by more than the tolerance."""
+    from uplift.lookup import load
+    from uplift.report.answers import read_answers
+
+    stored = read_answers(path)
+    differences = stored.differences(load(cube_path), mode)
+    worst = int(differences.argmax())
+    passed = bool(differences[worst] <= tolerance)
+    figures = {
+        "answers": path,
+        "colours": len(differences),
+        "largest": float(differences[worst]),
+        "worst_rgb": stored.rgb[worst].tolist(),
+        "moved": int((differences > tolerance).sum()),
+        "tolerance": tolerance,
+        "passed": passed,
+    }
+    if style == "json":
+        print_json(figures)
+    else:
+        verdict = "passed" if passed else "FAILED"
+        say(
+            f"{path}: {verdict}, {figures['moved']} of {len(differences)} answers differ by more than {tolerance:g}, "
+            f"the most by {differences[worst]:.2g} ({format_rgb(stored.rgb[worst])})"
+        )
+    if not passed:
+        raise SystemExit(1)
 
 
 @dataclass

@@ -25,6 +25,7 @@ def test_blue_and_yellow_are_green(ask):
     assert (found["ramp"][0]["hex"], found["ramp"][-1]["hex"]) == (BLUE, YELLOW)
     assert found["ramp"][4]["hex"] == found["hex"]
     assert ask("mix", BLUE, YELLOW) == found
+    assert ask("mix", f"2:{BLUE}", f"1:{YELLOW}")["hex"] == "#538a51"
 
 
 def test_entries_by_name_have_their_measured_spectra(ask, cubes, macbeth):

@@ -334,6 +334,23 @@ def test_texts(run, table, macbeth_cube):
     assert [line.split()[0] for line in lines[2:]] == ["#cc3319", "#ffffff", "#000000"]
 
 
+def test_stored_answers_are_checked(run, refuse, home, small_cube, plain_cube, table):
+    small_cube.save(home / "a.uplift")
+    plain_cube.save(home / "b.uplift")
+    colours = table("0.2,0.3,0.4\n0.5,0.1,0.7\n")
+    (home / "answers.csv").write_text(run("query", "--cube", "a.uplift", "--input", colours, "--format", "csv").stdout)
+    assert "passed, 0 of 2" in run("query", "--cube", "a.uplift", "--check", "answers.csv").stdout
+    failed = json.loads(run("query", "--cube", "b.uplift", "--check", "answers.csv", "--format", "json", code=1).stdout)
+    assert (failed["passed"], failed["colours"]) == (False, 2)
+    assert failed["largest"] > failed["tolerance"]
+    run("query", "--cube", "b.uplift", "--check", "answers.csv", "--tolerance", "1")
+    (home / "bad.csv").write_text("r,g,b,500\n0.1,0.2,0.3,x\n")
+    assert refuse("query", "--check", "bad.csv").where == "bad.csv:2"
+    for text in ("", "r,g,b\n0,0,0\n", "r,g,b,500\n"):
+        (home / "bad.csv").write_text(text)
+        assert refuse("query", "--check", "bad.csv").where == "bad.csv"
+
+
 def test_a_hint_names_the_only_cube_of_the_folder(run, home, plain_cube):
     assert "--cube" not in run("query", "#cc3319").stderr
     plain_cube.save(home / "mine.uplift")
