@@ -1,4 +1,4 @@
-"""Solvers of optimistix in place of the default: each row of a batch is a problem of its own.
+"""Solvers of optimistix in place of the default: each row of a batch is a separate problem.
 
 The problem is one of least squares: the residuals of the colour, and the difference from the prior with the small
 weight `CLOSENESS`. It has one minimum near the prior, which all solvers find.
@@ -58,7 +58,7 @@ class RowByRow:
         return {"prior": start if prior is None else prior, "closeness": np.full(len(start), CLOSENESS)}
 
     def schedule(self) -> Iterator[int]:
-        """Yield the steps of each pass: solvers start anew in each."""
+        """Yield the steps of each pass: solvers start again in each."""
         return repeat(MAX_STEPS, MAX_PASSES)
 
 
