@@ -64,7 +64,8 @@ def command(
 
     A cell of the matrix shows the requested colour, the colour of the designed spectra and the colour of the factor
     model, with ΔE00 between the first and the second and between the second and the third. Goals that no spectra can
-    meet are listed with the requirements to relax. JSON output has all spectra.
+    meet are listed with the requirements to relax. JSON output has all spectra, and the factor model: its basis, the
+    dual that encodes other reflectances, and light_dual for powers.
 
     \b
     Examples:
@@ -180,6 +181,9 @@ def _print_json(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
         "materials": _parts(palette.materials, design.reflectances, model.reflectance),
         "free": {name: rgb.tolist() for name, rgb in design.free.items()},
         "colours": cells,
+        "basis": model.basis.T.tolist(),
+        "dual": model.projection.tolist(),
+        "light_dual": model.light_projection.tolist(),
         "to_rgb": model.matrix.tolist(),
         "missed": unmet,
     }

@@ -65,6 +65,18 @@ def test_json_reproduces_the_matrix(ask, spec):
     assert found["missed"] == []
 
 
+def test_json_encodes_other_spectra(ask, spec):
+    """The dual inverts the basis, and encodes the palette's own spectra as the command does."""
+    found = ask("palette", spec())
+    basis, dual, light_dual = (np.array(found[key]) for key in ("basis", "dual", "light_dual"))
+    np.testing.assert_allclose(dual @ basis.T, np.eye(found["coefficients"]), atol=1e-9)
+    coefficients = np.array([0.1, 0.9, 0.3, 0.5, 0.2, 0.8, 0.4])
+    np.testing.assert_allclose(dual @ (coefficients @ basis), coefficients, atol=1e-9)
+    for parts, encoder in ((found["materials"], dual), (found["lights"], light_dual)):
+        for part in parts:
+            np.testing.assert_allclose(encoder @ part["samples"], part["coefficients"], atol=1e-9)
+
+
 def test_files_are_written(run, refuse, spec, home):
     files = ("-o", "new.txt", "--plot", "m.png", "--plot-spectra", "s.png")
     assert "new.txt: 1 designed materials" in run("palette", spec(), *files).stderr
