@@ -34,16 +34,21 @@ class SpectrumResolver:
     wavelengths: Array
     space: ImageSpace | None = None
 
-    def ingredient(self, word: str) -> tuple[str, float, Array, Array | None]:
+    def ingredient(self, word: str, kind: str = "pigment") -> tuple[str, float, Array, Array | None]:
         """Return name, parts, spectrum (N,), and spectrum on black (N,) if one is given.
 
-        Raises `ColourError` for unknown names, `OptionError` for parts that are not positive.
+        Of the kind 'duntley' the name is a file of constants, which replace the spectrum (6, N). Raises `ColourError`
+        for unknown names, `OptionError` for parts that are not positive, `AtlasError` for files.
         """
-        entries = (*self.cube.data.atlas.names, *self.atlas.names)
+        from uplift.design.mixing.pigments import read_constants
+
+        entries = () if kind == "duntley" else (*self.cube.data.atlas.names, *self.atlas.names)
         parts, name = 1.0, word.strip()
         match = None if name in entries else PARTS.match(name)
         if match:
             parts, name = _positive(match[1], word), match[2].strip()
+        if kind == "duntley":
+            return name, parts, read_constants(name, self.wavelengths), None
         if name in entries or "/" not in name:
             return name, parts, self.spectrum(name), None
         on_white, on_black = (self.spectrum(half.strip()) for half in name.split("/", 1))

@@ -39,9 +39,18 @@ if TYPE_CHECKING:
     "--pigment", "kind", flag_value="pigment", default="pigment", help="Mix paints, which absorb and scatter."
 )
 @click.option("--dye", "kind", flag_value="dye", help="Mix dyes, which absorb.")
+@click.option(
+    "--duntley",
+    "kind",
+    flag_value="duntley",
+    help="Mix paints by Duntley's theory. Ingredients are [PARTS:]FILE: tables, over wavelength, of the constants "
+    "K', B', F' of a beam and K, B, F of diffuse light, per unit thickness.",
+)
 @click.option("--filter", "kind", flag_value="filter", help="Stack filters; PARTS is the thickness.")
 @click.option("--additive", "kind", flag_value="light", help="Add lights; PARTS is the intensity.")
-@click.option("--thickness", type=options.NUMBER, metavar="X", help="Thickness of the coat. [default: opaque; dyes: 1]")
+@click.option(
+    "--thickness", type=options.NUMBER, metavar="X", help="Thickness of the coat. [default: opaque; dyes, --duntley: 1]"
+)
 @click.option("--ground", metavar="COLOUR", help="Substrate of the coat. [default: white]")
 @click.option(
     "--refractive-index",
@@ -52,6 +61,24 @@ if TYPE_CHECKING:
 )
 @options.choice(
     "--incidence", "perpendicular", "diffuse", help="Incidence of light on the surface given by --refractive-index."
+)
+@click.option(
+    "--surface-reflectance",
+    type=options.NUMBER,
+    metavar="K1",
+    help="Saunderson's reflectance of the surface for light from air. [default: by --refractive-index]",
+)
+@click.option(
+    "--internal-reflectance",
+    type=options.NUMBER,
+    metavar="K2",
+    help="Saunderson's reflectance of the surface for diffuse light from within. [default: by --refractive-index]",
+)
+@click.option(
+    "--plate",
+    type=click.Choice(("reflected", "transmitted")),
+    help="With --dye: the light that a free plate of the dye reflects, with --ground behind it, or transmits. "
+    "--refractive-index is that of the plate.",
 )
 @options.choice(
     "--scattering",
@@ -83,6 +110,9 @@ def command(
     ground: str | None,
     refractive_index: float,
     incidence: str,
+    surface_reflectance: float | None,
+    internal_reflectance: float | None,
+    plate: str | None,
     scattering: str,
     theories: bool,
     cube_path: str | None,
@@ -110,6 +140,9 @@ def command(
       uplift mix blue yellow --cube macbeth-32.uplift --plot ramp.png
       uplift mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
       uplift mix --dye 1:'#d03060' 3:'#f0c000' --refractive-index 1.5 --thickness 2
+      uplift mix '#c8342a' --surface-reflectance 0.04 --internal-reflectance 0.6
+      uplift mix --dye '#d03060' --refractive-index 1.5 --plate transmitted
+      uplift mix --duntley 2:duntley.csv --thickness 0.5 --ground black
       uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5
       uplift mix --additive '#ff0000' 0.5:'#00ff00'
       uplift mix '#c8342a/#601810' --thickness 0.4 --over painting.exr -o glazed.exr
@@ -128,11 +161,19 @@ def command(
     if (over is None) != (output is None):
         raise click.UsageError("--over IMAGE and --output EXR require each other.")
     if ground is not None and (kind not in COATS or over is not None):
-        raise click.UsageError("--ground applies to coats of --pigment or --dye, without --over.")
+        raise click.UsageError("--ground applies to coats of --pigment, --dye or --duntley, without --over.")
+    if plate is not None and kind != "dye":
+        raise click.UsageError("--plate applies to --dye.")
+    if plate == "transmitted" and (ground is not None or over is not None):
+        raise click.UsageError("--plate transmitted does not apply to --ground and --over.")
     if over is not None and plot_path is not None:
         raise click.UsageError("--plot shows a mixture and does not apply to --over.")
-    if theories and any(option is not None for option in (thickness, ground, over, plot_path)):
-        raise click.UsageError("--theories mixes opaque colours, without --thickness, --ground, --over and --plot.")
+    if theories and (
+        kind == "duntley" or any(each is not None for each in (thickness, ground, plate, over, plot_path))
+    ):
+        raise click.UsageError(
+            "--theories mixes opaque colours, without --duntley, --thickness, --ground, --plate, --over and --plot."
+        )
     if output is not None and not output.lower().endswith(".exr"):
         raise OutputError("painted images are OpenEXR files", path=output, hint="give a file name ending in .exr")
     check_outputs((plot_path, output), inputs=(cube_path, over, *files), force=force)
@@ -141,14 +182,19 @@ def command(
     further = np.array([]) if theories or over is not None else as_wavelengths(wavelengths, cube.wavelengths)
     grid = np.concatenate([sensor.wavelengths, further])  # for colours, followed by those of the output
     resolver = SpectrumResolver(cube, read_atlas(*files) if files else Atlas(), grid, space)
-    names, parts, spectra, on_black = zip(*map(resolver.ingredient, words), strict=True)
+    names, parts, spectra, on_black = zip(*(resolver.ingredient(word, kind) for word in words), strict=True)
     ingredients = Ingredients(np.stack(spectra), on_black)
     if theories:
         _print_theories(cube, names, np.array(parts), ingredients.spectra, method, style)
         return
     assumed: dict[str, Scattering] = {"root": SQUARE_ROOT, "constant": CONSTANT}
     law = assumed.get(scattering) or dispersive(sensor, further)
-    medium = Medium(thickness, Surface.of_index(refractive_index, incidence), law)
+    of_index = Surface.of_index(refractive_index, incidence)
+    surface = Surface(
+        of_index.outside if surface_reflectance is None else surface_reflectance,
+        of_index.inside if internal_reflectance is None else internal_reflectance,
+    )
+    medium = Medium(thickness, surface, law, plate is not None)
     if over is not None and output is not None:
         enable_jit_cache()
         from uplift.io.texture import convert
@@ -159,6 +205,7 @@ def command(
             "thickness": thickness,
             "surface": asdict(medium.surface),
             "scattering": scattering,
+            **({"plate": True} if medium.plate else {}),
         }
         coat = make_coat(kind, ingredients, parts, medium)
         painter = overpainter(cube, coat, recipe, encoding=encoding, out_of_gamut=method, space=space)
@@ -171,7 +218,10 @@ def command(
     from uplift.colorimetry.gamut import map_to_gamut
 
     amounts = np.concatenate([np.array(parts)[None], ramp(parts, steps)])
-    mixed = mix(kind, ingredients, amounts, medium, resolver.spectrum(ground or "white"))
+    if plate == "transmitted":
+        mixed = make_coat(kind, ingredients, amounts, medium).layer.transmittance
+    else:
+        mixed = mix(kind, ingredients, amounts, medium, resolver.spectrum(ground or "white"))
     count = len(sensor.wavelengths)
     mapped = map_to_gamut(sensor.rgb(mixed[:, :count]), sensor, method)
     if mapped.outside[0]:

@@ -8,7 +8,9 @@ import pytest
 
 import uplift
 from tests.io.texture.conftest import planes, read_channels, write_exr
+from uplift.design.mixing import Surface
 from uplift.design.mixing.theories import mixers
+from uplift.samples import sample_path
 
 from .conftest import warning_lines
 
@@ -38,6 +40,26 @@ def test_entries_by_name_have_their_measured_spectra(ask, cubes, macbeth):
     np.testing.assert_allclose(from_cube["spectrum"][4:], measured["spectrum"][4:], atol=0.03)  # from 400 nm
     plain = ask("mix", "2:0.113,0.199,0.336", "yellow", "--atlas", macbeth)
     assert np.abs(np.subtract(plain["spectrum"], measured["spectrum"])).max() > 0.03
+
+
+def test_surfaces_and_plates(ask):
+    """Saunderson's reflectances are those of the index, unless given; a plate reflects, transmits and absorbs."""
+    given = ("--surface-reflectance", 0.04, "--internal-reflectance", Surface.of_index(1.5).inside)
+    found, expected = (ask("mix", BLUE, "#ffe080", *words) for words in (given, ("--refractive-index", 1.5)))
+    np.testing.assert_allclose(found["spectrum"], expected["spectrum"], rtol=1e-12)
+    plate = ("mix", "--dye", "#c8a070", "--refractive-index", 1.5, "--plate")
+    through, back = ask(*plate, "transmitted"), ask(*plate, "reflected", "--ground", "black")
+    assert np.all(np.add(through["spectrum"], back["spectrum"]) < 1)
+    assert min(back["spectrum"]) > 0.04
+
+
+def test_duntley_s_constants_from_files(ask):
+    """Without thickness the ground shows; a paint mixed with itself is the same."""
+    paint = str(sample_path("duntley.csv"))
+    assert ask("mix", "--duntley", paint, "--thickness", 0, "--ground", "#f0e8d8")["hex"] == "#f0e8d8"
+    once, twice = (ask("mix", "--duntley", *words, "--ground", "black") for words in ((paint,), (f"2:{paint}", paint)))
+    np.testing.assert_allclose(once["spectrum"], twice["spectrum"])
+    assert once["rgb"][0] > 3 * once["rgb"][2]
 
 
 def test_lights_and_filters(run, ask):
@@ -77,6 +99,8 @@ def test_paint_over_an_image(run, refuse, home, cubes):
         (("-1:#ffffff",), "option"),
         (("1:1.5,0,0",), "rgb-out-of-gamut"),
         (("#802020/#c03030",), "colour"),
+        (("#802020", "--internal-reflectance", "1"), "option"),
+        (("--duntley", "none.csv"), "file-not-found"),
         (("#802020", "--atlas", "none.txt"), "file-not-found"),
     ],
 )
@@ -92,6 +116,9 @@ def test_invalid_input_is_an_error(refuse, words, code):
         (BLUE, "-o", "out.exr"),
         (BLUE, "--over", "in.exr", "-o", "out.exr", "--plot", "a.png"),
         ("--theories", BLUE, YELLOW, "--thickness", 2),
+        (BLUE, "--plate", "reflected"),
+        ("--dye", BLUE, "--plate", "transmitted", "--ground", "black"),
+        ("--theories", "--duntley", "paint.csv"),
     ],
 )
 def test_wrong_usage(misuse, words):

@@ -12,9 +12,9 @@ from tests.helpers import raises, warns
 from tests.io.texture.conftest import channels, planes, read_channels, write_exr
 from uplift.common.errors import ColourError, OptionError
 from uplift.design.mixing import Ingredients, Medium, Surface, make_coat, mix, overpainter
-from uplift.design.mixing.coats import COATS, DARKEST, dye_absorption, dye_transmittance, ramp
-from uplift.design.mixing.optics import NO_SURFACE, Layer
-from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, from_opaque
+from uplift.design.mixing.coats import DARKEST, dye_absorption, dye_transmittance, ramp
+from uplift.design.mixing.optics import NO_SURFACE, Layer, plate
+from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, Pigment, from_opaque
 from uplift.io.texture import convert
 
 WHITE = np.ones(5)
@@ -30,7 +30,7 @@ def two(rng):
     return Ingredients(rng.uniform(0.1, 0.9, (2, 5)))
 
 
-@pytest.mark.parametrize("kind", COATS)
+@pytest.mark.parametrize("kind", ["pigment", "dye"])
 @pytest.mark.parametrize("surface", SURFACES)
 @pytest.mark.parametrize("rule", [SQUARE_ROOT, CONSTANT])
 def test_a_single_colour_is_unchanged_and_thickness_0_leaves_the_ground(two, rng, kind, surface, rule):
@@ -77,6 +77,8 @@ def test_ramps_of_proportions(two):
         ("dye", Medium(-1.0), None, "invalid-thickness"),
         ("pigment", Medium(float("inf"), scattering=SQUARE_ROOT), None, "invalid-thickness"),
         ("pigment", Medium(), None, "option"),
+        ("pigment", Medium(scattering=SQUARE_ROOT, plate=True), None, "option"),
+        ("filter", Medium(plate=True), None, "option"),
     ],
 )
 def test_inapplicable_settings_raise(two, kind, medium, on_black, code):
@@ -106,6 +108,38 @@ def test_a_dye_on_a_ground_is_the_sum_over_passes(surface, ground):
         light = light * T * ground * T
         expected, light = expected + (1 - surface.inside) * light, surface.inside * light
     np.testing.assert_allclose(surface.apply(Layer(np.zeros_like(T), T).over(ground)), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("rho", [0.0, 0.04, 0.3])
+def test_a_plate_is_the_sum_over_passes_and_keeps_the_energy_of_clear_light(rho):
+    """Eq. 9.4: what leaves above and below at each pass."""
+    found, light, above, below = plate(T, rho), (1 - rho) * T, np.full_like(T, rho), np.zeros_like(T)
+    for number in range(200):
+        (above if number % 2 else below)[:] += (1 - rho) * light
+        light = rho * light * T
+    np.testing.assert_allclose([found.reflectance, found.transmittance], [above, below], atol=1e-12)
+    assert found.reflectance[-1] + found.transmittance[-1] == pytest.approx(1)
+    assert (found.reflectance + found.transmittance <= 1 + 1e-12).all()
+
+
+def test_a_plate_of_index_1_is_the_layer_alone(two):
+    for ground in (0.0, 0.3, 1.0):
+        found = mix("dye", two, [1, 2], Medium(1.5, plate=True), ground)
+        np.testing.assert_allclose(found, mix("dye", two, [1, 2], Medium(1.5), ground))
+    assert (mix("dye", two, [1, 2], Medium(1.5, OIL, plate=True), 0.0) >= OIL.outside).all()
+
+
+@pytest.mark.parametrize("surface", SURFACES)
+def test_duntley_s_paint_becomes_kubelka_and_munk_s_and_creates_no_energy(rng, surface):
+    """In the limit of strong forward scattering in a beam, constants mix as Duncan's. Clear paint leaves white."""
+    K, B = rng.uniform(0.1, 2, (2, 2, 5))
+    constants = np.stack([K, B, np.full_like(K, 1e8), K, B, B], axis=1)
+    for ground in (surface.outside, 0.5, 1.0):
+        found = mix("duntley", Ingredients(constants), [2, 1], Medium(0.7, surface), ground)
+        layer = Pigment(K, B).mix([2, 1]).layer(0.7)
+        np.testing.assert_allclose(found, surface.apply(layer.over(surface.remove(ground))), atol=1e-6)
+    clear = rng.uniform(0, 2, (3, 6, 5)) * [[0], [1], [1], [0], [1], [1]]
+    np.testing.assert_allclose(mix("duntley", Ingredients(clear), [1, 2, 3], Medium(0.7, surface), WHITE), 1)
 
 
 def test_thicknesses_of_dyes_compose_and_black_is_finite():

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_bvp
 
 from tests.helpers import raises
-from uplift.common.errors import ColourError
+from uplift.common.errors import AtlasError, ColourError
 from uplift.design.mixing import dispersive, pigments
 from uplift.design.mixing.pigments import (
     CONSTANT,
@@ -170,6 +170,29 @@ def test_strong_forward_scattering_gives_the_two_constant_theory():
     two, found = Pigment(DIFFUSE.absorption, DIFFUSE.backward).layer(0.9), duntley_layer(beam, DIFFUSE, 0.9)
     np.testing.assert_allclose(found.reflectance, two.reflectance, atol=1e-6)
     np.testing.assert_allclose(found.transmittance, two.transmittance, atol=1e-6)
+
+
+def test_constants_are_read_from_rows_and_columns(tmp_path):
+    nm, rows = [400.0, 500.0, 700.0], np.arange(24.0).reshape(8, 3)
+    names = (*pigments.CONSTANTS, "S'", "S")
+    rows[6:] = rows[1] + rows[2], rows[4] + rows[5]
+    lines = [["name", *nm], *([name, *row] for name, row in zip(names, rows, strict=True))]
+    for number, cells in enumerate((lines, zip(*lines, strict=True))):
+        path = tmp_path / f"{number}.csv"
+        path.write_text("\n".join(",".join(map(str, row)) for row in cells), encoding="utf-8")
+        found = pigments.read_constants(path, np.array([380, 450, 700]))
+        np.testing.assert_allclose(found, np.stack([rows[:6, 0], rows[:6, :2].mean(axis=1), rows[:6, 2]], axis=1))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [("K',", "K'',", "must have K'"), (",1,", ",-1,", "at least 0"), ("S,", "S,9", "S must be B \\+ F")],
+)
+def test_invalid_constants_raise(tmp_path, old, new, problem):
+    text = "".join(f"{name},1,1\n" for name in ("nm", *pigments.CONSTANTS)).replace("nm,1,1", "nm,380,780")
+    (tmp_path / "paint.csv").write_text((text + "S,2,2\n").replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(AtlasError, match=problem):
+        pigments.read_constants(tmp_path / "paint.csv", np.array([500.0]))
 
 
 @pytest.mark.parametrize("X", [0.01, 1.0, 30.0])

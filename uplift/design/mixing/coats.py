@@ -35,17 +35,25 @@ from uplift.design.mixing.optics import (
     add_lights,
     as_amounts,
     as_shares,
+    plate,
     stack_filters,
     weighted_sum,
 )
-from uplift.design.mixing.pigments import Pigment, Scattering, from_black_and_white, from_opaque
+from uplift.design.mixing.pigments import (
+    Flux,
+    Pigment,
+    Scattering,
+    duntley_layer,
+    from_black_and_white,
+    from_opaque,
+)
 from uplift.io import exr
 from uplift.io.texture.colours import Counts, Floats, check_encoding
 from uplift.io.texture.uplifter import Converter
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 
-COATS = ("pigment", "dye")
+COATS = ("pigment", "dye", "duntley")
 KINDS = (*COATS, "filter", "light")
 DARKEST = 1e-6  # smallest transmittance that the absorption of a dye is derived from; it diverges at 0
 MAX_THICKNESS = 1e9  # as it is multiplied with other numbers
@@ -60,7 +68,8 @@ class Coat:
 
     def over(self, ground: ArrayLike) -> Array:
         """Return the reflectance (..., N) on a ground (..., N), both surface included."""
-        return self.surface.apply(self.layer.over(_beneath(self.surface, ground)))
+        beneath = _beneath(self.surface, ground)
+        return self.surface.apply(self.layer.over(beneath), self.layer.diffuse.over(beneath))
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +80,7 @@ class Ingredients:
     ----------
     spectra : ndarray of shape (n, N)
         Reflectance of opaque pigments, reflectance of dyes one unit thick on white, transmittance of filters, or power
-        of lights.
+        of lights. Of paints by Duntley's theory their constants, (n, 6, N).
     on_black : tuple of ndarray of shape (N,) or None, one for each component, optional
         Reflectance on black of the pigments that ``spectra`` gives on white, one unit thick. None for the others.
     """
@@ -92,16 +101,19 @@ class Medium:
     Parameters
     ----------
     thickness : float, optional
-        Thickness in units, by default opaque for pigments and 1 for dyes.
+        Thickness in units, by default opaque for pigments and 1 for dyes and Duntley's paints.
     surface : Surface
         Surface of the vehicle.
     scattering : callable, optional
         S of pigments that are given by one colour, which need it; see `dispersive`.
+    plate : bool
+        Whether dyes are in a free plate with a surface on both sides, and the ground is behind a gap of air.
     """
 
     thickness: float | None = None
     surface: Surface = NO_SURFACE
     scattering: Scattering | None = None
+    plate: bool = False
 
 
 def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium) -> Coat:
@@ -109,7 +121,7 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
 
     Parameters
     ----------
-    kind : {"pigment", "dye"}
+    kind : {"pigment", "dye", "duntley"}
         Kind of the components.
     ingredients : Ingredients
         The n components. A warning states how many are darker than the surface alone at some wavelengths.
@@ -126,7 +138,8 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
     Raises
     ------
     OptionError
-        An argument is invalid, a dye has a colour on black, or the scattering of a pigment is missing.
+        An argument is invalid, a dye has a colour on black, a plate has no dye, or the scattering of a pigment is
+        missing.
     ColourError
         No pigment has the given reflectances on white and on black.
     """
@@ -135,6 +148,14 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
     if medium.thickness is not None and not 0 <= medium.thickness <= MAX_THICKNESS:
         problem = f"thickness must be in [0, {MAX_THICKNESS:g}], got {medium.thickness}"
         raise OptionError(problem, code="invalid-thickness", hint="1 is the unit")
+    if medium.plate and kind != "dye":
+        raise OptionError(f"a plate must be of kind 'dye', got '{kind}'", hint="what scatters has no free plate")
+    thickness = 1.0 if medium.thickness is None else medium.thickness
+    if kind == "duntley":
+        constants = ingredients.spectra
+        mixed = weighted_sum(constants.reshape(len(constants), -1), as_shares(parts))
+        fluxes = np.moveaxis(mixed.reshape(*mixed.shape[:-1], 6, -1), -2, 0)
+        return Coat(duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness), medium.surface)
     surface, spectra = medium.surface, [*ingredients.spectra, *ingredients.measured_on_black]
     dark = sum(bool((surface.remove(one) < -SLACK).any()) for one in spectra)
     if dark:
@@ -146,7 +167,9 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
         if ingredients.measured_on_black:
             raise OptionError("dyes must not have a colour on black", hint="pass their colour on white only")
         absorption = weighted_sum(dye_absorption(ingredients.spectra, surface), as_shares(parts))
-        transmittance = dye_transmittance(absorption, 1.0 if medium.thickness is None else medium.thickness)
+        transmittance = dye_transmittance(absorption, thickness)
+        if medium.plate:
+            return Coat(plate(transmittance, surface.outside))
         return Coat(Layer(np.zeros_like(transmittance), transmittance), surface)
     on_black = ingredients.on_black or (None,) * len(ingredients.spectra)
     paints = [_pigment(*pair, medium) for pair in zip(ingredients.spectra, on_black, strict=True)]
@@ -163,7 +186,7 @@ def mix(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, g
 
     Parameters
     ----------
-    kind : {"pigment", "dye", "filter", "light"}
+    kind : {"pigment", "dye", "duntley", "filter", "light"}
         Kind of the components.
     ingredients : Ingredients
         The n components.
@@ -188,8 +211,8 @@ def mix(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, g
         return make_coat(kind, ingredients, parts, medium).over(ground)
     if kind not in KINDS:
         raise OptionError(f"unknown kind of mixture '{kind}'", hint=f"use one of {', '.join(KINDS)}")
-    if (medium.thickness, medium.surface) != (None, NO_SURFACE) or ingredients.measured_on_black:
-        problem = f"{kind}s must not have a thickness, a surface or a colour on black"
+    if (medium.thickness, medium.surface, medium.plate) != (None, NO_SURFACE, False) or ingredients.measured_on_black:
+        problem = f"{kind}s must not have a thickness, a surface, a plate or a colour on black"
         raise OptionError(problem, hint="leave them out; parts of filters are their thickness")
     return (stack_filters if kind == "filter" else add_lights)(ingredients.spectra, parts)
 

@@ -68,12 +68,45 @@ class Layer:
     reflectance: Array  # (..., N) on a black ground
     transmittance: Array  # (..., N); the sum of both is at most 1
 
+    @property
+    def diffuse(self) -> Layer:
+        """The layer for diffuse light, the same for all kinds of light."""
+        return self
+
     def over(self, ground: ArrayLike) -> Array:
         """Return the reflectance (..., N) on a ground (..., N)."""
         ground = np.asarray(ground, dtype=float)
         # Light travels back and forth between both: R + T² g Σ (R g)^i. The sum diverges only where no light gets.
         escaping = np.maximum(1 - self.reflectance * ground, TINY)
         return self.reflectance + self.transmittance**2 * ground / escaping
+
+
+@dataclass(frozen=True, eq=False)
+class DirectedLayer(Layer):
+    """A layer in a beam of light. Light that comes back from the ground is diffuse."""
+
+    inner: Layer  # for diffuse light
+
+    @property
+    def diffuse(self) -> Layer:
+        """The layer for diffuse light."""
+        return self.inner
+
+    def over(self, ground: ArrayLike) -> Array:
+        """Return the reflectance (..., N) of a beam on a ground (..., N): R + T g τ Σ (r g)^i."""
+        ground = np.asarray(ground, dtype=float)
+        escaping = np.maximum(1 - self.inner.reflectance * ground, TINY)
+        return self.reflectance + self.transmittance * ground * self.inner.transmittance / escaping
+
+
+def plate(transmittance: ArrayLike, rho: float) -> Layer:
+    """Return a free plate of an internal transmittance T (..., N), whose two surfaces reflect ρ (eq. 9.4).
+
+    Nothing scatters, so that the light within keeps the direction in which both surfaces reflect ρ, from either side.
+    """
+    once = np.asarray(transmittance, dtype=float)
+    rest = 1 - (rho * once) ** 2
+    return Layer(rho + rho * ((1 - rho) * once) ** 2 / rest, (1 - rho) ** 2 * once / rest)
 
 
 def fresnel_reflectance(index: float) -> float:
@@ -151,13 +184,15 @@ class Surface:
             raise OptionError(f"unknown incidence '{incidence}'", hint=f"use {' or '.join(INCIDENCES)}")
         return cls(INCIDENCES[incidence](index), internal_reflectance(index))
 
-    def apply(self, internal: ArrayLike) -> Array:
+    def apply(self, internal: ArrayLike, diffuse: ArrayLike | None = None) -> Array:
         """Return the reflectance measured through the surface (Saunderson's correction, eq. 10.10).
 
         Parameters
         ----------
         internal : array_like
             Reflectance beneath the surface.
+        diffuse : array_like, optional
+            The same for light that the surface sends back, if it differs as that light is diffuse.
 
         Returns
         -------
@@ -165,8 +200,9 @@ class Surface:
             Measured reflectance, of the same shape.
         """
         internal = np.asarray(internal, dtype=float)
+        again = internal if diffuse is None else np.asarray(diffuse, dtype=float)
         transmitted = (1 - self.outside) * (1 - self.inside)
-        return self.outside + transmitted * internal / (1 - self.inside * internal)
+        return self.outside + transmitted * internal / (1 - self.inside * again)
 
     def remove(self, measured: ArrayLike) -> Array:
         """Return the reflectance beneath the surface (inverse of eq. 10.10).

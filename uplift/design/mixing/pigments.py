@@ -37,10 +37,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from uplift.atlas import Atlas
+from uplift.atlas.document import read_document
+from uplift.atlas.formats import recognise
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError
-from uplift.design.mixing.optics import TINY, Layer, as_shares, weighted_sum
+from uplift.design.mixing.optics import TINY, DirectedLayer, Layer, as_shares, weighted_sum
 
 DARKEST = 1e-4  # smallest reflectance that K and S are derived from; K diverges at 0
 SLACK = 1e-3  # contradiction between measurements on two grounds that is accepted as rounding
@@ -50,6 +53,7 @@ REACH = 40.0  # distance in nm at which the weight of absorption in h falls to 1
 DARKEST_DISPERSED = 0.01
 # Relative difference of μ and γ below which the mean of both sides is taken; its error is the square of this.
 MIN_RELATIVE_GAP = 1e-5
+CONSTANTS = ("K'", "B'", "F'", "K", "B", "F")  # of Duntley's eight, those that the others are sums of
 
 # From reflectances (..., N) in (0, 1] to S (..., N), greater than 0, of which white has 1.
 Scattering = Callable[[Array], Array]
@@ -192,7 +196,7 @@ class Flux:
     forward: Array
 
 
-def duntley_layer(beam: Flux, diffuse: Flux, thickness: float) -> Layer:
+def duntley_layer(beam: Flux, diffuse: Flux, thickness: float) -> DirectedLayer:
     """Return the optical properties of a layer for collimated light by Duntley's theory (eq. 10.8)."""
     inner = Pigment(diffuse.absorption, diffuse.backward)
     layer = inner.layer(thickness)
@@ -213,7 +217,32 @@ def duntley_layer(beam: Flux, diffuse: Flux, thickness: float) -> Layer:
     mu = beam.absorption + S1
     step = MIN_RELATIVE_GAP * np.maximum(mu, gamma)
     offset = np.where(np.abs(mu - gamma) < step, 2 * step, 0.0)
-    return Layer(*((one_side(beam.absorption + offset) + one_side(beam.absorption - offset)) / 2))
+    reflectance, transmittance = (one_side(beam.absorption + offset) + one_side(beam.absorption - offset)) / 2
+    return DirectedLayer(reflectance, transmittance, layer)
+
+
+def read_constants(path: StrPath, wavelengths: Array) -> Array:
+    """Read Duntley's constants (6, N) of a paint, in the order of `CONSTANTS`, linear between the samples of a table.
+
+    S' = B' + F' and S = B + F may be in the table too; they must be these sums. Raises `AtlasError`.
+    """
+    document = read_document(path)
+    found, samples = recognise(document).read(document), {}
+    for spectrum in () if isinstance(found, Atlas) else found.spectra:
+        nm, values = np.asarray(spectrum.wavelengths, dtype=float), np.asarray(spectrum.values, dtype=float)
+        if not (np.isfinite(values) & (values >= 0)).all():
+            location = document.location.at(spectrum.line, spectrum.name)
+            raise location.error("constants of a paint must be finite and at least 0", "correct the table")
+        order = np.argsort(nm)
+        samples[spectrum.name] = np.interp(wavelengths, nm[order], values[order])
+    missing = [name for name in CONSTANTS if name not in samples]
+    if missing:
+        problem = f"a table of Duntley's constants must have {', '.join(CONSTANTS)}; {', '.join(missing)} missing"
+        raise document.location.error(problem, "write a column for each, and one of wavelengths in nm")
+    for total, parts in (("S'", ("B'", "F'")), ("S", ("B", "F"))):
+        if total in samples and not np.allclose(samples[total], sum(samples[part] for part in parts), rtol=1e-3):
+            raise document.location.error(f"{total} must be {' + '.join(parts)}", f"correct {total} or leave it out")
+    return np.stack([samples[name] for name in CONSTANTS])
 
 
 def diffuse_to_beam(diffuse: ArrayLike) -> Array:
