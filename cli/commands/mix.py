@@ -140,7 +140,7 @@ def command(
       uplift mix blue yellow --cube macbeth-32.uplift --plot ramp.png
       uplift mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
       uplift mix --dye 1:'#d03060' 3:'#f0c000' --refractive-index 1.5 --thickness 2
-      uplift mix '#c8342a' --surface-reflectance 0.04 --internal-reflectance 0.6
+      uplift mix '#e8c070' --surface-reflectance 0.04 --internal-reflectance 0.6
       uplift mix --dye '#d03060' --refractive-index 1.5 --plate transmitted
       uplift mix --duntley 2:duntley.csv --thickness 0.5 --ground black
       uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5
