@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from uplift.lab.comparison.compare import Comparison, TunedFilter
 
 FILES = ("compare-boxes.png", "compare-cost.png", "compare.html")
+SPECTRA = ("surfaces.csv", "lights.csv")
 
 
 @click.command("compare")
@@ -32,6 +33,12 @@ FILES = ("compare-boxes.png", "compare-cost.png", "compare.html")
     "--filters", is_flag=True, help="Also search the best low-pass filters for point sampling, which takes minutes."
 )
 @click.option("--quick", is_flag=True, help="At most forty surfaces, few repeats and a coarse search: seconds.")
+@click.option(
+    "--write",
+    metavar="NAME",
+    help="Write surfaces and lights as a representation or filter stores them to --output, and compare nothing: PS16, "
+    "PF16, RS32, TM9, SG3, or PS16:KIND:EXTENT:PARAMETERS with a filter, such as PS16:gaussian:7:0.5.",
+)
 @options.output_folder
 @options.output_format("table", "json", "csv")
 @options.force
@@ -41,6 +48,7 @@ def command(
     tolerance: float | None,
     filters: bool,
     quick: bool,
+    write: str | None,
     output: str | None,
     style: str,
     force: bool,
@@ -57,17 +65,26 @@ def command(
     --tolerance prints the cheapest sufficient representation for each set of lights. The cheapest stores the fewest
     floats per surface, then per light. --output writes box plots, a plot of error over cost, and a page.
 
+    --write writes spectra at 1 nm that have the colours of a representation or filter: surfaces.csv can be the --atlas
+    of other commands, lights.csv the lamps of uplift lights build.
+
     \b
     Examples:
       uplift compare --quick
       uplift compare --tolerance 1.0
       uplift compare --atlas paints.csv --light LED-B3 --light HP1 --tolerance 0.5
       uplift compare --filters --output filters --force
+      uplift compare --atlas paints.csv --light FL11 --write PF16 --output filtered
     """
     use_one_blas_thread()
     from uplift.common.files import check_folder
     from uplift.lab.comparison.compare import check_target
 
+    if write is not None:
+        if output is None or filters or tolerance is not None:
+            raise click.UsageError("--write requires --output, and does not apply to --filters and --tolerance.")
+        _write_spectra(write, files, lights, output, force=force)
+        return
     if tolerance is not None:
         check_target(tolerance)
     folder = None if output is None else check_folder(output, FILES, inputs=files, force=force)
@@ -80,6 +97,20 @@ def command(
         _print_table(comparison, tuned)
     else:
         _print_records(comparison, tuned, style)
+
+
+def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[str, ...], output: str, *, force: bool) -> None:
+    from uplift.atlas import merge, write_atlas
+    from uplift.common.files import check_folder
+    from uplift.lab.comparison.compare import make_scene, represent
+    from uplift.scene.representations import find_representation
+
+    representation, atlases = find_representation(name), read_atlases(files)
+    pair = represent(representation, make_scene(atlases, lights), merge(atlases.values()).names)
+    folder = check_folder(output, SPECTRA, inputs=files, force=force)
+    for atlas, file in zip(pair, SPECTRA, strict=True):
+        write_atlas(atlas, folder / file, force=force)
+    say(f"{folder}: {len(pair[0])} surfaces and {len(pair[1])} lights as {representation.name}")
 
 
 def _measure(

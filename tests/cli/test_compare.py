@@ -10,7 +10,9 @@ import pytest
 from click.testing import CliRunner
 from uplift_cli.main import main
 
+from uplift.atlas import read_atlas
 from uplift.lab.timing import ONE_THREAD
+from uplift.lights.lamps import read_lamps
 
 FILES = ["compare-boxes.png", "compare-cost.png", "compare.html"]
 
@@ -65,11 +67,22 @@ def test_lights_replace_the_default_sets(run, macbeth):
     assert fields["filters"] == []
 
 
+def test_written_spectra_are_an_atlas_and_lamps(run, misuse, home, macbeth):
+    words = ("compare", "--atlas", macbeth, "--light", "FL11", "--light", "A", "--write", "RS16")
+    assert run(*words, "-o", "out").stdout == "out: 24 surfaces and 2 lights as RS16\n"
+    assert read_atlas("out/surfaces.csv").names == read_atlas(macbeth).names
+    assert read_lamps("out/lights.csv").names == ("FL11", "A")
+    misuse(*words)
+    misuse(*words, "-o", "out", "--filters")
+
+
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
         (("--light", "F2"), "unknown-illuminant"),
         (("--tolerance", 0), "target-not-positive"),
+        (("--write", "GQ16", "-o", "new"), "no-spectrum"),
+        (("--write", "PS16", "-o", "file"), "output"),
         (("-o", "file"), "output"),
         (("-o", "out"), "file-exists"),
     ],

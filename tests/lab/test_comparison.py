@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from dataclasses import replace
 
 import matplotlib.image
 import numpy as np
@@ -12,9 +13,9 @@ import pytest
 
 from tests.browsing import check_page
 from tests.conftest import MACBETH, ROOT
-from tests.helpers import raises
+from tests.helpers import raises, warns
 from tests.pages import Page
-from uplift.atlas import Atlas, read_atlas
+from uplift.atlas import Atlas, on_grid, read_atlas, write_atlas
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError, UpliftError
 from uplift.lab.comparison.compare import (
@@ -26,14 +27,23 @@ from uplift.lab.comparison.compare import (
     compute_statistics,
     error_statistics,
     make_scene,
+    represent,
     tune_filters,
 )
 from uplift.lab.comparison.pictures import cost_panels, names, render_comparison, write_boxes, write_costs
 from uplift.lab.timing import Spread
+from uplift.lights.lamps import read_lamps
+from uplift.scene.representations import find_representation
 from uplift.scene.representations.composite import enhanced_riemann, sun_composite
 from uplift.scene.representations.filters import COARSE_STRIDE, candidates, filtered_point_samples
 from uplift.scene.representations.models import trigonometric_moments
-from uplift.scene.representations.samples import SampleRepresentation, point_samples, riemann_sums, xyz_weights
+from uplift.scene.representations.samples import (
+    SampleRepresentation,
+    point_samples,
+    riemann_sums,
+    wavelengths,
+    xyz_weights,
+)
 
 
 @pytest.fixture(scope="module")
@@ -94,6 +104,39 @@ def test_findings_of_the_thesis_hold_for_the_colorchecker(found):
     assert all(smooth[f"{family}32"] < 1 for family in ("PS", "RS", "RE"))
     assert spiky["PS16"] > 10 * smooth["PS16"]
     assert max(spiky["CS15"], spiky["RE16"]) < spiky["RS16"] < spiky["PS32"] < spiky["PS16"]
+
+
+@pytest.mark.parametrize("name", ["PS16", "PF32", "RS16", "PS16:gaussian:7:0.5", "TM9", "SG3"])
+def test_written_spectra_have_the_colours_of_the_representation(checker, name, tmp_path):
+    """They are read again as surfaces and lamps."""
+    made, atlas = find_representation(name), read_atlas(MACBETH)
+    scene = replace(checker, sets=checker.sets[:1])
+    for part, file in zip(represent(made, scene, atlas.names), ("surfaces.csv", "lights.csv"), strict=True):
+        write_atlas(part, tmp_path / file)
+    surfaces, lamps = read_atlas(tmp_path / "surfaces.csv"), read_lamps(tmp_path / "lights.csv")
+    assert (surfaces.names, lamps.names) == (atlas.names, scene.sets[0].lights)
+    code = made.encode_surface(scene.surfaces)
+    # A linear code of samples is that of a light too; models are multiplied with a flat one.
+    flat = made.encode_light(np.ones_like(scene.surfaces))
+    expected = made.xyz(code if hasattr(made, "weights") else made.multiply(flat, code))
+    np.testing.assert_allclose(on_grid(surfaces, wavelengths()) @ xyz_weights(), expected, atol=1e-12)
+    powers = on_grid(lamps, wavelengths()) @ xyz_weights()
+    light_xyz = made.xyz(made.encode_light(scene.powers))
+    np.testing.assert_allclose(powers / powers[:, 1:2], light_xyz / light_xyz[:, 1:2], atol=1e-12)
+
+
+def test_negative_lobes_of_a_filter_are_clipped_with_a_warning(checker):
+    with warns("entry-clipped"):
+        _, lights = represent(find_representation("PF16"), checker, read_atlas(MACBETH).names)
+    assert min(entry.values.min() for entry in lights) == 0
+
+
+@pytest.mark.parametrize(
+    "name", ["XX4", "PS", "PS1", "PS999", "RS16:box:3", "PS16:box:4", "PS16:box:3:1", "PS16:cone:3"]
+)
+def test_unknown_representations_raise(name):
+    with raises(OptionError, "option"):
+        find_representation(name)
 
 
 def test_named_lights_form_one_set():

@@ -7,6 +7,7 @@ surfaces are filtered alike."""
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, astuple, dataclass, replace
 from functools import cached_property
@@ -16,12 +17,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas import Atlas, merge, on_grid
+from uplift.atlas import Atlas, Entry, merge, on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.colorimetry.lights import KMENT_LIGHTS
+from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array
-from uplift.common.errors import AtlasError, OptionError, UpliftError
+from uplift.common.errors import AtlasError, OptionError, UpliftError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.timing import Spread, environment, time_laps
 from uplift.scene.representations.filters import (
@@ -216,6 +218,27 @@ def compare(
     results.sort(key=lambda result: (list(sets).index(result.lights), result.statistics.mean))
     facts = {**environment(), "products": f"{len(scene.surfaces)} surfaces under each light"}
     return Comparison(facts, sets, tuple(results))
+
+
+def represent(representation: Representation, scene: Scene, names: Sequence[str]) -> tuple[Atlas, Atlas]:
+    """Return the surfaces of a scene, with ``names``, and its lights as a representation stores them.
+
+    The largest power of a light is 1. Spectra that leave [0, 1], as those of lines after a filter with negative lobes,
+    are clipped with a warning. Raises `UpliftError`.
+    """
+    lights = [light for light_set in scene.sets for light in light_set.lights]
+    powers = representation.light_spectra(representation.encode_light(scene.powers))
+    surfaces = representation.surface_spectra(representation.encode_surface(scene.surfaces))
+
+    def atlas(names: Sequence[str], spectra: Array) -> Atlas:
+        clipped = np.clip(spectra, 0, 1)
+        outside = int((np.abs(spectra - clipped) > SLACK).any(axis=1).sum())
+        if outside:
+            problem = f"{outside} of {len(names)} spectra leave [0, 1] as {representation.name} and are clipped"
+            warnings.warn(UpliftWarning(problem, code="entry-clipped"), stacklevel=3)
+        return Atlas(tuple(Entry(name, wavelengths(), values) for name, values in zip(names, clipped, strict=True)))
+
+    return atlas(names, surfaces), atlas(lights, powers / powers.max(axis=1, keepdims=True))
 
 
 def error_statistics(representation: Representation, scene: Scene, light_set: LightSet) -> Statistics:

@@ -11,8 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
+from uplift.common.text import format_value, parse_float, parse_whole
 from uplift.scene.representations.composite import enhanced_riemann, sun_composite
-from uplift.scene.representations.filters import mitchell_point_samples
+from uplift.scene.representations.filters import EXTENTS, KINDS, Filter, filtered_point_samples, mitchell_point_samples
 from uplift.scene.representations.models import (
     hero_wavelengths,
     linear_model,
@@ -21,10 +23,12 @@ from uplift.scene.representations.models import (
 )
 from uplift.scene.representations.samples import Representation, gauss_samples, point_samples, riemann_sums
 
-__all__ = ["COMPONENTS", "FACTORIES", "Representation", "all_representations"]
+__all__ = ["COMPONENTS", "FACTORIES", "Representation", "all_representations", "find_representation"]
 
 SIZES = (4, 8, 16, 32)
 """Numbers of samples."""
+MAX_SIZE = 401
+"""Largest number of samples of a representation that is given by its name: that of dense spectra."""
 COMPONENTS = (4, 8, 16)
 """Numbers of components of the linear model."""
 
@@ -46,3 +50,25 @@ def all_representations(lights: Array, surfaces: Array) -> tuple[Representation,
     """Every registered representation, and the linear models of a scene of lights (L, 401) and surfaces (E, 401)."""
     registered = (make(size) for make, sizes in FACTORIES.values() for size in sizes)
     return (*registered, *(linear_model(count, lights, surfaces) for count in COMPONENTS))
+
+
+def find_representation(text: str) -> Representation:
+    """Return the representation of a name such as ``PF16``, or of ``PS16:KIND:EXTENT:PARAMETERS``, with a filter.
+
+    The kinds and parameters of filters are those of `filters.KINDS`. Raises `OptionError`.
+    """
+    name, *low_pass = text.split(":")
+    try:
+        make, count = FACTORIES[name[:2]][0], parse_whole(name[2:])
+        if not 2 <= count <= MAX_SIZE:
+            raise ValueError
+        if not low_pass:
+            return make(count)
+        kind, extent, *parameters = low_pass
+        values = tuple(map(parse_float, parameters))
+        if name[:2] != "PS" or int(extent) not in EXTENTS or len(values) != len(KINDS[kind].choices):
+            raise ValueError
+        return filtered_point_samples(count, Filter(kind, int(extent), values))
+    except (KeyError, ValueError) as error:
+        hint = "write for example PF16, RS32 or TM9; a filter as PS16:gaussian:7:0.5, with an odd extent from 3 to 21"
+        raise OptionError(f"unknown representation {format_value(text)}", hint=hint) from error

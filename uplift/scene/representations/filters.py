@@ -134,8 +134,9 @@ def filtered_point_samples(count: int, low_pass: Filter) -> SampleRepresentation
     """Representation by ``count`` samples of spectra that pass through a filter."""
     encoder = np.zeros((len(wavelengths()), count))
     encoder[::TABLE_STRIDE] = resampling_matrix(low_pass, count).T
-    weights = hat_functions(sample_points(count)) @ xyz_weights()
-    return SampleRepresentation(f"PS{count} {low_pass.name}", "point sampling, filtered", encoder, weights)
+    hats = hat_functions(sample_points(count))
+    name = f"PS{count} {low_pass.name}"
+    return SampleRepresentation(name, "point sampling, filtered", encoder, hats @ xyz_weights(), hats)
 
 
 def mitchell_point_samples(count: int) -> SampleRepresentation:

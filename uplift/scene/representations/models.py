@@ -16,7 +16,14 @@ from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import cosine_basis
 from uplift.models.model import Model, evaluate, reflectance
 from uplift.scene.representations.composite import spike_xyz
-from uplift.scene.representations.samples import STEP, TABLE_STRIDE, Representation, wavelengths, xyz_weights
+from uplift.scene.representations.samples import (
+    STEP,
+    TABLE_STRIDE,
+    Representation,
+    hat_functions,
+    wavelengths,
+    xyz_weights,
+)
 
 SHAPE_WEIGHT = 1e-4
 """Weight of the residual of a sigmoid at one wavelength relative to that of the colour."""
@@ -47,6 +54,12 @@ class TabulatedProducts(Representation):
 
     def xyz(self, light: Array) -> Array:
         return light @ spike_xyz()
+
+    def light_spectra(self, code: Array) -> Array:
+        return code @ hat_functions(observer.grid())
+
+    def surface_spectra(self, code: Array) -> Array:
+        return self.light_spectra(reflectance(self.model, code, observer.grid()))
 
 
 class TrigonometricMoments(TabulatedProducts):

@@ -75,6 +75,15 @@ class Representation(ABC):
     def xyz(self, light: Any) -> Array:
         """XYZ (n, 3) of lights, in the units of `xyz_weights`."""
 
+    def light_spectra(self, code: Any) -> Array:
+        """Return the spectral powers (n, 401) that a code of lights stands for. Raises `UpliftError` without any."""
+        problem = f"{self.name} does not determine a spectrum"
+        raise UpliftError(problem, code="no-spectrum", hint="use PS, PF, RS, TM or SG")
+
+    def surface_spectra(self, code: Any) -> Array:
+        """Return the reflectances (n, 401) that a code of surfaces stands for. Raises `UpliftError` without any."""
+        return self.light_spectra(code)
+
     def storage(self, code: Any) -> Array:
         """Numbers stored per spectrum (n,), by default those of a code that is a single array."""
         return np.full(len(code), float(code[0].size))
@@ -84,11 +93,13 @@ class Representation(ABC):
 class SampleRepresentation(Representation):
     """Linear encoding, the same for lights and surfaces.
 
-    ``spectra @ encoder`` (401, n) is the code, and ``code @ weights`` (n, 3) the XYZ of a light.
+    ``spectra @ encoder`` (401, n) is the code, and ``code @ weights`` (n, 3) the XYZ of a light. ``code @ decoder``
+    (n, 401) is a spectrum with this XYZ, if a sample stands for one.
     """
 
     encoder: Array
     weights: Array
+    decoder: Array | None = None
 
     def encode_light(self, power: Array) -> Array:
         return np.asarray(blocked_matmul(power, self.encoder))
@@ -98,6 +109,9 @@ class SampleRepresentation(Representation):
 
     def xyz(self, light: Array) -> Array:
         return light @ self.weights
+
+    def light_spectra(self, code: Array) -> Array:
+        return super().light_spectra(code) if self.decoder is None else code @ self.decoder
 
 
 def sample_points(count: int) -> Array:
@@ -113,8 +127,9 @@ def point_samples(count: int) -> SampleRepresentation:
     the next, as those of table 6.1 do.
     """
     points = sample_points(count)
-    weights = hat_functions(points) @ xyz_weights()
-    return SampleRepresentation(f"PS{count}", "point sampling", interpolation_matrix(points), weights)
+    hats = hat_functions(points)
+    weights = hats @ xyz_weights()
+    return SampleRepresentation(f"PS{count}", "point sampling", interpolation_matrix(points), weights, hats)
 
 
 def riemann_sums(count: int) -> SampleRepresentation:
@@ -125,7 +140,7 @@ def riemann_sums(count: int) -> SampleRepresentation:
     """
     overlaps = cell_overlaps(count)
     means = overlaps / overlaps.sum(axis=1, keepdims=True)
-    return SampleRepresentation(f"RS{count}", "Riemann sums", means.T, overlaps @ xyz_weights())
+    return SampleRepresentation(f"RS{count}", "Riemann sums", means.T, overlaps @ xyz_weights(), overlaps)
 
 
 def cell_overlaps(count: int) -> Array:
