@@ -8,10 +8,12 @@ from typing import Any
 
 import uplift
 from benchmarks import CUBES, DOCS, record
+from uplift.colorimetry import observer
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.progress import Progress
+from uplift.lab.chart.measure import perturb_method, select_methods
 from uplift.lab.study.plots import plot_locality, plot_map
-from uplift.lab.study.sensitivity import COLOURS, MOVED_DELTA_E, NOISE, study_sensitivity
+from uplift.lab.study.sensitivity import COLOURS, MOVED_DELTA_E, NOISE, perturb, study_sensitivity
 from uplift.lab.study.stability import NO_ATLAS, SYNTHETIC_ATLASES, DesignSpace, study_stability
 from uplift.pipeline.rebuild import recorded_atlas
 
@@ -20,6 +22,7 @@ PLAIN, CONSTRAINED = "moments-16", "moments-16-macbeth"
 STORED = (PLAIN, CONSTRAINED, "sigmoid-16", "sigmoid-16-macbeth", "moments-8", "sigmoid-8")
 """Stored cubes; the page lists the first two, and the atlas of the second one is changed."""
 ENTRIES = 24
+PUBLISHED = ("otsu2018", "mallett2019", "smits1999")
 KINDS = {
     f"noise of {NOISE:g} on all entries": "noise",
     "one entry reversed in wavelength": " wrong",
@@ -32,6 +35,7 @@ def main() -> None:
     """Measure, draw and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     FOLDER.mkdir(exist_ok=True)
+    published()
     cubes = {name: cube_sensitivity(name) for name in STORED}
     record(
         "stability",
@@ -45,6 +49,14 @@ def main() -> None:
         cubes=cubes,
         atlas_changes=[summary(title, part, cubes[CONSTRAINED]["changes"]) for title, part in KINDS.items()],
     )
+
+
+def published() -> None:
+    """Measure how the packaged cube and published methods answer moved queries, and store it."""
+    light = observer.light(NARROW_BAND_LIGHT)
+    ours = [move | {"mode": "packaged cube"} for move in perturb(uplift.load(), light) if move["mode"] == "spectra"]
+    others = [move for method in select_methods(PUBLISHED) for move in perturb_method(method, light)]
+    record("stability", "stability-published", light=NARROW_BAND_LIGHT, queries=COLOURS, moves=ours + others)
 
 
 def failure_map() -> list[dict[str, Any]]:

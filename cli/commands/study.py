@@ -233,11 +233,24 @@ def stability(
 @click.argument("cube", metavar="[CUBE]", required=False)
 @options.atlas_folders
 @click.option("--entries", type=options.Whole(0), default=24, help="Number of atlas entries to change, one at a time.")
+@click.option(
+    "--method",
+    "methods",
+    multiple=True,
+    metavar="NAME",
+    help="Published method whose queries are perturbed too, such as otsu2018 or mallett2019; repeatable.",
+)
 @output_option
 @options.output_format("table", "json")
 @options.force
 def sensitivity(
-    cube: str | None, folders: tuple[str, ...], entries: int, output: str | None, style: str, force: bool
+    cube: str | None,
+    folders: tuple[str, ...],
+    entries: int,
+    methods: tuple[str, ...],
+    output: str | None,
+    style: str,
+    force: bool,
 ) -> None:
     """Perturb queried colours and the measurements of a cube, and report the change of its spectra.
 
@@ -245,20 +258,27 @@ def sensitivity(
     atlas, with one entry reversed, and with one entry left out. CUBE defaults to the packaged cube, which has no atlas.
     ΔE00 are under FL11 and, for colours, under the illuminant of the cube.
 
+    jump is the change that remains when steps are halved repeatedly: rounding, unless answers are discontinuous, as
+    those of Otsu 2018 are. --method adds such published methods, in sRGB.
+
     --output writes, as PNG, the distance to which an entry of the atlas affects the cube.
 
     \b
     Examples:
       uplift study sensitivity
       uplift study sensitivity macbeth-32.uplift --output out --force
+      uplift study sensitivity --method otsu2018
       uplift study sensitivity --entries 4 --format json
     """
     enable_jit_cache()
+    from uplift.colorimetry import observer
+    from uplift.colorimetry.lights import NARROW_BAND_LIGHT
+    from uplift.lab.chart.measure import perturb_method, select_methods
     from uplift.lab.study.sensitivity import study_sensitivity
     from uplift.lookup import load
     from uplift.pipeline.rebuild import recorded_atlas
 
-    loaded = load(cube)
+    loaded, others = load(cube), select_methods(methods) if methods else ()
     atlas = recorded_atlas(loaded.data, cube, folders) if cube is not None and entries else None
     if output is not None and atlas is None:
         raise click.UsageError("--output draws the effect of entries: it needs a CUBE with an atlas, and --entries.")
@@ -269,6 +289,8 @@ def sensitivity(
         from uplift.lab.study.plots import plot_locality
 
         _write_plots(output, {SENSITIVITY_PLOTS[0]: partial(plot_locality, changes)}, force=force)
+    for method in others:
+        moves += perturb_method(method, observer.light(NARROW_BAND_LIGHT))
     record = {"moves": moves, "changes": [change.record() for change in changes]}
     _print(style, record, (), moves)
     if style == "table" and changes:

@@ -73,6 +73,7 @@ def test_default_atlases_are_those_of_the_working_folder_or_the_shipped_ones(row
         (("moments", "--atlas", "tcs.txt", "-o", "file"), "output"),
         (("held-out", "--atlas", "two.csv", "--dim", 4), "too-few-entries"),
         (("stability", *SETTINGS, "--atlases", "none,moon"), "unknown-atlas"),
+        (("sensitivity", "--method", "otsu"), "unknown-method"),
     ],
 )
 def test_invalid_input_is_an_error(refuse, home, tcs, options, code):
@@ -121,4 +122,5 @@ def test_sensitivity_of_a_stored_cube(run, home, cubes):
 
 def test_sensitivity_of_cubes_without_an_atlas(run, misuse):
     assert "left out" not in run("study", "sensitivity").stdout
+    assert "Smits 1999" in run("study", "sensitivity", "--method", "smits1999").stdout
     assert "needs a CUBE with an atlas" in misuse("study", "sensitivity", "-o", "out")

@@ -7,9 +7,12 @@ import pytest
 
 from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.lab.chart.measure import perturb_method, select_methods
 from uplift.lab.study.sensitivity import (
     CONTINUOUS_MODES,
     Change,
+    _largest_jump,
     changed_atlases,
     compare,
     perturb,
@@ -29,6 +32,31 @@ def test_answers_change_in_proportion_to_the_query(small_cube):
         assert 0 < rounding["rms_most"] < 1e-5
         assert 0 < rounding["light_most"] < 1e-2
         assert wide["rms_mean"] < wide["rms_most"] < wide["largest"]
+
+
+def test_jumps_are_found_and_only_those():
+    """Answers that jump by hand, at a red of 0.5, and continuous ones as steep as a step of a code allows."""
+    first, second = np.full((9, 3), 0.495), np.full((9, 3), 0.505)
+    first[:, 0] += np.linspace(0, 0.004, 9)
+    dark, bright = np.full(81, 0.2), np.linspace(0.2, 0.5, 81)
+
+    def sudden(rgb):
+        return np.where(rgb[:, :1] < 0.5, dark, bright)
+
+    def steep(rgb):
+        return dark + np.clip((rgb[:, :1] - 0.498) / 0.004, 0, 1) * (bright - dark)
+
+    expected = delta_e_spectra(LIGHT, dark, bright)
+    assert _largest_jump(sudden, LIGHT, first, second) == pytest.approx(float(expected))
+    assert _largest_jump(steep, LIGHT, first, second) < 1e-3 * expected
+
+
+def test_otsu_2018_jumps_and_others_do_not(small_cube):
+    mallett, otsu = (perturb_method(method, LIGHT, 300) for method in select_methods(("otsu2018", "mallett2019")))
+    assert otsu[0]["mode"] == "Otsu 2018"
+    assert otsu[0]["light_most"] >= otsu[0]["jump"] > 2
+    assert max(move["jump"] for move in (*mallett, *perturb(small_cube, LIGHT, 300))) < 2e-3
+    assert mallett[0]["own_mean"] == pytest.approx(4 * mallett[1]["own_mean"], rel=0.05)
 
 
 def test_changed_atlases_and_their_effect(repository):

@@ -9,11 +9,15 @@ from dataclasses import fields
 from fnmatch import fnmatchcase
 from functools import partial
 from itertools import cycle
+from typing import Any
 
 import numpy as np
 
+from uplift.atlas import read_atlas
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.lights import CHART_LIGHTS
+from uplift.colorimetry.sensor import Light
+from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Values
 from uplift.common.errors import OptionError
 from uplift.common.processes import ChildError, call_in_child
@@ -26,10 +30,12 @@ from uplift.lab.chart.method import (
     NotInstalledError,
     PreparedMethod,
     Task,
+    make_task,
     stopwatch,
 )
 from uplift.lab.chart.table import REFERENCE, Chart, MethodResult, State
 from uplift.lab.study.held_out import spectrum_errors
+from uplift.lab.study.sensitivity import COLOURS, perturb_answers
 from uplift.lab.timing import Spread, environment, time_laps
 
 METHODS = (*published.METHODS, *mitsuba3.METHODS, *cubes.METHODS)
@@ -50,6 +56,21 @@ def select_methods(patterns: Sequence[str] = ()) -> list[Method]:
                 hint="names are 'mallett2019', 'moments9-32-spectra' and others; '*' matches any characters",
             )
     return [method for method in METHODS if any(fnmatchcase(method.method, pattern) for pattern in patterns or "*")]
+
+
+def perturb_method(method: Method, light: Light, count: int = COLOURS) -> list[dict[str, Any]]:
+    """Perturb queries of a method, in sRGB under D65, as `uplift.lab.study.sensitivity`. Raises `OptionError`."""
+    task = make_task({"macbeth": read_atlas("macbeth")})
+    grid, lights = task.sensor.wavelengths, (light, task.sensor.light)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # colour-science reports how it aligns wavelengths
+        try:
+            uplift = method.prepare(task).uplift
+        except NotInstalledError as error:
+            raise OptionError(f"{method.method} {error}", code="method-not-installed") from error
+        return perturb_answers(
+            method.title, lambda rgb: uplift(rgb, grid), lambda codes: decode(codes / 255), lights, count
+        )
 
 
 GROWTH = 10

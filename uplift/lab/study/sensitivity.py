@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -34,9 +35,13 @@ ROUNDING, ROUNDING_STEP = "1e-7", 1e-7
 """Rounding of a float32, in linear RGB."""
 NOISE, NOISE_DRAWS = 0.002, 3
 """Repeatability of a spectrophotometer: standard deviation of a reflectance; and the number of atlases with noise."""
+HALVINGS, HALVED = 16, 16
+"""Halvings of a step, after which that of an 8-bit code is rounding, and number of colours whose steps are halved."""
 MOVED_DELTA_E = 0.5
 """ΔE00 above which a node counts as moved: half of a just noticeable difference."""
 Record = dict[str, Any]
+Answer = Callable[[Array], Array]
+"""From linear RGB (n, 3) to reflectances (n, N), or from 8-bit codes to linear RGB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,29 +108,55 @@ def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Record]:
     Every channel moves up or down, at random, by the full step. ``rms`` is the change of the reflectance over
     wavelength, ``largest`` that at any wavelength; ``light`` and ``own`` are ΔE00 under a light and under the
     illuminant of the cube, where the change of the query causes it. ``_mean`` and ``_most`` are over the colours.
+    ``jump`` is what the first of them is at most if steps are halved: 0 but for rounding, unless answers jump.
     """
+    lights = light, cube.data.sensor.light
+    moves = (
+        perturb_answers(mode, partial(cube.reflectance, mode=mode), cube.decode, lights, count)
+        for mode in CONTINUOUS_MODES
+    )
+    return [move for rows in moves for move in rows]
+
+
+def perturb_answers(
+    mode: str, answer: Answer, decode: Answer, lights: tuple[Light, Light], count: int = COLOURS
+) -> list[Record]:
+    """Perturb the queries of a function, as `perturb` does; of two lights the second one defines its RGB."""
     rng = np.random.default_rng(5)
     codes = rng.uniform(1, 254, (count, 3))
     signs = rng.choice([-1.0, 1.0], (count, 3))
-    rgb = cube.decode(codes)
-    moved = {name: cube.decode(codes + step * signs) for name, step in CODE_STEPS.items()}
+    rgb = decode(codes)
+    moved = {name: decode(codes + step * signs) for name, step in CODE_STEPS.items()}
     moved[ROUNDING] = np.clip(rgb + ROUNDING_STEP * signs, 0, 1)
-    found = []
-    for mode in CONTINUOUS_MODES:
-        before = cube.reflectance(rgb, mode=mode)
-        for step, colours in moved.items():
-            after = cube.reflectance(colours, mode=mode)
-            found.append(
-                {
-                    "mode": mode,
-                    "step": step,
-                    **_mean_and_most("rms", _rms(after - before)),
-                    "largest": float(np.abs(after - before).max()),
-                    **_mean_and_most("light", delta_e_spectra(light, before, after)),
-                    **_mean_and_most("own", delta_e_spectra(cube.data.sensor.light, before, after)),
-                }
-            )
+    before, found = answer(rgb), []
+    for step, colours in moved.items():
+        after = answer(colours)
+        delta_e = delta_e_spectra(lights[0], before, after)
+        largest = np.argsort(delta_e)[-HALVED:]
+        found.append(
+            {
+                "mode": mode,
+                "step": step,
+                **_mean_and_most("rms", _rms(after - before)),
+                "largest": float(np.abs(after - before).max()),
+                **_mean_and_most("light", delta_e),
+                **_mean_and_most("own", delta_e_spectra(lights[1], before, after)),
+                "jump": _largest_jump(answer, lights[0], rgb[largest], colours[largest]),
+            }
+        )
     return found
+
+
+def _largest_jump(answer: Answer, light: Light, first: Array, second: Array) -> float:
+    """Halve the steps between colours (n, 3), keep the halves with the larger ΔE00, and return the largest one left."""
+    before, after = answer(first), answer(second)
+    for _ in range(HALVINGS):
+        middle = (first + second) / 2
+        between = answer(middle)
+        is_first = (delta_e_spectra(light, before, between) > delta_e_spectra(light, between, after))[:, None]
+        first, second = np.where(is_first, first, middle), np.where(is_first, middle, second)
+        before, after = np.where(is_first, before, between), np.where(is_first, between, after)
+    return float(delta_e_spectra(light, before, after).max())
 
 
 def changed_atlases(entries: Sequence[Entry], names: Sequence[str]) -> Iterator[tuple[str, str, list[Entry]]]:
