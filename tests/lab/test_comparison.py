@@ -132,7 +132,20 @@ def test_negative_lobes_of_a_filter_are_clipped_with_a_warning(checker):
 
 
 @pytest.mark.parametrize(
-    "name", ["XX4", "PS", "PS1", "PS999", "RS16:box:3", "PS16:box:4", "PS16:box:3:1", "PS16:cone:3"]
+    "name",
+    [
+        "XX4",
+        "SG5",
+        "TM18",
+        "PS16:gaussian:7:nan",
+        "PS",
+        "PS1",
+        "PS999",
+        "RS16:box:3",
+        "PS16:box:4",
+        "PS16:box:3:1",
+        "PS16:cone:3",
+    ],
 )
 def test_unknown_representations_raise(name):
     with raises(OptionError, "option"):

@@ -8,6 +8,7 @@ sections and equations in this package refer to it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 
 from uplift.common.arrays import Array
@@ -59,14 +60,15 @@ def find_representation(text: str) -> Representation:
     """
     name, *low_pass = text.split(":")
     try:
-        make, count = FACTORIES[name[:2]][0], parse_whole(name[2:])
-        if not 2 <= count <= MAX_SIZE:
+        (make, sizes), count = FACTORIES[name[:2]], parse_whole(name[2:])
+        if not 2 <= count <= MAX_SIZE or (len(sizes) == 1 and count not in sizes):
             raise ValueError
         if not low_pass:
             return make(count)
         kind, extent, *parameters = low_pass
         values = tuple(map(parse_float, parameters))
-        if name[:2] != "PS" or int(extent) not in EXTENTS or len(values) != len(KINDS[kind].choices):
+        is_filter = parse_whole(extent) in EXTENTS and len(values) == len(KINDS[kind].choices)
+        if name[:2] != "PS" or not is_filter or not all(map(math.isfinite, values)):
             raise ValueError
         return filtered_point_samples(count, Filter(kind, int(extent), values))
     except (KeyError, ValueError) as error:
