@@ -189,7 +189,8 @@ def steps_per_node(build: Callable[[], Cube]) -> float:
         return solution
 
     with mock.patch.object(Problem, "solve", counted):
-        return float(sum(steps) / build().data.lattice.size)
+        size = build().data.lattice.size
+    return float(sum(steps) / size)
 
 
 def node_spectra(cube: Cube) -> Array:
