@@ -73,6 +73,14 @@ def macbeth_cube() -> Cube:
 
 
 @pytest.fixture(scope="session")
+def cyan_cube() -> Cube:
+    """The ColorChecker at dim 8, built once per run: cyan lies outside its space."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uplift.UpliftWarning)
+        return uplift.build(MACBETH, dim=8)
+
+
+@pytest.fixture(scope="session")
 def small_cube() -> Cube:
     """The ColorChecker at dim 8 with 9 moment coefficients, as stored."""
     return uplift.load(ROOT / "cubes" / "moments-8-macbeth.uplift")

@@ -33,6 +33,8 @@ def print_facts(name: str, fields: dict[str, Any], style: str) -> None:
         print_json(fields)
         return
     provenance = fields.pop("provenance")
+    if fields.get("outside"):  # the same names
+        provenance = {key: value for key, value in provenance.items() if key != "left_out"}
     settings = {f"option {key}": value for key, value in provenance.pop("options", {}).items()}
     looks = {f"look {each['name'].removeprefix('look ')}": _look(each) for each in provenance.pop("looks", ())}
     say(name)

@@ -52,10 +52,11 @@ def test_tool_writes_the_same_bytes(tmp_path):
         assert (tmp_path / file).read_bytes() == (ATLASES / file).read_bytes()
 
 
-def test_names_of_missing_files_read_the_shipped_atlas(empty_folder):
+@pytest.mark.parametrize("name", ["macbeth.txt", "./macbeth.txt", "Macbeth.txt", "MACBETH"])
+def test_names_of_missing_files_read_the_shipped_atlas(empty_folder, name):
     with warns("shipped-atlas") as caught:
-        atlas = read_atlas("macbeth.txt", "pmc")
-    assert caught[0].where == "macbeth.txt"
+        atlas = read_atlas(name, "pmc")
+    assert caught[0].where == name
     assert atlas.sources[0] == read_atlas(ATLASES / "macbeth.txt").sources[0]
     assert [source.name for source in atlas.sources] == ["macbeth.txt", "pmc.txt"]
 
@@ -66,7 +67,7 @@ def test_existing_file_takes_precedence(empty_folder, name):
     assert read_atlas(name).names == ("white",)
 
 
-@pytest.mark.parametrize("path", ["macbet", "Macbeth.txt", "atlases/macbeth.txt"])
+@pytest.mark.parametrize("path", ["macbet", "Macbet.txt", "atlases/macbeth.txt", "atlases/Macbeth.txt"])
 def test_hint_names_the_nearest_shipped_atlas(empty_folder, path):
     with raises(AtlasError, "file-not-found") as caught:
         read_atlas(path)

@@ -10,6 +10,7 @@ import pytest
 from safetensors.numpy import load_file, save_file
 
 from tests.cube.cube_files import forge, header_length, with_header
+from tests.cube.hand_made import with_outside
 from tests.cube.test_round_trip import assert_same
 from tests.helpers import raises
 from uplift.common.errors import CubeFileError, OutputError
@@ -27,7 +28,7 @@ FORMAT_3 = Path(__file__).parent / "format-3.uplift"
 
 @pytest.fixture
 def data(small_cube):
-    return small_cube.data
+    return with_outside(small_cube.data)
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from tests.cube.hand_made import hand_made
+from tests.cube.hand_made import hand_made, with_outside
 from uplift.cube import contents, digest, read, write
 from uplift.lattice import PointTable
 
@@ -75,4 +75,6 @@ def test_cubes_are_read_back_and_written_again_unchanged(data):
 
 def test_built_cubes_are_read_back_and_written_again_unchanged(small_cube, small_sigmoid_cube):
     check_round_trip(small_cube.data)
+    check_round_trip(with_outside(small_cube.data))
+    check_round_trip(with_outside(hand_made()))
     check_round_trip(small_sigmoid_cube.data)

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import colour
 import numpy as np
 import pytest
 
 import uplift
+from tests.conftest import MACBETH
 from tests.helpers import raises
+from uplift.atlas import on_grid, read_atlas
+from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.observer import light
 from uplift.colorimetry.solid import solid
 from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import Status
-from uplift.lookup import MODES, query, query_xyz
+from uplift.lookup import MODES, Cube, query, query_xyz
 from uplift.lookup.blocks import BLOCK
 
 D65_WAVELENGTHS = colour.SpectralShape(380, 780, 5)
@@ -109,6 +115,39 @@ def test_colours_in_the_space_are_those_of_the_cube():
     by_xyz = list(query_xyz(cube, cube.data.sensor.xyz(rgb), [450, 650]))
     for one, other in zip(by_xyz, query(cube, rgb, [450, 650]), strict=True):
         np.testing.assert_allclose(one.reflectance, other.reflectance, rtol=0, atol=1e-9)
+
+
+def without_outside(cube):
+    return Cube(replace(cube.data, atlas=replace(cube.data.atlas, outside=None)))
+
+
+@pytest.mark.parametrize("digits", [4, 16])
+def test_an_entry_outside_the_space_has_its_spectrum_and_its_colour(cyan_cube, digits):
+    atlas, table = read_atlas(MACBETH), cyan_cube.data.atlas.outside
+    measured = on_grid(atlas, cyan_cube.wavelengths)[[atlas.names.index("cyan")]]
+    colour = xyz(cyan_cube, measured[0]).round(digits)
+    (answer,) = query_xyz(cyan_cube, [colour])
+    assert (answer.entry, answer.standard_error, answer.error_bound) == ("cyan", *table.error, *table.error)
+    np.testing.assert_allclose(xyz(cyan_cube, answer.reflectance), colour, rtol=0, atol=1e-7)
+    for name in (cyan_cube.data.error_illuminant, "FL11"):
+        stored = cyan_cube.data.outside_spectra.reflectance(np.array([0]), cyan_cube.wavelengths)
+        own, found = (delta_e_spectra(light(name), each, measured)[0] for each in (stored, answer.reflectance[None]))
+        assert found == pytest.approx(own, abs=1e-5 if digits == 16 else 0.1)
+    assert without_outside(cyan_cube).data.outside_spectra is None
+
+
+def test_answers_change_only_in_the_box_of_an_entry_outside_and_continuously(cyan_cube):
+    sensor, boxes = cyan_cube.data.sensor, cyan_cube.data.outside_boxes
+    assert boxes.rgb[0, 0] + boxes.half_width[0] <= 0
+    for axis in np.eye(3):
+        for share, is_same in ((0.5, False), (1 - 1e-9, False), (1 + 1e-9, True), (1.5, True)):
+            at = sensor.xyz(boxes.rgb - share * boxes.half_width[0] * axis)
+            (found,), (other,) = (list(query_xyz(cube, at)) for cube in (cyan_cube, without_outside(cyan_cube)))
+            assert (found.entry, found.standard_error) == (None, None)
+            assert np.abs(found.round_trip - found.rgb).max() < 1e-6
+            change = np.abs(found.reflectance - other.reflectance).max()
+            assert change == 0 if is_same else change < 1e-6 or share == 0.5
+            assert share > 0.5 or change > 0.01
 
 
 def test_other_colours_raise():

@@ -18,7 +18,7 @@ from tests.helpers import raises, warns
 from uplift.atlas import Atlas, Entry, on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
-from uplift.common.errors import OptionError, UnknownNameError, UpliftWarning
+from uplift.common.errors import AtlasError, OptionError, UnknownNameError, UpliftWarning
 from uplift.cube import digest
 from uplift.lattice import Status
 from uplift.pipeline.options import Options
@@ -82,9 +82,17 @@ def test_entries_out_of_gamut_are_warned_about_and_recorded():
     with warns("entry-out-of-gamut") as caught:
         cube = uplift.build(MACBETH, dim=8)
     assert caught[0].entry == "cyan"
+    assert "Display P3" in caught[0].hint
     assert "cyan" not in cube.data.atlas.names
+    assert cube.data.atlas.outside.names == ("cyan",)
     assert cube.data.provenance["left_out"] == ["cyan"]
     assert cube.data.provenance["atlases"][0]["name"] == "macbeth.txt"
+
+
+def test_an_atlas_outside_the_space_is_refused():
+    with raises(AtlasError, "atlas-out-of-gamut") as caught:
+        uplift.build(Atlas((read_atlas(MACBETH)["cyan"],)), dim=4)
+    assert "Display P3" in caught.value.hint
 
 
 def greys(**levels):

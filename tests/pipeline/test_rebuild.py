@@ -51,6 +51,12 @@ def rebuild_error(code, cube, path, folders=()):
     return caught.value
 
 
+def test_entries_outside_the_space_are_rebuilt(cyan_cube, repository, home):
+    again = rebuild(cyan_cube, home / "cube.uplift", [repository / "atlases"])
+    assert digest(again.data) == digest(cyan_cube.data)
+    assert again.data.atlas.outside.names == ("cyan",)
+
+
 def test_a_stored_cube_equals_its_rebuild(small_cube, repository, home):
     path = repository / "cubes" / "moments-8-macbeth.uplift"
     rounds = []

@@ -125,3 +125,17 @@ def test_json_holds_the_numbers_of_the_assessment(judged):
     first, entries = found["entries"][0], judged.entries
     assert list(first["delta_e_2000_lattice"].values()) == entries.delta_e_lattice[0].tolist()
     assert (first["reach"], first["standard_error"]) == (entries.half_width[0], entries.predicted[0])
+
+
+def test_entries_outside_the_space_are_among_the_entries(cyan_cube, macbeth):
+    found = assess(cyan_cube, "cube.uplift", 1, macbeth, ("D65", "A"))
+    assert (len(found.entries.names), found.out_of_gamut, found.failures.left_out) == (24, (), ())
+    (facts,) = [entry for entry in to_json(found)["entries"] if entry["name"] == "cyan"]
+    assert facts["delta_e_2000"]["D65"] < 1e-6
+    assert facts["delta_e_2000"]["A"] == pytest.approx(cyan_cube.data.atlas.outside.error[0], abs=1e-4)
+    assert facts["delta_e_2000_lattice"]["A"] > 1
+    assert 0 < facts["reach"] < 1
+    assert "cyan" not in found.crowding.entries.names
+    read = Page(render_report(found, worst=24))
+    assert "Outside sRGB, and so queried as XYZ" in read.text
+    assert not re.search(r"\b(nan|inf)\b", read.text)

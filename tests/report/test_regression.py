@@ -123,3 +123,20 @@ def test_nodes_may_differ_by_rounding_only(data):
         with raises(CubeFileError, "lattice-mismatch") as caught:
             compare_rebuilt(PATH, data, other)
         assert caught.value.path == PATH
+
+
+def test_entries_outside_the_space_are_compared(cyan_cube, small_cube):
+    data = cyan_cube.data
+    outside, spectra = data.atlas.outside, data.atlas.outside.spectra
+
+    def changed(**changes):
+        atlas = dataclasses.replace(data.atlas, outside=dataclasses.replace(outside, **changes))
+        return dataclasses.replace(data, atlas=atlas)
+
+    assert compare_rebuilt(PATH, data, changed()).failures == ()
+    other = dataclasses.replace(spectra, coefficients=0.99 * spectra.coefficients)
+    assert [change.name for change in compare_rebuilt(PATH, data, changed(spectra=other)).entries] == ["cyan"]
+    assert compare_rebuilt(PATH, small_cube.data, data).entries == ()  # an earlier version stored its name only
+    renamed = dataclasses.replace(changed(names=("turquoise",)), provenance={"left_out": ["turquoise"]})
+    found = [(change.name, change.change) for change in compare_rebuilt(PATH, data, renamed).entries]
+    assert found == [("cyan", "removed"), ("turquoise", "added")]

@@ -37,8 +37,8 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
     Parameters
     ----------
     *paths : path-like
-        Files, in the order of their entries. Where a file does not exist, a shipped atlas of that name is read, with or
-        without the suffix ``.txt``; see `shipped_atlases`.
+        Files, in the order of their entries. Where a file does not exist, a shipped atlas of that name is read, in any
+        case, with or without the suffix ``.txt``; see `shipped_atlases`.
     measured : {"auto", "percent", "fraction"}
         Scale of the values. ``"auto"`` takes the scale that a file states, or else decides by its values. Measurement
         archives always state their scale.
@@ -230,21 +230,21 @@ def _shipped_paths() -> dict[str, Path]:
 def find_atlas_file(path: StrPath, folder: StrPath = "") -> StrPath:
     """Return the file that a path, relative to ``folder``, or the name of a shipped atlas stands for.
 
-    An existing file takes precedence. Otherwise a path without a folder may name a shipped atlas, with or without the
-    suffix. Warnings refer to the caller of the caller.
+    An existing file takes precedence. Otherwise a path without another folder may name a shipped atlas, in any case,
+    with or without the suffix. Warnings refer to the caller of the caller.
     """
     name, paths = os.fspath(path), _shipped_paths()
     file = os.path.join(folder, path)
     if os.path.lexists(file) and not os.path.isdir(file):
         return file
     # No file: the name of a shipped atlas, or else one that is spelt alike.
-    stem = name.removesuffix(".txt")
+    stem = os.path.normpath(name).lower().removesuffix(".txt")
     if stem in paths:
         if stem != name:
             problem = f"the file does not exist; the shipped atlas '{stem}' is used"
             warnings.warn(UpliftWarning(problem, code="shipped-atlas", path=path), stacklevel=3)
         return paths[stem]
-    near = difflib.get_close_matches(Path(name).stem, paths, n=1, cutoff=0.7)
+    near = difflib.get_close_matches(Path(name).stem.lower(), paths, n=1, cutoff=0.7)
     if near and not os.path.lexists(file):
         problem = "cannot be read: no such file or directory"
         hint = f"did you mean the shipped atlas '{near[0]}'?"

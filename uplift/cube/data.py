@@ -14,7 +14,7 @@ from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.lattice import Lattice, PointTable
-from uplift.lattice.entry_boxes import EntryBoxes
+from uplift.lattice.entry_boxes import EntryBoxes, OutsideBoxes
 from uplift.models import evaluate
 from uplift.models.model import Model
 
@@ -78,11 +78,17 @@ class AtlasTable:
     """None for a small atlas, and for files of earlier versions."""
     looks: int = 0
     """Number of looks: chosen spectra, of which no measurement is known."""
+    outside: AtlasTable | None = None
+    """The O entries outside the RGB space, which answer XYZ and textures; their boxes have steps of 1 / (dim − 1)."""
 
     @property
     def measured_count(self) -> int:
         """Number M of the entries that were measured, which are the first ones."""
         return len(self.names) - self.looks
+
+    def spectra_in(self, model: Model) -> EntrySpectra:
+        """Return the spectra that answer the colours of the entries; ``model`` is that of the nodes."""
+        return self.spectra or EntrySpectra(model, self.coefficients)
 
     def __repr__(self) -> str:
         return f"AtlasTable({len(self.names)} entries)"
@@ -115,7 +121,12 @@ class CubeData:
     @cached_property
     def entry_spectra(self) -> EntrySpectra:
         """The spectra that answer the colours of the entries, in the model of the nodes or with more coefficients."""
-        return self.atlas.spectra or EntrySpectra(self.model, self.atlas.coefficients)
+        return self.atlas.spectra_in(self.model)
+
+    @cached_property
+    def outside_spectra(self) -> EntrySpectra | None:
+        """The spectra of the entries outside the RGB space; None without any."""
+        return None if self.atlas.outside is None else self.atlas.outside.spectra_in(self.model)
 
     @cached_property
     def entry_lab(self) -> Array:
@@ -138,6 +149,14 @@ class CubeData:
     def entry_boxes(self) -> EntryBoxes:
         """Boxes around the atlas entries."""
         return EntryBoxes(self.lattice, self.atlas.rgb, self.atlas.half_width)
+
+    @cached_property
+    def outside_boxes(self) -> OutsideBoxes:
+        """Boxes around the atlas entries outside the RGB space."""
+        outside = self.atlas.outside
+        if outside is None:
+            return OutsideBoxes(np.zeros((0, 3)), np.zeros(0))
+        return OutsideBoxes(outside.rgb, outside.half_width / (self.lattice.dim - 1))
 
     @cached_property
     def complete_cells(self) -> Mask | None:

@@ -30,7 +30,7 @@ FORMAT = "uplift cube"
 VERSION = 4
 KIND = Kind(FORMAT, (3, VERSION), "cube", "not-a-cube")
 """Versions that are read. The entries of version 3 have as many coefficients as the nodes."""
-FEATURES = ("debug", "errors", "left-out", "camera", "sparse")
+FEATURES = ("debug", "errors", "left-out", "camera", "sparse", "outside")
 """Optional parts of a file, in the order in which the metadata list them."""
 MAX_POINTS = 1 << 27
 """Points of the largest lattice of a sparse file, as a small file must not claim all memory."""
@@ -60,17 +60,24 @@ SENSOR = {
     "decoding": Stored("256", low=0),
     "sensitivities": Stored("N 3", low=0, feature="camera"),
 }
-ENTRY_COEFFICIENTS = "atlas.entry_coefficients"
+ENTRY_COEFFICIENTS = "entry_coefficients"
+TABLE = {
+    "rgb": Stored("E 3", low=0, high=1),
+    "coefficients": Stored("E C"),
+    "reach": Stored("E", low=0, high=1),
+    "error": Stored("E", low=0),
+    ENTRY_COEFFICIENTS: Stored("E K"),
+}
+"""Arrays of an `AtlasTable`: entries in the RGB space, and those outside it, whose colours are not in [0, 1]."""
+OUTSIDE = {name: stored._replace(shape=f"O{stored.shape[1:]}", feature="outside") for name, stored in TABLE.items()}
+OUTSIDE["rgb"] = Stored("O 3", feature="outside")
 ARRAYS = {
     "nodes": Stored("D", low=0, high=1),
     "points": Stored("n", ("uint32",), feature="sparse"),
     **POINTS,
     **{f"sensor.{name}": stored for name, stored in SENSOR.items()},
-    "atlas.rgb": Stored("E 3", low=0, high=1),
-    "atlas.coefficients": Stored("E C"),
-    "atlas.reach": Stored("E", low=0, high=1),
-    "atlas.error": Stored("E", low=0),
-    ENTRY_COEFFICIENTS: Stored("E K"),
+    **{f"atlas.{name}": stored for name, stored in TABLE.items()},
+    **{f"outside.{name}": stored for name, stored in OUTSIDE.items()},
     "atlas.measured": Stored("M N", SINGLE, 0, 1, feature="left-out"),
     "atlas.left_out": Stored("M N", SINGLE, 0, 1, feature="left-out"),
 }
@@ -139,16 +146,12 @@ def digest(data: CubeData) -> str:
 def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
     """Return the arrays by their names in the file, and the metadata without the digest."""
     atlas = data.atlas
-    spectra = None if atlas.spectra is None else atlas.spectra.coefficients
     measured, answered = (None, None) if atlas.left_out is None else (atlas.left_out.measured, atlas.left_out.answered)
     arrays = {
         "nodes": data.lattice.nodes,
         **{f"sensor.{name}": getattr(data.sensor, name) for name in SENSOR},
-        "atlas.rgb": atlas.rgb,
-        "atlas.coefficients": atlas.coefficients,
-        "atlas.reach": atlas.half_width,
-        "atlas.error": atlas.error,
-        ENTRY_COEFFICIENTS: spectra,
+        **_table_arrays(atlas, "atlas"),
+        **({} if atlas.outside is None else _table_arrays(atlas.outside, "outside")),
         "atlas.measured": measured,
         "atlas.left_out": answered,
         **{name: getattr(data.points, name) for name in POINTS},
@@ -181,6 +184,12 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
     return tensors, metadata
 
 
+def _table_arrays(table: AtlasTable, prefix: str) -> dict[str, Any]:
+    spectra = None if table.spectra is None else table.spectra.coefficients
+    arrays = table.rgb, table.coefficients, table.half_width, table.error, spectra
+    return {f"{prefix}.{name}": array for name, array in zip(TABLE, arrays, strict=True)}
+
+
 def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
     """Make the cube of a file after a check of types and ranges, of metadata first, then of arrays."""
     if metadata["version"] < VERSION:
@@ -188,15 +197,23 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
     check_metadata(metadata, METADATA)
     model, entry_model = (from_description(metadata[key]) for key in ("model", "entry_model"))
     names, looks = tuple(metadata["entries"]), len(metadata["provenance"].get("looks", ()))
+    outside = tuple(metadata["provenance"].get("left_out", ()))
     schema = {name: stored for name, stored in ARRAYS.items() if stored.feature in ("", *metadata["features"])}
     if entry_model == model:
-        del schema[ENTRY_COEFFICIENTS]
-    sizes = {"C": model.count, "K": entry_model.count, "E": len(names), "M": len(names) - looks}
+        schema = {name: stored for name, stored in schema.items() if not name.endswith(ENTRY_COEFFICIENTS)}
+    sizes = {"C": model.count, "K": entry_model.count, "E": len(names), "M": len(names) - looks, "O": len(outside)}
     for axis, name in (("D", "nodes"), ("n", "status"), ("N", "sensor.wavelengths")):
         sizes[axis] = tensors[name].size
     check_arrays(tensors, schema, sizes)
     arrays: dict[str, Any] = {name: tensors[name] for name in schema}
     has_left_out = "atlas.measured" in arrays
+
+    def table(names: tuple[str, ...], prefix: str, **others: Any) -> AtlasTable:
+        rgb, coefficients, half_width, error = (arrays[f"{prefix}.{name}"] for name in list(TABLE)[:-1])
+        entries = arrays.get(f"{prefix}.{ENTRY_COEFFICIENTS}")
+        spectra = None if entries is None else EntrySpectra(entry_model, entries)
+        return AtlasTable(names, rgb, coefficients, half_width, error, spectra, **others)
+
     data = CubeData(
         model=model,
         lattice=Lattice(tensors["nodes"]),
@@ -208,15 +225,12 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
         ),
         threshold=float(metadata["threshold"]),
         error_illuminant=metadata["reference"],
-        atlas=AtlasTable(
+        atlas=table(
             names,
-            rgb=arrays["atlas.rgb"],
-            coefficients=arrays["atlas.coefficients"],
-            half_width=arrays["atlas.reach"],
-            error=arrays["atlas.error"],
-            spectra=None if entry_model == model else EntrySpectra(entry_model, arrays[ENTRY_COEFFICIENTS]),
+            "atlas",
             left_out=LeftOut(arrays["atlas.measured"], arrays["atlas.left_out"]) if has_left_out else None,
             looks=looks,
+            outside=table(outside, "outside") if "outside.rgb" in arrays else None,
         ),
         provenance=metadata["provenance"],
         points=PointTable(**{name: arrays[name] for name in POINTS if name in arrays}),
@@ -233,6 +247,7 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
 def _check(data: CubeData) -> None:
     """Check what a lookup relies on beyond types and ranges. The points of a sparse cube are those in its file."""
     atlas, sensor, nodes = data.atlas, data.sensor, data.lattice.nodes
+    names = (*atlas.names, *(() if atlas.outside is None else atlas.outside.names))
     looks = tuple(look["name"] for look in data.provenance.get("looks", ()))
     node_model, entry_model = ({**each.describe(), "count": None} for each in (data.model, data.entry_spectra.model))
     extends = node_model == entry_model and data.entry_spectra.model.count >= data.model.count
@@ -241,7 +256,7 @@ def _check(data: CubeData) -> None:
         white, condition = sensor.matrix.sum(axis=1), np.linalg.cond(sensor.xyz_to_rgb)
     has_basis = basis.shape == (len(sensor.wavelengths), data.model.count) and bool(np.isfinite(basis).all())
     for condition_met, problem in (
-        (len(set(atlas.names)) == len(atlas.names), "the names of entries must be unique"),
+        (len(set(names)) == len(names), "the names of entries must be unique"),
         (looks == atlas.names[len(atlas.names) - atlas.looks :], "the looks must be the last entries, by their names"),
         (atlas.left_out is None or atlas.measured_count > 0, "left-out spectra need entries"),
         (extends, "the model of the entries must extend that of the nodes"),

@@ -37,14 +37,27 @@ def half_widths(lattice: Lattice, rgb: Array) -> Array:
     No two boxes overlap: a box extends at most half the distance to the nearest other entry (docs/mathematics.md, 8).
     An entry whose colour an earlier entry has gets 0.
     """
+    return _half_widths(lattice.to_steps(rgb))
+
+
+def outside_half_widths(lattice: Lattice, rgb: Array) -> Array:
+    """Half widths (O,), likewise, of the boxes around entries outside [0, 1], in lattice steps of 1 / (dim − 1).
+
+    A box ends at [0, 1].
+    """
+    steps = rgb * (lattice.dim - 1)
+    return np.minimum(_half_widths(steps), np.abs(steps - np.clip(steps, 0, lattice.dim - 1)).max(axis=1))
+
+
+def _half_widths(steps: Array) -> Array:
+    """Half widths (E,) of the boxes around positions (E, 3) in lattice steps."""
     from scipy.spatial import KDTree
 
-    if len(rgb) < 2:
-        return np.full(len(rgb), MAX_HALF_WIDTH)
-    steps = lattice.to_steps(rgb)
-    unique = np.ones(len(rgb), dtype=bool)
+    if len(steps) < 2:
+        return np.full(len(steps), MAX_HALF_WIDTH)
+    unique = np.ones(len(steps), dtype=bool)
     unique[[later for _, later in KDTree(steps).query_pairs(SAME_COLOUR, p=np.inf)]] = False
-    widths = np.zeros(len(rgb))
+    widths = np.zeros(len(steps))
     nearest = KDTree(steps[unique]).query(steps[unique], k=2, p=np.inf)[0][:, 1]
     widths[unique] = np.minimum(MAX_HALF_WIDTH, nearest / 2)
     return widths

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from uplift.lattice.entry_boxes import BoxHits, EntryBoxes
+from uplift.lattice.entry_boxes import BoxHits, EntryBoxes, OutsideBoxes
 from uplift.lattice.lattice import CORNERS, Lattice, weighted_sum
 from uplift.lattice.point_table import ABSENT_VALUES, NO_ENTRY, NOT_FITTED, PointTable, Status
 
@@ -14,6 +14,7 @@ __all__ = [
     "BoxHits",
     "EntryBoxes",
     "Lattice",
+    "OutsideBoxes",
     "PointTable",
     "Status",
     "weighted_sum",

@@ -15,10 +15,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.arrays import Array, Indices, Mask, Values
 from uplift.lattice.lattice import Lattice
 from uplift.lattice.point_table import NO_ENTRY
 
+CORE = 0.1
+"""Share of the half width of a box outside [0, 1] up to which the entry alone answers."""
 CELL_BLOCK = np.array(list(product((-1, 0, 1), repeat=3)))
 """(27, 3) steps to the cells that a box can touch: its half width is at most one step."""
 MARGIN = 1e-6
@@ -119,3 +121,40 @@ class EntryBoxes:
         exit_rgb, moved = rgb[rows], weight > 0
         exit_rgb[moved] = np.clip(centre[moved] + ray[moved] / weight[moved, None], 0, 1)
         return BoxHits(rows, entry, weight, exit_rgb)
+
+
+class OutsideHits(NamedTuple):
+    """The k of n colours that lie in boxes outside [0, 1]."""
+
+    rows: Indices
+    """(k,) row numbers of the colours."""
+    entry: Indices
+    """(k,) row of the entry whose box contains the colour."""
+    other_weight: Array
+    """(k,) weight of the answer without the entry, 0 to 1; the entry has the rest."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OutsideBoxes:
+    """Boxes around entries of linear RGB (O, 3) outside [0, 1], of half widths (O,) in linear RGB, 0 for none.
+
+    They overlap neither each other nor [0, 1], so that answers are continuous there.
+    """
+
+    rgb: Array
+    half_width: Array
+
+    def __repr__(self) -> str:
+        return f"OutsideBoxes({np.count_nonzero(self.half_width)} boxes)"
+
+    def find(self, rgb: Values) -> OutsideHits:
+        """Find which of the linear RGB (n, 3) lie in boxes."""
+        rows = np.flatnonzero((rgb < 0).any(axis=1) | (rgb > 1).any(axis=1)) if len(self.rgb) else NO_ROWS
+        entry, distance = np.full(len(rows), NO_ENTRY), np.ones(len(rows))
+        for box in np.flatnonzero(self.half_width > 0):
+            from_centre = np.abs(rgb[rows] - self.rgb[box]).max(axis=1) / self.half_width[box]
+            inside = from_centre < 1
+            entry[inside], distance[inside] = box, from_centre[inside]
+        hit = entry != NO_ENTRY
+        # The weight is 0 in the core of the box, and rises linearly to 1 on its faces.
+        return OutsideHits(rows[hit], entry[hit], np.maximum(distance[hit] - CORE, 0) / (1 - CORE))

@@ -20,7 +20,7 @@ from uplift.colorimetry.solid import solid_volume
 from uplift.common.arrays import Array
 from uplift.lookup.cube import Cube
 from uplift.lookup.light_errors import lab_errors
-from uplift.lookup.query import reflectance_outside
+from uplift.lookup.query import reflectance_anywhere
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -74,16 +74,12 @@ class Bounds:
 def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", divisions: int = DIVISIONS) -> Bounds:
     """Compute bounds of the answers to linear RGB (n, 3) under a light at the wavelengths of the sensor.
 
-    Colours outside [0, 1] are answered by `reflectance_outside`; ``divisions`` is the density of the boundary points.
+    Colours outside [0, 1] are answered by `reflectance_anywhere`; ``divisions`` is the density of the boundary points.
     Raises `ColourError` if no reflectance has a colour.
     """
     data = cube.data
     volumes = mismatch_volumes(data.sensor, light, rgb, divisions)
-    inside = in_unit_cube(rgb)
-    spectra = np.empty((len(rgb), len(data.sensor.wavelengths)))
-    spectra[inside] = cube.reflectance(rgb[inside], mode=mode)
-    if not inside.all():
-        spectra[~inside] = reflectance_outside(data, rgb[~inside], data.sensor.wavelengths)
+    spectra = reflectance_anywhere(cube, rgb, data.sensor.wavelengths, mode, ~in_unit_cube(rgb))
     xyz = spectra @ light.xyz.T
     errors = None if data.atlas.left_out is None else lab_errors(data, light)
     covariance = None if errors is None else errors.covariance(np.clip(rgb, 0, 1))

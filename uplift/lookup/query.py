@@ -102,9 +102,10 @@ def query_xyz(
 ) -> Iterator[QueryResult]:
     """Answer colours by XYZ (n, 3) under the illuminant of the cube, also those outside its RGB space.
 
-    The cube answers colours in its RGB space. The spectra of others are computed from the nearest one that it holds;
-    they have no atlas entry and no standard error. Raises `ColourError` if no reflectance has a colour
-    (``colour-unrealisable``), or the model does not reach it (``colour-not-reached``).
+    The cube answers colours in its RGB space. The spectra of others are computed from the nearest one that it holds,
+    and from an atlas entry outside the space close to it; only those of such entries have a standard error. Raises
+    `ColourError` if no reflectance has a colour (``colour-unrealisable``), or the model does not reach it
+    (``colour-not-reached``).
     """
     sensor = cube.data.sensor
     sensor.require_xyz()
@@ -122,7 +123,8 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
 
     A colour in the object-colour solid has spectra, whether or not its RGB lie in [0, 1]. The multipliers of the
     nearest colour that the cube holds, on the line of constant dominant wavelength, move to it by minimum-norm steps,
-    which may fail close to the boundary of the solid.
+    which may fail close to the boundary of the solid. In the box of an entry outside [0, 1], so do those of the entry,
+    and the two reflectances, of one colour, are mixed.
     """
     possible = solid(data.sensor.matrix).contains(rgb)
     if not possible.all():
@@ -133,7 +135,19 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
         )
     start = data.model.from_storage(coefficients(data, map_to_gamut(rgb, data.sensor, MAPPING).rgb))
     multipliers = refine_to_rgb(data, data.model, start, rgb)
-    reached = data.sensor.rgb(evaluate(data.model, multipliers, data.sensor.wavelengths))
+    hits, entries = data.outside_boxes.find(rgb), data.outside_spectra
+    own = None
+    if entries is not None and hits.rows.size:
+        own = refine_to_rgb(data, entries.model, entries.multipliers[hits.entry], rgb[hits.rows])
+
+    def spectra(wavelengths: Array) -> Array:
+        found = evaluate(data.model, multipliers, wavelengths)
+        if entries is not None and own is not None:  # t · answer + (1 − t) · entry
+            weight = hits.other_weight[:, None]
+            found[hits.rows] = weight * found[hits.rows] + (1 - weight) * evaluate(entries.model, own, wavelengths)
+        return found
+
+    reached = data.sensor.rgb(spectra(data.sensor.wavelengths))
     distance = np.abs(reached - rgb).max(axis=1)
     if (distance > data.threshold).any():
         raise ColourError(
@@ -141,7 +155,16 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
             code="colour-not-reached",
             hint="move it toward white, away from the limit of what reflectances can have",
         )
-    return evaluate(data.model, multipliers, at)
+    return spectra(at)
+
+
+def reflectance_anywhere(cube: Cube, rgb: Array, at: Array, mode: str, outside: Mask) -> Array:
+    """Compute reflectances (n, N) at wavelengths (N,) in nm, of linear RGB (n, 3) that may be ``outside`` (n,)."""
+    spectra = np.empty((len(rgb), len(at)))
+    spectra[~outside] = cube.reflectance(rgb[~outside], at, mode)
+    if outside.any():
+        spectra[outside] = reflectance_outside(cube.data, rgb[outside], at)
+    return spectra
 
 
 def _format_xyz(data: CubeData, rgb: Array) -> str:
@@ -154,11 +177,8 @@ def _block(
     data, sensor = cube.data, cube.data.sensor
     count = len(sensor.wavelengths)
     grid = np.concatenate([sensor.wavelengths, at])
-    spectra = np.empty((len(rgb), len(grid)))
-    spectra[~outside] = cube.reflectance(rgb[~outside], grid, mode)
-    if outside.any():
-        spectra[outside] = reflectance_outside(data, requested[outside], grid)
     answered = np.where(outside[:, None], requested, rgb)
+    spectra = reflectance_anywhere(cube, answered, grid, mode, outside)
     at_sensor = spectra[:, :count]
     round_trip = sensor.rgb(at_sensor)
     xyz = at_sensor @ sensor.light.xyz.T
@@ -170,6 +190,10 @@ def _block(
     unlike = np.zeros(len(rgb), dtype=bool) if errors is None else cube.unlike_atlas(rgb)
     # A colour is that of an entry if their 8-bit codes are close.
     codes, entry_codes = cube.encode(rgb), cube.encode(data.atlas.rgb)
+    # Outside the RGB space it is, where the spectrum of the entry alone answers.
+    found, kept = data.outside_boxes.find(answered), data.atlas.outside
+    exact = found.other_weight == 0
+    outside_entries = dict(zip(found.rows[exact].tolist(), found.entry[exact].tolist(), strict=True))
     low, fraction = data.lattice.cell(rgb)
     statuses = data.points.status[data.lattice.cell_corners(low, fraction)[0]]
     # Mixtures of realisable colours are realisable, so only cells with an unrealisable corner are tested.
@@ -180,6 +204,10 @@ def _block(
         own = (None, None) if errors is None or outside[row] else errors[row].tolist()
         difference = np.abs(entry_codes - codes[row]).max(axis=1)
         is_entry = difference.min(initial=np.inf) <= CODE_TOLERANCE and not outside[row]
+        entry = data.atlas.names[difference.argmin()] if is_entry else None
+        if kept is not None and row in outside_entries:
+            entry = kept.names[outside_entries[row]]
+            own = (None, None) if errors is None else (float(kept.error[outside_entries[row]]),) * 2
         yield QueryResult(
             rgb=answered[row],
             requested_rgb=requested[row],
@@ -190,7 +218,7 @@ def _block(
             delta_e_2000=float(delta_e[row]),
             cell=tuple(cell),
             statuses=tuple(map(Status, sorted(set(statuses[row].tolist())))),
-            entry=data.atlas.names[difference.argmin()] if is_entry else None,
+            entry=entry,
             standard_error=own[0],
             error_bound=own[1],
             standard_errors={name: float(each[row, 0]) for name, each in by_light.items() if not outside[row]},

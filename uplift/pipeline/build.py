@@ -28,7 +28,17 @@ from uplift.fit.growth_outward import grow_outward
 from uplift.fit.growth_thesis import grow_from_neighbours
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem, nodes_of
-from uplift.fit.seeds import DIMS, FULL_ENTRY, Blend, choose_lattice, half_widths, initial_guess, learnt_blend, seed
+from uplift.fit.seeds import (
+    DIMS,
+    FULL_ENTRY,
+    Blend,
+    choose_lattice,
+    half_widths,
+    initial_guess,
+    learnt_blend,
+    outside_half_widths,
+    seed,
+)
 from uplift.fit.store import store
 from uplift.lattice import EntryBoxes, Lattice
 from uplift.lookup import Cube
@@ -177,7 +187,7 @@ def build(
     Raises
     ------
     AtlasError
-        An atlas file that cannot be read.
+        An atlas file that cannot be read, or an atlas without an entry in the RGB space (``atlas-out-of-gamut``).
     OptionError
         An option outside its range, or a library without a learnt prior.
     LookError
@@ -189,10 +199,11 @@ def build(
     Warns
     -----
     UpliftWarning
-        Entries out of gamut (``entry-out-of-gamut``), with the colour of another entry (``entry-duplicate``) or
-        close to another entry (``entry-crowded``). Spectra of a library out of gamut (``library-out-of-gamut``) or
-        outside [0, 1] (``library-clipped``). Looks that no reflectance meets (``look-impossible``), or that the
-        coefficients of entries do not reach (``look-not-reached``); the nearest colour is used.
+        Entries out of gamut (``entry-out-of-gamut``), which answer only XYZ and textures of wider spaces, with the
+        colour of another entry (``entry-duplicate``) or close to another entry (``entry-crowded``). Spectra of a
+        library out of gamut (``library-out-of-gamut``) or outside [0, 1] (``library-clipped``). Looks that no
+        reflectance meets (``look-impossible``), or that the coefficients of entries do not reach
+        (``look-not-reached``); the nearest colour is used.
 
     Examples
     --------
@@ -295,7 +306,7 @@ def _build(
     libraries = spectra.read_libraries(library)
     families = spectra.families_of(options, libraries, sensor)
     atlas = spectra.as_atlas(atlas)
-    measured = spectra.entries_in_gamut(atlas, sensor)
+    measured, outside = spectra.split_by_gamut(atlas, sensor)
     targets = None
     if looks is not None:
         from uplift.pipeline.looks import targets_of
@@ -335,7 +346,11 @@ def _build(
         spectra.warn(problem_text, "nodes-unfitted", hint="use the default solver")
     points = points if kept is None else points.restricted_to(kept)
 
-    table = constraints.table(model, boxes, prior)
+    # Entries outside the RGB space constrain no node: their spectra answer XYZ and textures of other spaces.
+    table = constraints.table(model, boxes.half_width, prior.left_out)
+    if outside.names:
+        kept_outside = spectra.fit_constraints(problem, entry_model, outside)
+        table = replace(table, outside=kept_outside.table(model, outside_half_widths(lattice, outside.rgb)))
     provenance = {
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},

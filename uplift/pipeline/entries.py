@@ -14,12 +14,11 @@ from uplift.atlas import Atlas, on_grid, read_atlas, resample
 from uplift.colorimetry.observer import COMMON_SPACES, grid, smallest_space
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import OptionError, UpliftWarning
+from uplift.common.errors import AtlasError, OptionError, UpliftWarning
 from uplift.cube import AtlasTable, EntrySpectra, LeftOut
 from uplift.fit.base import NO_FREEDOM
 from uplift.fit.entries import FittedEntries, fit_entries
 from uplift.fit.families import Family, shipped_library
-from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
 from uplift.fit.seeds import Seeds
 from uplift.lattice import EntryBoxes
@@ -64,19 +63,22 @@ class Constraints:
         stored = self.entry_model.to_storage(self.at_entries.multipliers)  # c_j = (1/π) ∫ g cos jφ dφ for any count
         return model.from_storage(stored[:, : model.count])
 
-    def table(self, model: Model, boxes: EntryBoxes, prior: Prior) -> AtlasTable:
-        """Return the part of a cube that records the constraints; entries with more coefficients have them there."""
+    def table(self, model: Model, half_width: Array, without: Array | None = None) -> AtlasTable:
+        """Return the part of a cube that records the constraints; entries with more coefficients have them there.
+
+        ``without`` are the reflectances of `LeftOut` that are answered.
+        """
         spectra, left_out = None, None
         if self.at_entries is not self.at_nodes and len(self.names):
             spectra = EntrySpectra(self.entry_model, self.entry_model.to_storage(self.at_entries.multipliers))
-        if prior.left_out is not None:
+        if without is not None:
             measured = self.at_nodes.measured[: len(self.names) - self.looks]
-            left_out = LeftOut(measured.astype(np.float32), prior.left_out.astype(np.float32))
+            left_out = LeftOut(measured.astype(np.float32), without.astype(np.float32))
         return AtlasTable(
             self.names,
             self.at_nodes.rgb,
             model.to_storage(self.at_nodes.multipliers),
-            boxes.half_width,
+            half_width,
             self.at_entries.error,
             spectra,
             left_out,
@@ -93,25 +95,34 @@ def as_atlas(atlas: AtlasLike) -> Atlas:
     return read_atlas(*([atlas] if isinstance(atlas, str | os.PathLike) else atlas))
 
 
-def entries_in_gamut(atlas: Atlas, sensor: Sensor) -> MeasuredEntries:
-    """Return the entries whose colours lie within the RGB space, with a warning for each other."""
+def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, MeasuredEntries]:
+    """Return the entries in the RGB space, and those outside, with a warning for each; all outside are an error."""
     measured = on_grid(atlas, sensor.wavelengths)
     # t = W m of measured reflectances m
     rgb = sensor.rgb(measured)
     inside = sensor.contains(rgb)
-    note = ""
+    hint = ""
     if not inside.all():
         space = smallest_space(resample(atlas, grid()).values, sensor.illuminant, sensor.observer)
-        note = f"; {space} holds all {len(atlas)}" if space else f"; none of {', '.join(COMMON_SPACES)} holds all"
+        hint = f"none of {', '.join(COMMON_SPACES)} holds all {len(atlas)} entries"
+        if space is not None:
+            hint = f'build with --space "{space}", which holds all {len(atlas)}, to have it in the lattice'
+    if (len(atlas) or atlas.skipped) and not inside.any():
+        problem = f"no entry of the atlas is within {sensor.space}: {len(atlas)} outside, {len(atlas.skipped)} skipped"
+        raise AtlasError(problem, code="atlas-out-of-gamut", hint=hint)
     for row in np.flatnonzero(~inside):
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
         warn(
-            f"left out: its colour must lie within {sensor.space}, got linear RGB ({values}){note}",
+            f"outside {sensor.space}, at linear RGB ({values}): kept for XYZ and wider spaces",
             "entry-out-of-gamut",
             atlas.names[row],
+            hint,
         )
-    names = tuple(name for name, kept in zip(atlas.names, inside, strict=True) if kept)
-    return MeasuredEntries(names, np.clip(rgb[inside], 0, 1), measured[inside])
+    names = np.array(atlas.names, dtype=object)
+    return (
+        MeasuredEntries(tuple(names[inside]), np.clip(rgb[inside], 0, 1), measured[inside]),
+        MeasuredEntries(tuple(names[~inside]), rgb[~inside], measured[~inside]),
+    )
 
 
 def fit_constraints(problem: Problem, entry_model: Model, entries: MeasuredEntries) -> Constraints:

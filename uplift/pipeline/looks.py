@@ -15,7 +15,7 @@ from uplift.colorimetry.solid import solid
 from uplift.colorimetry.srgb import hex_codes, parse_colour
 from uplift.common.arrays import Array
 from uplift.common.errors import LookError, UpliftError, UpliftWarning
-from uplift.cube import AtlasTable, EntrySpectra
+from uplift.cube import AtlasTable
 from uplift.fit.base import NO_FREEDOM
 from uplift.fit.entries import MAX_STEPS, join_entries
 from uplift.fit.looks import MET, LookGoal, design_reflectance, fit_designs
@@ -78,7 +78,7 @@ class LookTargets:
         """Return what a cube records of its looks, in JSON values, and warn of those that its answers miss."""
         if not self.looks:
             return {}
-        stored = table.spectra or EntrySpectra(model, table.coefficients)
+        stored = table.spectra_in(model)
         answers = stored.reflectance(np.arange(table.measured_count, len(table.names)), sensor.wavelengths)
         records = []
         for look, screens, goal, design, answer in zip(

@@ -11,12 +11,14 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, resample
 from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.observer import light, on_range
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.sensor import Sensor, in_unit_cube
 from uplift.common.arrays import Array, Indices, Mask
-from uplift.cube import CubeData
+from uplift.cube import AtlasTable, CubeData
 from uplift.lookup import Cube, load
 from uplift.lookup.interpolate import lattice_spectra
+from uplift.lookup.query import MAPPING, reflectance_anywhere
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models import Sigmoid, evaluate
 
@@ -26,15 +28,16 @@ class EntryQuery:
     """Colours to query, and the spectra that would be the best answers."""
 
     names: tuple[str, ...]  # Names of E entries
-    rgb: Array  # (E, 3) Linear RGB in [0, 1]
+    rgb: Array  # (E, 3) Linear RGB, outside [0, 1] for the cube's entries outside its space
     target: Array  # (E, N) Reflectances at the sensor's wavelengths
-    rows: Indices | None  # (E,) Rows of the cube's atlas table; None for entries that it was not built from
+    # (E,) Rows of the cube's atlas table, counted on in that of entries outside its space; None for other entries
+    rows: Indices | None
     out_of_gamut: tuple[str, ...] = ()  # Names of the entries outside the cube's RGB space
     not_covered: tuple[str, ...] = ()  # Names of the entries for which a sparse cube has no points
 
     def answerable_by(self, cube: Cube) -> EntryQuery:
         """Keep the entries that a cube has points for."""
-        covered = cube.covers(self.rgb)
+        covered = cube.covers(_inside(cube.data, self.rgb))
         names, not_covered = _partition(self.names, covered)
         rows = None if self.rows is None else self.rows[covered]
         return EntryQuery(names, self.rgb[covered], self.target[covered], rows, self.out_of_gamut, not_covered)
@@ -86,11 +89,23 @@ class EntryErrors:
 def from_own_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
     """Query the entries that the cube was built from; targets are the measured spectra."""
     measured = resample(atlas, data.sensor.wavelengths).values
-    row_of = {name: row for row, name in enumerate(data.atlas.names)}
+    tables = _tables(data)
+    row_of = {name: row for row, name in enumerate(name for table in tables for name in table.names)}
     in_cube = np.array([name in row_of for name in atlas.names], dtype=bool)
     names, out_of_gamut = _partition(atlas.names, in_cube)
     rows = np.array([row_of[name] for name in names], dtype=np.int64)
-    return EntryQuery(names, data.atlas.rgb[rows], measured[in_cube], rows, out_of_gamut)
+    rgb = np.concatenate([table.rgb for table in tables])[rows]
+    return EntryQuery(names, rgb, measured[in_cube], rows, out_of_gamut)
+
+
+def _tables(data: CubeData) -> tuple[AtlasTable, ...]:
+    """Return the entries in the RGB space, and those outside it if there are any."""
+    return (data.atlas,) if data.atlas.outside is None else (data.atlas, data.atlas.outside)
+
+
+def _inside(data: CubeData, rgb: Array) -> Array:
+    """Colours (n, 3) of the lattice from which those outside the RGB space are answered; others are unchanged."""
+    return map_to_gamut(rgb, data.sensor, MAPPING).rgb
 
 
 def from_other_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
@@ -112,7 +127,8 @@ def from_stored_entries(data: CubeData) -> EntryQuery:
 def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> EntryErrors:
     """Compare the answers of a cube in its default mode with the targets of a query."""
     data, target = cube.data, query.target
-    answer = cube.reflectance(query.rgb)
+    inside = _inside(data, query.rgb)
+    answer = reflectance_anywhere(cube, query.rgb, data.sensor.wavelengths, "spectra", ~in_unit_cube(query.rgb))
     errors = EntryErrors(
         names=query.names,
         rgb=query.rgb,
@@ -121,8 +137,8 @@ def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> E
         delta_e=_delta_e(lights, answer, target),
         rms=_rms(answer, target),
         actual=delta_e_spectra(light(data.error_illuminant, data.sensor.observer, *data.sensor.range), answer, target),
-        predicted=cube.standard_error(query.rgb),
-        cells=data.lattice.cell(query.rgb)[0],
+        predicted=cube.standard_error(inside),
+        cells=data.lattice.cell(inside)[0],
     )
     if query.rows is not None:
         errors = _with_lattice_errors(cube, errors, query.rows, lights)
@@ -132,15 +148,24 @@ def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> E
 def _with_lattice_errors(cube: Cube, errors: EntryErrors, rows: Indices, lights: tuple[Sensor, ...]) -> EntryErrors:
     """Add the fields that only the cube's own entries have; ``rows`` (E,) are those of its atlas table."""
     data = cube.data
-    lattice = lattice_spectra(data, errors.rgb, data.sensor.wavelengths)
+    lattice = lattice_spectra(data, _inside(data, errors.rgb), data.sensor.wavelengths)
+    boxes, reach = data.outside_boxes, data.outside_boxes.half_width[:, None]
     low_faces, high_faces = data.entry_boxes.faces
-    low, centre, high = (cube.encode(rgb[rows]) for rgb in (low_faces, data.atlas.rgb, high_faces))
+    faces = (low_faces, boxes.rgb - reach), (data.atlas.rgb, boxes.rgb), (high_faces, boxes.rgb + reach)
+    low, centre, high = (np.concatenate(each)[rows] for each in faces)
+    low, centre, high = (np.sign(rgb) * cube.encode(np.abs(rgb)) for rgb in (low, centre, high))
+    predicted = errors.predicted
+    if predicted is not None:
+        is_outside = rows >= len(data.atlas.names)
+        own = np.concatenate([table.error for table in _tables(data)])[rows]
+        predicted = np.where(is_outside, own, predicted)
     return replace(
         errors,
         lattice=lattice,
         delta_e_lattice=_delta_e(lights, lattice, errors.target),
         rms_lattice=_rms(lattice, errors.target),
-        half_width=data.atlas.half_width[rows],
+        predicted=predicted,
+        half_width=np.concatenate([table.half_width for table in _tables(data)])[rows],
         half_width_codes=np.maximum(high - centre, centre - low).min(axis=1),
     )
 
@@ -235,10 +260,11 @@ class Crowding:
 
 def find_crowding(data: CubeData, entries: EntryErrors) -> Crowding:
     """Find the entries that have another one within a lattice step."""
-    assert entries.worst_lattice is not None
     names = data.atlas.names
     nearest, distances = _nearest(data.lattice.to_steps(data.atlas.rgb))
     row_of = {name: row for row, name in enumerate(names)}
+    entries = entries.take([row for row, name in enumerate(entries.names) if name in row_of])
+    assert entries.worst_lattice is not None
     rows = np.array([row_of[name] for name in entries.names])
     order = np.argsort(-entries.worst_lattice, kind="stable")
     kept = order[distances[rows[order]] <= MAX_DISTANCE]

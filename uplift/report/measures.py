@@ -28,7 +28,7 @@ class Failures:
     over_threshold: int  # Number of lattice points over the threshold
     worst_points: Indices  # (k,) Indices of the worst of these, worst first
     improvements: tuple[dict[str, Any], ...]  # Steps of the improvement pass
-    left_out: tuple[str, ...]  # Entries outside the RGB space
+    left_out: tuple[str, ...]  # Entries outside the RGB space that a cube of an earlier version does not have
     skipped: tuple[str, ...]  # Entries that the atlas reader could not use
 
 
@@ -42,7 +42,7 @@ def collect_failures(data: CubeData) -> Failures:
         over_threshold=len(rows),
         worst_points=rows[np.argsort(-points.distance[rows], kind="stable")][:MAX_LISTED],
         improvements=tuple(recorded.get("improvements", ())),
-        left_out=tuple(recorded.get("left_out", ())),
+        left_out=tuple(recorded.get("left_out", ())) if data.atlas.outside is None else (),
         skipped=tuple(recorded.get("skipped", ())),
     )
 
@@ -196,6 +196,7 @@ def summarise(data: CubeData) -> dict[str, Any]:
         "mean_standard_error": None if errors is None else float(errors[present].mean(dtype=np.float64)),
         "status": points.counts(),
         "entries": list(data.atlas.names),
+        "outside": [] if data.atlas.outside is None else list(data.atlas.outside.names),
         "debug": points.round is not None,
         "rounds": None if points.round is None else int(points.round.max()) + 1,
         "provenance": dict(data.provenance),

@@ -74,7 +74,8 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
     compared = _well_determined(stored) & (stored.points.present | rebuilt.points.present)
     wavelengths = stored.sensor.wavelengths
     nodes = [reflectance(data.model, data.points.coefficients[compared], wavelengths) for data in (stored, rebuilt)]
-    shared = [name for name in stored.atlas.names if name in rebuilt.atlas.names]
+    rows = [_entry_rows(data) for data in (stored, rebuilt)]
+    shared = [name for name in rows[0] if name in rows[1]]
     entries = [_entry_spectra(data, shared) for data in (stored, rebuilt)]
     first, second = (np.concatenate(spectra) for spectra in zip(nodes, entries, strict=True))
     difference = np.abs(first - second)
@@ -89,8 +90,10 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
         delta_e = delta_e_spectra(under, first, second)
         measures[f"delta_e_{name}"] = float(delta_e.max())
         moved = np.maximum(moved, delta_e[len(nodes[0]) :])
-    changes = [EntryChange(name, "removed") for name in stored.atlas.names if name not in shared]
-    changes += [EntryChange(name, "added") for name in rebuilt.atlas.names if name not in shared]
+    # Cubes of earlier versions have the names of entries outside their RGB space only.
+    old, new = ({*_entry_rows(data), *data.provenance.get("left_out", ())} for data in (stored, rebuilt))
+    changes = [EntryChange(name, "removed") for name in rows[0] if name not in new]
+    changes += [EntryChange(name, "added") for name in rows[1] if name not in old]
     changes += [EntryChange(shared[row], "moved", float(moved[row])) for row in np.flatnonzero(moved > MOVED)]
     before, after = (_counts(data, compared) for data in (stored, rebuilt))
     return RebuildDifference(path, measures, before, after, tuple(changes))
@@ -101,10 +104,19 @@ def _same_lattice(stored: CubeData, rebuilt: CubeData) -> bool:
     return nodes.shape == other.shape and bool((np.abs(nodes - other) <= NODE_TOLERANCE).all())
 
 
+def _entry_rows(data: CubeData) -> dict[str, int]:
+    """Rows of entries in the atlas table, then of those outside the RGB space in theirs, counted on, by name."""
+    outside = () if data.atlas.outside is None else data.atlas.outside.names
+    return {name: row for row, name in enumerate((*data.atlas.names, *outside))}
+
+
 def _entry_spectra(data: CubeData, names: Sequence[str]) -> Array:
     """Reflectance (E, N) of entries by name."""
-    rows = np.array([data.atlas.names.index(name) for name in names], dtype=np.intp)
-    return data.entry_spectra.reflectance(rows, data.sensor.wavelengths)
+    tables = [each for each in (data.entry_spectra, data.outside_spectra) if each is not None]
+    at = data.sensor.wavelengths
+    spectra = np.concatenate([each.reflectance(np.arange(len(each.coefficients)), at) for each in tables])
+    row_of = _entry_rows(data)
+    return np.asarray(spectra[[row_of[name] for name in names]])
 
 
 def _well_determined(data: CubeData) -> Mask:

@@ -14,12 +14,15 @@ from PIL import Image
 from tests.helpers import raises
 from tests.io.texture.conftest import WAVELENGTHS, channels, planes, read_channels, small_tiles, write_exr, write_image
 from uplift.colorimetry.gamut import map_to_gamut
+from uplift.colorimetry.spaces import find_space
 from uplift.common.errors import ColourError, TextureError
 from uplift.common.progress import Progress
+from uplift.cube import EntrySpectra
 from uplift.io import texture
 from uplift.io.mitsuba.texture_file import read_colours
 from uplift.io.scene_colours import Images
 from uplift.io.texture.picture import read_picture
+from uplift.models import evaluate
 
 
 @pytest.fixture
@@ -314,3 +317,44 @@ def test_pictures_without_alpha(tmp_path, sensor):
     assert [warning.code for warning in found.warnings] == ["pixels-out-of-gamut"]
     with raises(ColourError, "rgb-out-of-gamut"):
         read_picture(path, sensor, max_side=10, out_of_gamut="error")
+
+
+@pytest.mark.parametrize("encoding", [texture.Spectrum, texture.Moments, texture.Multipliers])
+@pytest.mark.parametrize("method", ["clip", "desaturate", "error"])
+def test_pixels_of_an_entry_outside_the_space_have_its_spectrum(cyan_cube, convert_image, tmp_path, encoding, method):
+    data, space = cyan_cube.data, find_space("P3-D65")
+    boxes, model = data.outside_boxes, data.model
+    pixels = np.stack([boxes.rgb[0], [0.2, 0.3, 0.4]])[None]
+    if method != "error":  # halfway from the core of the box to its face, and outside
+        shift = np.array([0, boxes.half_width[0], 0])
+        pixels = np.concatenate([pixels, [[boxes.rgb[0] + 0.55 * shift, boxes.rgb[0] + 2 * shift]]])
+    wide = (pixels @ np.linalg.inv(space.matrix_to(data.sensor)).T).astype(np.float32)
+    uplifter = texture.prepare(cyan_cube, encoding(), depth="float", space="P3-D65", out_of_gamut=method)
+    result, colours = convert_image(write_exr(tmp_path / "wide.exr", planes(wide)), uplifter)
+    numbers = read_channels(result.target, uplifter.channels).astype(float)
+    if encoding is not texture.Spectrum:
+        numbers = model.from_storage(numbers) if encoding is texture.Moments else numbers
+        numbers = evaluate(model, numbers.reshape(-1, model.count), data.sensor.wavelengths)
+        numbers = numbers.reshape(*pixels.shape[:2], -1)
+    np.testing.assert_allclose(colours[0], pixels[0], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(data.sensor.rgb(numbers), colours, rtol=0, atol=1e-4)
+    spectra = data.outside_spectra
+    if encoding is not texture.Spectrum:
+        spectra = EntrySpectra(model, data.atlas.outside.coefficients)
+    stored = spectra.reflectance(np.array([0]), data.sensor.wavelengths)[0]
+    np.testing.assert_allclose(numbers[0, 0], stored, rtol=0, atol=1e-3)  # rounding of moments
+    if method == "error":
+        assert result.warnings == ()
+        return
+    assert [warning.code for warning in result.warnings] == ["pixels-out-of-gamut"]
+    assert result.counts.outside == 2
+    mapped = map_to_gamut(pixels[1], data.sensor, method).rgb
+    np.testing.assert_allclose(colours[1], [(boxes.rgb[0] + mapped[0]) / 2, mapped[1]], rtol=0, atol=1e-5)
+
+
+def test_pixels_near_an_entry_outside_the_space_are_refused_as_others(cyan_cube, convert_image, tmp_path):
+    boxes = cyan_cube.data.outside_boxes
+    pixels = (boxes.rgb + boxes.half_width[0] / 2 * np.eye(3)[1]).astype(np.float32)[None]
+    uplifter = texture.prepare(cyan_cube, out_of_gamut="error")
+    with raises(ColourError, "rgb-out-of-gamut"):
+        convert_image(write_exr(tmp_path / "near.exr", planes(pixels)), uplifter)

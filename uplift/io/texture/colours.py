@@ -19,6 +19,7 @@ from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, TextureError, UpliftWarning
 from uplift.io.texture.image import Image, Part, Values
+from uplift.lattice.entry_boxes import NO_ROWS, OutsideBoxes
 
 Floats = NDArray[np.float32]
 
@@ -244,7 +245,8 @@ class Decoder:
 
     ``function`` maps the numbers of the part to linear RGB of its space, which are in [0, 1] if ``is_bounded``. With
     ``maps_codes``, codes outside [0, 1] are mapped before decoding, as the encoding ends at 0 and 1. ``matrix`` (3, 3)
-    leads from the space of the part to that of the sensor; None if they agree.
+    leads from the space of the part to that of the sensor; None if they agree. Linear RGB in the boxes of entries
+    ``outside`` [0, 1] are not mapped.
     """
 
     function: Callable[[Values], Values]
@@ -253,9 +255,10 @@ class Decoder:
     matrix: Array | None
     sensor: Sensor
     method: str
+    outside: OutsideBoxes | None = None
 
     def __call__(self, colours: Values) -> tuple[Floats, Counts]:
-        """Return linear RGB (…, 3) in [0, 1], and counts of the pixels that were changed.
+        """Return linear RGB (…, 3) in [0, 1] or in boxes, and counts of the pixels that were changed.
 
         Colours outside are mapped to the gamut and NaN is replaced by 0. With the method ``error`` both raise a
         `ColourError`.
@@ -270,7 +273,7 @@ class Decoder:
         if self.matrix is not None:
             rgb = without_rounding(np.asarray(rgb, dtype=float) @ self.matrix.T)
         if self.matrix is not None or not (self.is_bounded or self.maps_codes):
-            rgb, outside, max_change = self._mapped(rgb)
+            rgb, outside, max_change = self._mapped(rgb, self.outside)
         counts = Counts(colours.size // 3, outside, not_finite, max_change=max_change)
         return rgb.astype(np.float32, copy=False), counts
 
@@ -284,12 +287,18 @@ class Decoder:
             colours = np.where(finite[..., None], colours, clamped)
         return colours, int((~finite).sum())
 
-    def _mapped(self, colours: Values) -> tuple[Values, int, float]:
-        """Return colours in [0, 1], the number of those that were outside, and the largest change."""
+    def _mapped(self, colours: Values, boxes: OutsideBoxes | None = None) -> tuple[Values, int, float]:
+        """Return colours in [0, 1] or in boxes, the number of those that were moved, and the largest change."""
         if _all_inside(colours):
             return colours, 0, 0.0
-        mapped = map_to_gamut(colours, self.sensor, self.method)
-        return mapped.rgb, mapped.count, mapped.max_change
+        flat = colours.reshape(-1, 3)
+        kept = NO_ROWS if boxes is None else boxes.find(flat).rows
+        if kept.size:
+            flat = flat.copy()
+            flat[kept] = 0
+        mapped = map_to_gamut(flat, self.sensor, self.method)
+        mapped.rgb[kept] = colours.reshape(-1, 3)[kept]
+        return mapped.rgb.reshape(colours.shape), mapped.count, mapped.max_change
 
 
 def _all_inside(colours: Values) -> bool:
@@ -303,13 +312,19 @@ def check_encoding(encoding: str) -> None:
 
 
 def make_decoder(
-    sensor: Sensor, part: Part, encoding: str, method: str = "clip", space: ImageSpace | None = None
+    sensor: Sensor,
+    part: Part,
+    encoding: str,
+    method: str = "clip",
+    space: ImageSpace | None = None,
+    outside: OutsideBoxes | None = None,
 ) -> Decoder:
     """Make the decoder of a part to linear RGB of a sensor, for the gamut mapping ``method``.
 
     ``encoding`` ``auto`` takes 8-bit and 16-bit integers as encoded, all else as linear. ``space`` is by default the
-    one that the file states. Raises `OptionError` for encoded floats with a mapping other than ``clip`` or ``error``,
-    as the encoding ends at 0 and 1, and for ``linear`` with a space whose floats are encoded.
+    one that the file states. Colours in the boxes of entries ``outside`` [0, 1] stay. Raises `OptionError` for encoded
+    floats with a mapping other than ``clip`` or ``error``, as the encoding ends at 0 and 1, and for ``linear`` with a
+    space whose floats are encoded.
     """
     source = source_space(part, sensor, space)
     matrix = None if source is None else source.matrix_to(sensor)
@@ -326,7 +341,7 @@ def make_decoder(
             hint="their encoding ends at 0 and 1; pass out_of_gamut='clip' or encoding='linear'",
         )
     function = linear_reader(sensor, part, encoding, source)
-    return Decoder(function, bool(part.max_code), is_encoded, matrix, sensor, method)
+    return Decoder(function, bool(part.max_code), is_encoded, matrix, sensor, method, outside)
 
 
 def reads_codes(part: Part, source: ImageSpace | None) -> bool:

@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from uplift import models
-from uplift.colorimetry.gamut import check_method
+from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace, find_space
 from uplift.common.arrays import Array
@@ -25,9 +25,11 @@ from uplift.io import exr
 from uplift.io.texture.colours import ColourChannels, Counts, Floats, check_encoding, make_decoder
 from uplift.io.texture.image import Image, Part, Values
 from uplift.lattice import Status
+from uplift.lattice.entry_boxes import OutsideHits
 from uplift.lookup import Cube
 from uplift.lookup.blocks import as_wavelengths, blockwise
 from uplift.lookup.interpolate import refined_multipliers
+from uplift.lookup.refine import refine_to_rgb
 
 Sampler = Callable[[Floats], Floats]
 """From linear RGB (…, 3) in [0, 1] to numbers (…, N)."""
@@ -99,6 +101,10 @@ class PixelEncoding(ABC):
     def make_sampler(self, cube: Cube, threads: int) -> Sampler:
         """The function that computes the numbers."""
 
+    @abstractmethod
+    def outside(self, cube: Cube) -> Floats | None:
+        """The numbers (O, N) of the entries outside the RGB space; None without any."""
+
     def describe(self, cube: Cube) -> dict[str, Any]:
         """The encoding as JSON values: ``as``, its name, and the wavelengths of a spectrum."""
         return {"as": self.name}
@@ -134,6 +140,12 @@ class Spectrum(PixelEncoding):
 
         return bulk.spectra(cube, self.wavelengths, threads=threads)
 
+    def outside(self, cube: Cube) -> Floats | None:
+        if (spectra := cube.data.outside_spectra) is None:
+            return None
+        at = as_wavelengths(self.wavelengths, cube.wavelengths)
+        return spectra.reflectance(np.arange(len(spectra.coefficients)), at).astype(np.float32)
+
 
 @dataclass(frozen=True)
 class Moments(PixelEncoding):
@@ -157,6 +169,10 @@ class Moments(PixelEncoding):
 
         return bulk.coefficients(cube, threads=threads)
 
+    def outside(self, cube: Cube) -> Floats | None:
+        table = cube.data.atlas.outside
+        return None if table is None else table.coefficients.astype(np.float32)
+
 
 @dataclass(frozen=True)
 class Multipliers(PixelEncoding):
@@ -176,6 +192,10 @@ class Multipliers(PixelEncoding):
         refined = partial(refined_multipliers, cube.data)
         width = cube.data.model.count
         return lambda rgb: blockwise(refined, rgb.astype(float), width, np.float32, threads)
+
+    def outside(self, cube: Cube) -> Floats | None:
+        table = cube.data.atlas.outside
+        return None if table is None else cube.data.model.from_storage(table.coefficients).astype(np.float32)
 
 
 PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {each.name: each for each in (Spectrum, Moments, Multipliers)}
@@ -203,17 +223,45 @@ class Uplifter(Converter):
 
     ``sample`` maps linear RGB (…, 3) to the numbers (…, N) of a pixel, which ``is_linear`` if they are linear in the
     spectrum. ``rgb_error`` maps it to the largest error (…, 1) of the spectrum's colour; None without unrealisable
-    nodes.
+    nodes. ``outside`` are the numbers (O, N) of the entries outside the RGB space, if there are any.
     """
 
     cube: Cube
     sample: Sampler
     rgb_error: Sampler | None
     is_linear: bool
+    outside: Floats | None = None
+
+    def decoder(self, part: Part) -> ReadColours:
+        boxes = None if self.outside is None else self.cube.data.outside_boxes
+        return make_decoder(self.sensor, part, self.encoding, self.out_of_gamut, self.space, boxes)
 
     def convert(self, rgb: Floats) -> Converted:
+        if self.outside is not None:
+            hits = self.cube.data.outside_boxes.find(rgb.reshape(-1, 3))
+            if hits.rows.size:
+                return self._convert_outside(rgb, hits, self.outside)
         is_off = 0 if self.rgb_error is None else (self.rgb_error(rgb) > self.cube.data.threshold).sum()
         return (rgb, self.sample(rgb)), Counts(unrealisable=int(is_off))
+
+    def _convert_outside(self, rgb: Floats, hits: OutsideHits, entries: Floats) -> Converted:
+        """Mix the answers to mapped colours with those of entries, as their colours: t · mapped + (1 − t) · entry."""
+        data, colours = self.cube.data, rgb.reshape(-1, 3).copy()
+        requested, is_mixed, weight = colours[hits.rows], hits.other_weight > 0, hits.other_weight[:, None]
+        # With the method "error", only the core of a box is answered.
+        map_to_gamut(requested[is_mixed], self.sensor, self.out_of_gamut)
+        method = "clip" if self.out_of_gamut == "error" else self.out_of_gamut
+        mapped = map_to_gamut(requested, self.sensor, method).rgb
+        mixed = weight * mapped + (1 - weight) * data.outside_boxes.rgb[hits.entry]
+        colours[hits.rows] = mapped
+        (_, found), counts = self.convert(colours.reshape(rgb.shape))
+        numbers = found.reshape(len(colours), -1)
+        own = weight * numbers[hits.rows] + (1 - weight) * entries[hits.entry]
+        numbers[hits.rows] = own if self.is_linear else refine_to_rgb(data, data.model, own, mixed)
+        colours[hits.rows] = mixed
+        change = float(np.abs(mixed - requested).max(where=is_mixed[:, None], initial=0))
+        counts += Counts(outside=int(is_mixed.sum()), max_change=change)
+        return (colours.reshape(rgb.shape), numbers.reshape(found.shape)), counts
 
     def multiply(self, values: tuple[Floats, ...], opacity: Floats) -> tuple[Floats, ...]:
         rgb, numbers = values
@@ -243,7 +291,8 @@ def prepare(
     encoding : {"auto", "linear", "encoded"}
         Interpretation of the numbers in images; ``auto`` takes integers as encoded, floats as linear.
     out_of_gamut : str
-        Gamut mapping for pixels outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`.
+        Gamut mapping for pixels outside [0, 1], one of `uplift.colorimetry.gamut.METHODS`. Pixels of the colour of an
+        atlas entry outside the RGB space have its spectrum.
     space : str, optional
         RGB space of images, as for `uplift.colorimetry.spaces.find_space`, by default the one that each file states.
     threads : int
@@ -282,6 +331,7 @@ def prepare(
         sample=pixels.make_sampler(cube, threads),
         rgb_error=_rgb_error(cube, threads),
         is_linear=pixels.is_linear,
+        outside=pixels.outside(cube),
         space=None if space is None else find_space(space),
     )
 
