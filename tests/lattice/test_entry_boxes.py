@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from uplift.fit.seeds import MAX_HALF_WIDTH, half_widths
+from uplift.fit.seeds import MAX_HALF_WIDTH, half_widths, outside_half_widths
 from uplift.lattice import Lattice
-from uplift.lattice.entry_boxes import EntryBoxes
+from uplift.lattice.entry_boxes import EntryBoxes, OutsideBoxes
 
 LATTICE = Lattice(np.linspace(0, 1, 7) ** 2)
 unit = st.floats(0, 1)
@@ -88,3 +90,24 @@ def test_no_two_boxes_overlap(rgb):
 def test_only_the_first_entry_of_a_colour_has_a_box():
     rgb = np.array([[0.2, 0.2, 0.2], [0.2, 0.2, 0.2], [0.9, 0.9, 0.9], [0.2, 0.2, 0.2]])
     assert half_widths(LATTICE, rgb).tolist() == [MAX_HALF_WIDTH, 0, MAX_HALF_WIDTH, 0]
+
+
+@given(arrays(float, st.tuples(st.integers(1, 8), st.just(3)), elements=st.floats(-0.3, 1.3)))
+def test_boxes_outside_overlap_neither_each_other_nor_the_space(rgb):
+    rgb = rgb[((rgb < 0) | (rgb > 1)).any(axis=1)]
+    widths = outside_half_widths(LATTICE, rgb)
+    assert ((widths >= 0) & (widths <= MAX_HALF_WIDTH)).all()
+    found = OutsideBoxes(rgb, widths / (LATTICE.dim - 1))
+    corners = rgb[:, None] + found.half_width[:, None, None] * np.array(list(product((-1, 1), repeat=3)))
+    assert ((corners <= 1e-12).all(axis=1) | (corners >= 1 - 1e-12).all(axis=1)).any(axis=1).all()
+    hits = found.find(rgb)
+    assert hits.rows[hits.rows == hits.entry].tolist() == np.flatnonzero(widths).tolist()
+    assert not hits.other_weight[hits.rows == hits.entry].any()
+
+
+def test_the_weight_of_an_entry_outside_is_1_in_its_core_and_0_on_the_faces():
+    found = OutsideBoxes(np.array([[-0.1, 0.5, 0.5]]), np.array([0.1]))
+    shares = np.array([0, 0.05, 0.1, 0.55, 1 - 1e-9, 1.01])
+    hits = found.find(found.rgb + 0.1 * shares[:, None] * [0, -1, 0])
+    assert hits.rows.tolist() == [0, 1, 2, 3, 4]
+    np.testing.assert_allclose(hits.other_weight, [0, 0, 0, 0.5, 1], rtol=0, atol=1e-8)

@@ -95,6 +95,15 @@ def test_an_atlas_outside_the_space_is_refused():
     assert "Display P3" in caught.value.hint
 
 
+def test_of_entries_of_one_colour_outside_the_space_the_first_is_used():
+    cyan = read_atlas(MACBETH)["cyan"]
+    twins = Atlas((Entry("grey", GRID, np.full(81, 0.4)), cyan, Entry("second", cyan.wavelengths, cyan.values)))
+    with warns("entry-out-of-gamut", "entry-out-of-gamut", "entry-duplicate") as caught:
+        cube = uplift.build(twins, dim=4, coefficients=5)
+    assert "'second'" in caught[2].problem
+    assert cube.data.outside_boxes.find(cube.data.atlas.outside.rgb).entry.tolist() == [0, 0]
+
+
 def greys(**levels):
     return Atlas(tuple(Entry(name, GRID, np.full(81, grey)) for name, grey in levels.items()))
 

@@ -152,9 +152,9 @@ class OutsideBoxes:
         rows = np.flatnonzero((rgb < 0).any(axis=1) | (rgb > 1).any(axis=1)) if len(self.rgb) else NO_ROWS
         entry, distance = np.full(len(rows), NO_ENTRY), np.ones(len(rows))
         for box in np.flatnonzero(self.half_width > 0):
-            from_centre = np.abs(rgb[rows] - self.rgb[box]).max(axis=1) / self.half_width[box]
-            inside = from_centre < 1
-            entry[inside], distance[inside] = box, from_centre[inside]
+            from_centre = np.abs(rgb[rows] - self.rgb[box]).max(axis=1)
+            inside = from_centre < self.half_width[box]
+            entry[inside], distance[inside] = box, from_centre[inside] / self.half_width[box]
         hit = entry != NO_ENTRY
         # The weight is 0 in the core of the box, and rises linearly to 1 on its faces.
         return OutsideHits(rows[hit], entry[hit], np.maximum(distance[hit] - CORE, 0) / (1 - CORE))

@@ -327,6 +327,7 @@ def _build(
         options = _choose_lattice(options, problem, constraints, prior, blend)
     lattice, rgb = Lattice(observers.axis_nodes(options.axis, int(options.dim))), constraints.at_nodes.rgb
     boxes, seeds = EntryBoxes(lattice, rgb, half_widths(lattice, rgb)), seed(lattice, rgb)
+    spectra.warn_of_duplicates(constraints.names, boxes.half_width)
     spectra.warn_of_crowding(constraints.names, boxes, seeds)
     own = constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
 
@@ -349,8 +350,9 @@ def _build(
     # Entries outside the RGB space constrain no node: their spectra answer XYZ and textures of other spaces.
     table = constraints.table(model, boxes.half_width, prior.left_out)
     if outside.names:
-        kept_outside = spectra.fit_constraints(problem, entry_model, outside)
-        table = replace(table, outside=kept_outside.table(model, outside_half_widths(lattice, outside.rgb)))
+        half_width = outside_half_widths(lattice, outside.rgb)
+        spectra.warn_of_duplicates(outside.names, half_width)
+        table = replace(table, outside=spectra.fit_constraints(problem, entry_model, outside).table(model, half_width))
     provenance = {
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},

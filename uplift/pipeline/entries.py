@@ -133,13 +133,17 @@ def fit_constraints(problem: Problem, entry_model: Model, entries: MeasuredEntri
     return Constraints(entries.names, entry_model, at_nodes, at_entries)
 
 
-def warn_of_crowding(names: Sequence[str], boxes: EntryBoxes, seeds: Seeds) -> None:
-    """Warn of entries of the same colour, and of those that closer ones deprive of their nearest node."""
-    duplicates = [names[row] for row in np.flatnonzero(boxes.half_width == 0).tolist()]
-    crowded = [names[row] for row in seeds.crowded if boxes.half_width[row]]
+def warn_of_duplicates(names: Sequence[str], half_width: Array) -> None:
+    """Warn of entries of the same colour."""
+    duplicates = [names[row] for row in np.flatnonzero(half_width == 0).tolist()]
     if duplicates:
         problem = f"{_listed(duplicates)} left out: an earlier entry has the same colour, which has only one answer"
         warn(problem, "entry-duplicate")
+
+
+def warn_of_crowding(names: Sequence[str], boxes: EntryBoxes, seeds: Seeds) -> None:
+    """Warn of entries that closer ones deprive of their nearest node."""
+    crowded = [names[row] for row in seeds.crowded if boxes.half_width[row]]
     if crowded:
         warn(
             f"{_listed(crowded)} crowded: closer entries own the nearest lattice point. Queries at the entries' own "
