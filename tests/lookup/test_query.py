@@ -136,6 +136,16 @@ def test_an_entry_outside_the_space_has_its_spectrum_and_its_colour(cyan_cube, d
     assert without_outside(cyan_cube).data.outside_spectra is None
 
 
+def test_a_sparse_cube_answers_an_entry_outside_its_space(cyan_cube):
+    data = cyan_cube.data
+    low = data.lattice.corners(np.array([[0.5, 0.5, 0.5]]))[0]
+    sparse = Cube(replace(data, points=data.points.restricted_to(low[0])))
+    at = data.sensor.xyz(data.atlas.outside.rgb)
+    (found,), (other,) = (list(query_xyz(cube, at)) for cube in (sparse, cyan_cube))
+    np.testing.assert_array_equal(found.reflectance, other.reflectance)
+    assert found.entry == "cyan"
+
+
 def test_answers_change_only_in_the_box_of_an_entry_outside_and_continuously(cyan_cube):
     sensor, boxes = cyan_cube.data.sensor, cyan_cube.data.outside_boxes
     assert boxes.rgb[0, 0] + boxes.half_width[0] <= 0

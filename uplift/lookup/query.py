@@ -133,15 +133,18 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
             code="colour-unrealisable",
             hint="reduce its luminance, where white has Y = 1, or its distance from white",
         )
-    start = data.model.from_storage(coefficients(data, map_to_gamut(rgb, data.sensor, MAPPING).rgb))
-    multipliers = refine_to_rgb(data, data.model, start, rgb)
     hits, entries = data.outside_boxes.find(rgb), data.outside_spectra
+    has_lattice = np.ones(len(rgb), dtype=bool)
+    has_lattice[hits.rows[hits.other_weight == 0]] = False
+    start = data.model.from_storage(coefficients(data, map_to_gamut(rgb[has_lattice], data.sensor, MAPPING).rgb))
+    multipliers = refine_to_rgb(data, data.model, start, rgb[has_lattice])
     own = None
     if entries is not None and hits.rows.size:
         own = refine_to_rgb(data, entries.model, entries.multipliers[hits.entry], rgb[hits.rows])
 
     def spectra(wavelengths: Array) -> Array:
-        found = evaluate(data.model, multipliers, wavelengths)
+        found = np.zeros((len(rgb), len(wavelengths)))
+        found[has_lattice] = evaluate(data.model, multipliers, wavelengths)
         if entries is not None and own is not None:  # t · answer + (1 − t) · entry
             weight = hits.other_weight[:, None]
             found[hits.rows] = weight * found[hits.rows] + (1 - weight) * evaluate(entries.model, own, wavelengths)
@@ -185,8 +188,9 @@ def _block(
     delta_e = delta_e_rgb(sensor, answered, round_trip)
     relit = {light.name: at_sensor @ light.xyz.T for light in lights}
     # Standard errors and error bounds (n, 2), under the build illuminant and under each light.
-    errors = expected_errors(cube, rgb)
-    by_light = {} if errors is None else {light.name: np.asarray(expected_errors(cube, rgb, light)) for light in lights}
+    has_errors = data.points.standard_error is not None
+    errors = _errors_inside(cube, rgb, outside) if has_errors else None
+    by_light = {each.name: _errors_inside(cube, rgb, outside, each) for each in lights} if has_errors else {}
     unlike = np.zeros(len(rgb), dtype=bool) if errors is None else cube.unlike_atlas(rgb)
     # A colour is that of an entry if their 8-bit codes are close.
     codes, entry_codes = cube.encode(rgb), cube.encode(data.atlas.rgb)
@@ -227,3 +231,10 @@ def _block(
             unlike_atlas=bool(unlike[row] and not outside[row]),
             realisable=bool(realisable[row]),
         )
+
+
+def _errors_inside(cube: Cube, rgb: Array, outside: Mask, light: Light | None = None) -> Array:
+    """Standard errors and error bounds (n, 2) of a cube that has them, NaN for colours ``outside`` (n,)."""
+    errors = np.full((len(rgb), 2), np.nan)
+    errors[~outside] = expected_errors(cube, rgb[~outside], light)
+    return errors
