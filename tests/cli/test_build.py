@@ -159,3 +159,15 @@ def test_a_camera_cube_is_built_queried_shown_and_checked(run, ask):
     facts = ask("info", "camera-3.uplift")
     assert (facts["space"], facts["provenance"]["options"]["observer"]) == (NIKON, NIKON)
     run("check", "camera-3.uplift")
+
+
+def test_an_atlas_outside_the_space_is_refused_and_writes_nothing(refuse, run, home):
+    run("build", "--atlas", "./Macbeth.txt", *SMALL, "-o", "cube.uplift")
+    assert uplift.load(home / "cube.uplift").data.atlas.outside.names == ("cyan",)
+    nm = range(380, 790, 10)
+    values = ",".join(str(0.9 if 490 < each < 510 else 0.01) for each in nm)
+    (home / "green.csv").write_text(f"name,{','.join(map(str, nm))}\nnarrow,{values}\n")
+    error = refuse("build", "--atlas", "green.csv", *SMALL, "-o", "none.uplift")
+    assert error.code == "atlas-out-of-gamut"
+    assert "1 outside, 0 skipped" in error.problem
+    assert not (home / "none.uplift").exists()

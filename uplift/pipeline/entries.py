@@ -104,9 +104,9 @@ def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, Measu
     hint = ""
     if not inside.all():
         space = smallest_space(resample(atlas, grid()).values, sensor.illuminant, sensor.observer)
-        hint = f"none of {', '.join(COMMON_SPACES)} holds all {len(atlas)} entries"
+        hint = f"none of {', '.join(COMMON_SPACES)} holds all entries"
         if space is not None:
-            hint = f'build with --space "{space}", which holds all {len(atlas)}, to have it in the lattice'
+            hint = f'build with --space "{space}" to have all entries in the lattice'
     if (len(atlas) or atlas.skipped) and not inside.any():
         problem = f"no entry of the atlas is within {sensor.space}: {len(atlas)} outside, {len(atlas.skipped)} skipped"
         raise AtlasError(problem, code="atlas-out-of-gamut", hint=hint)
