@@ -24,7 +24,7 @@ Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
 SPACE_NAMES = "colorimetry.tables:names:RGB space"
-OBSERVER_NAMES = ("colorimetry.tables:names:observer", "colorimetry.observer:names:camera")
+OBSERVER_NAMES = ("colorimetry.tables:names:observer", "colorimetry.tables:names:camera")
 ILLUMINANT_NAMES = "colorimetry.tables:names:illuminant"
 
 

@@ -23,6 +23,8 @@ FEW = (
     "uplift slices macbeth-32.uplift -o macbeth-32.exr --plot macbeth-32.png",
     "uplift report macbeth-32.uplift --format json | jq .failures",
     "uplift check macbeth-32.uplift",
+    "uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift",
+    "uplift diff macbeth-32.uplift fabrics.uplift",
     "uplift atlas paints.csv -o paints.txt",
     "uplift wavelengths --count 8",
     "uplift palette metamers.toml",

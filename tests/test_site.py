@@ -45,4 +45,4 @@ def test_reference_has_every_command():
     for name in COMMANDS:
         assert f"\n### uplift {name}\n" in reference
     assert "\n### uplift study moments\n" in reference
-    assert "| `--dim DIM` |" in reference
+    assert "| `--dim N` |" in reference

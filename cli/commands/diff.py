@@ -60,9 +60,9 @@ def command(
 
     \b
     Examples:
-      uplift diff macbeth-32.uplift macbeth-8.uplift
-      uplift diff macbeth-32.uplift macbeth-8.uplift wood.png -o wood-diff.html
-      uplift diff macbeth-32.uplift macbeth-8.uplift --tolerance 1 --format json
+      uplift diff macbeth-32.uplift fabrics.uplift
+      uplift diff macbeth-32.uplift fabrics.uplift wood.png -o wood-diff.html
+      uplift diff macbeth-32.uplift fabrics.uplift --tolerance 50 --format json
 
     The cubes may have different lattices, models, atlases and ranges, in one RGB space. Entries are compared by name.
     Without --tolerance the exit code is 0.

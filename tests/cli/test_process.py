@@ -49,7 +49,7 @@ def test_a_query_imports_no_heavy_package():
 
 def test_closed_pipe_is_not_an_error():
     done = shell(f"{UPLIFT} query '#cc3319' --format json | head -c 5")
-    assert (done.stdout, done.stderr) == (b'{"rgb', b"")
+    assert (done.stdout, done.stderr) == (b'{"cub', b"")
 
 
 @needs_full

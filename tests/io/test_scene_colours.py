@@ -49,7 +49,7 @@ def test_points_are_those_of_the_complete_cube(scene_cube, macbeth_cube):
     assert 0 < there.sum() < 0.3 * len(there)
     for name in ("coefficients", "rgb", "distance", "status", "entry", "round", "standard_error"):
         array = getattr(part.points, name)
-        np.testing.assert_allclose(array[there], getattr(whole.points, name)[there], rtol=0, atol=1e-9, err_msg=name)
+        np.testing.assert_allclose(array[there], getattr(whole.points, name)[there], rtol=0, atol=1e-5, err_msg=name)
         absent = {"status": Status.ABSENT, "entry": -1, "round": -1}.get(name, 0)
         assert (array[~there] == absent).all(), name
 
@@ -67,7 +67,7 @@ ANSWERS = [
 def test_answers_to_the_scene_are_those_of_the_complete_cube(scene_cube, macbeth_cube, photo_colours, answer):
     assert scene_cube.covers(photo_colours).all()
     answers = (answer(cube, photo_colours[::10]) for cube in (scene_cube, macbeth_cube))
-    np.testing.assert_allclose(*answers, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(*answers, rtol=0, atol=1e-6)
 
 
 def test_an_error_quotes_the_first_colour_that_is_not_covered(small_cube):
