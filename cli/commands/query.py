@@ -241,7 +241,7 @@ class QueryStream:
         """Return which cube answers on one line."""
         source = self.source()
         atlases = ", ".join(source["atlases"]) or "no atlas"
-        return f"{source['file']}: {source['dim']}³ nodes, {atlases}"
+        return f"{Path(source['file']).name}: {source['dim']}³ nodes, {atlases}"
 
     def results(self, blocks: Iterable[Array]) -> Iterator[list[QueryResult]]:
         """Answer block by block, each before the next one is read."""

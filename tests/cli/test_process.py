@@ -99,7 +99,10 @@ def texture(tmp_path):
     for name in ("a.png", "b.png"):
         Image.fromarray(np.full((4096, 4096, 3), 100, np.uint8)).save(tmp_path / name, compress_level=1)
     command = [sys.executable, "-m", "uplift_cli", "texture", "a.png", "b.png", "-o", "out", "--processes", "2"]
+    # A shell without job control starts what runs in its background with SIGINT ignored.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as process:
+        signal.signal(signal.SIGINT, before)
         wait_until(lambda: len(list((tmp_path / "out").glob(".*.part"))) == 2 or process.poll() is not None)
         yield process
         process.kill()
