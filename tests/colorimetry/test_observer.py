@@ -46,7 +46,8 @@ def test_colours_agree_with_colour_science(sensor):
         xyz = colour.sd_to_XYZ(samples, cmfs, d65, method="Integration") / 100
         np.testing.assert_allclose(sensor.rgb(samples.values), colour.XYZ_to_RGB(xyz, "sRGB"), atol=5e-4)
         np.testing.assert_allclose(sensor.xyz(sensor.rgb(samples.values)), xyz, rtol=1e-9)
-    np.testing.assert_array_equal(sensor.decoding, colour.RGB_COLOURSPACES["sRGB"].cctf_decoding(np.arange(256) / 255))
+    decoding = colour.RGB_COLOURSPACES["sRGB"].cctf_decoding(np.arange(256) / 255)
+    np.testing.assert_allclose(sensor.decoding, decoding, rtol=1e-14)  # powers differ between instruction sets
 
 
 @pytest.mark.parametrize("dim", [2, 3, 8, 16, 33, 128])

@@ -20,7 +20,10 @@ def test_the_file_has_the_numbers_of_colour_science():
     with np.load(tables.PATH) as stored:
         assert set(stored) == set(arrays)
         for name, values in arrays.items():
-            np.testing.assert_array_equal(stored[name], values, err_msg=name)
+            if values.dtype.kind == "U":
+                np.testing.assert_array_equal(stored[name], values, err_msg=name)
+            else:  # instruction sets round interpolated values and powers differently
+                np.testing.assert_allclose(stored[name], values, rtol=1e-12, atol=1e-14, err_msg=name)
 
 
 @pytest.mark.parametrize("white", ["D50", "A", "FL11"])
