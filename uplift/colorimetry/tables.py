@@ -1,7 +1,8 @@
 """Tables of colour-science by name: observers, illuminants, lamps, cameras and RGB spaces.
 
 Importing colour-science takes a second, so what most commands need is in a file that ``tools/ship_tables.py`` makes of
-it: spectra on 380–780 nm every 5 nm, and RGB spaces. Everything else comes from colour-science itself.
+it: spectra on 380–780 nm every 5 nm, and RGB spaces. Everything else comes from colour-science itself. The data are
+Copyright 2013 Colour Developers, BSD-3-Clause, as part of colour-science.
 """
 
 from __future__ import annotations
