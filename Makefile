@@ -14,7 +14,7 @@ AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 build: $(INSTALLED)
 	mkdir -p $(OUT)
 	$(BIN)/uplift build --atlas atlases/macbeth.txt --dim 32 --debug -o $(OUT)/macbeth-32.uplift --force
-	$(BIN)/uplift slices $(OUT)/macbeth-32.uplift -o $(OUT)/macbeth-32.exr --plot $(OUT)/macbeth-32.png --force
+	$(BIN)/uplift slices $(OUT)/macbeth-32.uplift --plot $(OUT)/macbeth-32.png --force
 	$(BIN)/uplift query --cube $(OUT)/macbeth-32.uplift '#da7b2a' --plot $(OUT)/orange.png --force
 
 lint: $(INSTALLED)
