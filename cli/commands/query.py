@@ -157,6 +157,8 @@ def command(
     from uplift.common.files import check_outputs
 
     if answers is not None:
+        if colours["colour"] or any(colours[name] is not None for name in ("input_path", "xyz", "xy")):
+            raise click.UsageError("--check takes the colours from its FILE: give no others.")
         _check(answers, colours["cube_path"], colours["mode"], tolerance, style)
         return
     check_outputs((plot_path,), inputs=(colours["cube_path"], colours["input_path"]), force=force)

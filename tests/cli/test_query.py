@@ -334,7 +334,7 @@ def test_texts(run, table, macbeth_cube):
     assert [line.split()[0] for line in lines[2:]] == ["#cc3319", "#ffffff", "#000000"]
 
 
-def test_stored_answers_are_checked(run, refuse, home, small_cube, plain_cube, table):
+def test_stored_answers_are_checked(run, refuse, misuse, home, small_cube, plain_cube, table):
     small_cube.save(home / "a.uplift")
     plain_cube.save(home / "b.uplift")
     colours = table("0.2,0.3,0.4\n0.5,0.1,0.7\n")
@@ -346,7 +346,8 @@ def test_stored_answers_are_checked(run, refuse, home, small_cube, plain_cube, t
     run("query", "--cube", "b.uplift", "--check", "answers.csv", "--tolerance", "1")
     (home / "bad.csv").write_text("r,g,b,500\n0.1,0.2,0.3,x\n")
     assert refuse("query", "--check", "bad.csv").where == "bad.csv:2"
-    for text in ("", "r,g,b\n0,0,0\n", "r,g,b,500\n"):
+    assert "--check" in misuse("query", "#fff", "--check", "answers.csv")
+    for text in ("", "r,g,b\n0,0,0\n", "r,g,b,500\n", "r,g,b," + "5" * 200_000):
         (home / "bad.csv").write_text(text)
         assert refuse("query", "--check", "bad.csv").where == "bad.csv"
 

@@ -36,15 +36,18 @@ def read_answers(path: StrPath) -> StoredAnswers:
 
     Raises `ColourError` for a file that cannot be read, or that has no such table.
     """
-    data = read_bytes(path, ColourError, limit=MAX_BYTES, hint="name a file of 'uplift query --format csv'")
-    header, *rows = csv.reader(data.decode("utf-8", errors="replace").splitlines()) if data else [[]]
+    data = read_bytes(path, ColourError, limit=MAX_BYTES, hint="name a CSV file of answers")
+    try:
+        header, *rows = csv.reader(data.decode("utf-8", errors="replace").splitlines()) if data else [[]]
+    except csv.Error as error:
+        raise ColourError(f"is not CSV: {error}", path=path, hint="name a CSV file of answers") from error
     wanted = {name: column for column, name in enumerate(header)}
     at = {value: column for name, column in wanted.items() if math.isfinite(value := _number(name))}
     if not {"r", "g", "b"} <= wanted.keys() or not at or not rows:
         raise ColourError(
             "must have columns r, g and b, columns of wavelengths, and rows",
             path=path,
-            hint="write it by 'uplift query --format csv'",
+            hint="write it as queries are written in CSV",
         )
     columns = [wanted[name] for name in "rgb"] + [at[nm] for nm in sorted(at)]
     values = np.full((len(rows), len(columns)), np.nan)
