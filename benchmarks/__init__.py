@@ -1,7 +1,5 @@
 """Measurements shown in docs/, one file per page: ``make measure PAGE=name`` runs one and renders the pages."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 from typing import Any

@@ -5,8 +5,6 @@ pages whose figures are not of the last commit of the code, so that an interrupt
 not stop the others.
 """
 
-from __future__ import annotations
-
 import ast
 import json
 import os

@@ -1,7 +1,5 @@
 """Round trips, ranges, orders of growth and solvers of cubes, for docs/accuracy.md."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable, Iterator
 from functools import partial

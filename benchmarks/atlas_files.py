@@ -1,7 +1,5 @@
 """Formats of atlas files, and how closely files in the layouts of instruments are read, for docs/atlas-files.md."""
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Raw values of cameras to XYZ on held-out patches, by cubes and by matrices, for docs/cameras.md."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from typing import Any

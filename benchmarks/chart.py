@@ -1,7 +1,5 @@
 """Speed and accuracy of all methods, for docs/chart.md and its pictures, and for ``uplift chart --recommend``."""
 
-from __future__ import annotations
-
 import sys
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The ColorChecker: measured spectra and painted RGB, as a picture and as a Mitsuba scene."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

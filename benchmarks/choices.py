@@ -3,8 +3,6 @@
 A figure is *optimistic* if a choice behind its method was made with the set that it is measured on.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@ lattice. They may change spectra; the largest difference is what `uplift check` 
 (`uplift.report.regression`).
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Gamut mapping of Munsell chips outside sRGB, for docs/display.md and its picture."""
 
-from __future__ import annotations
-
 import warnings
 from collections import defaultdict
 from dataclasses import dataclass

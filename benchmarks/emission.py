@@ -1,7 +1,5 @@
 """Emission tables: lamps left out, exactness, expected errors and cost, for docs/emission.md."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from functools import partial

@@ -1,7 +1,5 @@
 """Spectra of cubes compared with measured spectra, for docs/fidelity.md and docs/prior.md."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from dataclasses import asdict

@@ -1,7 +1,5 @@
 """Cubes with looks, and a scene of two cubes, for docs/look-cubes.md and its picture."""
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 from collections.abc import Iterator, Sequence

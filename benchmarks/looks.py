@@ -4,8 +4,6 @@ Largest ΔE00 and share of each colour, the cost of many colours, how much more 
 finds, the share of held-out materials in the likely region, and a screenshot of the page.
 """
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 from collections.abc import Iterator

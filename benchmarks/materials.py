@@ -1,7 +1,5 @@
 """Measured materials that cubes are tested on, and the errors of answers for them."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,7 +34,7 @@ class Materials:
     measured: Array
     rgb: Array
 
-    def take(self, rows: Sequence[int] | Array) -> Materials:
+    def take(self, rows: Sequence[int] | Array) -> "Materials":
         """Select some of the entries."""
         return Materials(self.name, self.measured[rows], self.rgb[rows])
 

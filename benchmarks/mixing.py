@@ -1,7 +1,5 @@
 """Mixing models: criteria, assumed scattering, times and pictures, for docs/mixing.md."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Reconstruction of spectra from moments, compared with Tódová 2020, for docs/moments.md and its pictures."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """Accuracy of the palette's factor model, and pictures of the examples, for docs/palette.md."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -8,8 +8,6 @@ blurred and noisy as a scanner's. A transfer function assigns each density to a 
 accumulate the materials from the eye on, as a volume renderer does. The picture is without light.
 """
 
-from __future__ import annotations
-
 import sys
 import tempfile
 from pathlib import Path

@@ -3,8 +3,6 @@
 The task is the lattice of linear sRGB under D65, without an atlas. Answers are checked before they are timed.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -3,8 +3,6 @@
 Results are checked before they are timed.
 """
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys

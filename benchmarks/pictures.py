@@ -1,7 +1,5 @@
 """Images distributed with scikit-image, scikit-learn, colour-science and matplotlib."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass

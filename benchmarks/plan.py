@@ -1,7 +1,5 @@
 """Scene plans for real images, checked by an independent computation, for docs/plan.md."""
 
-from __future__ import annotations
-
 import json
 import os
 import resource

@@ -1,7 +1,5 @@
 """The ColorChecker rendered with several methods, for docs/render.md and its picture."""
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 from dataclasses import dataclass

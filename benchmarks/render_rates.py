@@ -4,8 +4,6 @@ Every variant is measured in a child process, as an LLVM too old for Mitsuba end
 round; a ratio is that of the CPU times of one round.
 """
 
-from __future__ import annotations
-
 import sys
 import tempfile
 import time

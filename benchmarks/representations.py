@@ -1,7 +1,5 @@
 """Spectral representations compared with Kment 2011, for docs/representations.md and its pictures."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

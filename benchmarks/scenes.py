@@ -1,7 +1,5 @@
 """Size and time of sparse cubes for real images, for docs/scenes.md."""
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 from pathlib import Path

@@ -4,8 +4,6 @@ The light on the charts is uniform, so that spectra are integrated
 instead of rendered; docs/render.md has renderings of the same chart, which agree.
 """
 
-from __future__ import annotations
-
 import io
 import tempfile
 import warnings

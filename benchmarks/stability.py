@@ -1,7 +1,5 @@
 """Failures of fits and sensitivity of stored cubes, for docs/stability.md and its pictures."""
 
-from __future__ import annotations
-
 import sys
 import warnings
 from typing import Any

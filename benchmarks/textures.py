@@ -1,7 +1,5 @@
 """Accuracy, speed and memory of spectral textures, for docs/textures.md."""
 
-from __future__ import annotations
-
 import tempfile
 import warnings
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Selection of wavelengths, and reproduction of Meyer 1988, for docs/wavelengths.md and its pictures."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any

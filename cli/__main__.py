@@ -1,7 +1,5 @@
 """``python -m uplift_cli``, and the entry point of ``uplift``."""
 
-from __future__ import annotations
-
 import gc
 import sys
 

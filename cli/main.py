@@ -1,7 +1,5 @@
 """``uplift``: find the command, run it, and print errors and warnings on one line each."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib
 import sys

@@ -1,7 +1,5 @@
 """Settings of the process: streams, signals, and variables that must precede the import of JAX or numpy."""
 
-from __future__ import annotations
-
 import io
 import os
 import signal

@@ -1,7 +1,5 @@
 """Configuration of the documentation site: ``make site`` builds it from docs/ with Sphinx."""
 
-from __future__ import annotations
-
 import os
 
 from pygments.lexers.c_cpp import CLexer

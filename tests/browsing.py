@@ -3,8 +3,6 @@
 Widths change the layout and schemes the colours, never both: two states show what four would.
 """
 
-from __future__ import annotations
-
 import json
 import time
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Fixtures of many tests. Builds are slow, so cubes are built once per run or read from ``cubes/``."""
 
-from __future__ import annotations
-
 import os
 import warnings
 from collections import Counter

@@ -4,8 +4,6 @@
 folder, and exits with 1 if one fails; ``tests/test_examples.py`` runs a few.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

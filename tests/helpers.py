@@ -1,7 +1,5 @@
 """Assertions on errors and warnings by their stable codes; cubes with changed or absent points."""
 
-from __future__ import annotations
-
 import contextlib
 import warnings
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """HTML pages as tests read them: elements, texts and tables."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 

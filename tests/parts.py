@@ -3,8 +3,6 @@
 A part that is there need not work: Dr.Jit finds any LLVM and aborts with an old one.
 """
 
-from __future__ import annotations
-
 import subprocess
 import tempfile
 from collections.abc import Callable

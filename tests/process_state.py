@@ -1,7 +1,5 @@
 """What a process has once: the environment, the working folder and the variant of Mitsuba."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import sys

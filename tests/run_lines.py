@@ -4,8 +4,6 @@ Standard input is a JSON list of lines, standard output a JSON list of outcomes.
 ``mkdir -p FOLDER`` and ``| jq .KEY``, which checks for the key. The package must come from the folder UPLIFT_FROM.
 """
 
-from __future__ import annotations
-
 import glob
 import json
 import os

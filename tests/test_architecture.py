@@ -1,7 +1,5 @@
 """The import contracts of pyproject.toml hold, and violations of them are detected."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

@@ -1,7 +1,5 @@
 """Numbers in the prose of the documentation: each is listed in docs/data/claims.toml and agrees with its source."""
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import json

@@ -1,7 +1,5 @@
 """The documentation is valid: its commands and options exist, its Python runs, its links resolve."""
 
-from __future__ import annotations
-
 import re
 import shlex
 

@@ -1,7 +1,5 @@
 """docs/errors.md lists the explicit codes of errors and warnings."""
 
-from __future__ import annotations
-
 import json
 
 from tools.error_codes import collect

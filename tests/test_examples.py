@@ -1,7 +1,5 @@
 """A few examples run as written, in an empty folder outside the clone, from a wheel; `make examples` runs all."""
 
-from __future__ import annotations
-
 import pytest
 from uplift_cli.main import COMMANDS
 

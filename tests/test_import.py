@@ -1,7 +1,5 @@
 """``import uplift`` is light, changes no global setting, and exposes the public interface."""
 
-from __future__ import annotations
-
 import inspect
 import subprocess
 import sys

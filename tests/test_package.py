@@ -1,7 +1,5 @@
 """The wheel holds the library, the command line, the default cube and the atlases, and nothing else."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import zipfile

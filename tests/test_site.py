@@ -1,7 +1,5 @@
 """The documentation site: every page is there, notebooks have run, and no network is needed to read it."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """The reference of the command line: Markdown made from click's commands, for the documentation site."""
 
-from __future__ import annotations
-
 import inspect
 import re
 import textwrap

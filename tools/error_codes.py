@@ -1,7 +1,5 @@
 """List the codes of errors and warnings in the source: writes docs/data/errors.json."""
 
-from __future__ import annotations
-
 import ast
 import json
 from collections.abc import Iterator

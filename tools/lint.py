@@ -1,7 +1,5 @@
 """Check prose and docstrings: banned words (tools/banned_words.txt) and numpydoc sections of the reference."""
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import io

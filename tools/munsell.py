@@ -4,8 +4,6 @@ The data are 1,269 matt chips measured at the University of Joensuu, 380–800 n
 so the output is for local use only.
 """
 
-from __future__ import annotations
-
 import csv
 import sys
 from pathlib import Path

@@ -11,8 +11,6 @@ Examples
     python -m tools.render_docs accuracy       # one page
 """
 
-from __future__ import annotations
-
 import csv
 import json
 import statistics

@@ -3,8 +3,6 @@
 atlases/README.md describes the files; tests/atlas/test_shipped.py compares them with the output.
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

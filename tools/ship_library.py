@@ -4,8 +4,6 @@ It consists of the shipped atlases, and of spectra by Otsu et al. 2018, which st
 clusters were learnt from. tests/fit/test_library.py compares the shipped file with the output.
 """
 
-from __future__ import annotations
-
 import sys
 import warnings
 from pathlib import Path

@@ -3,8 +3,6 @@
 `uplift.colorimetry.tables` reads them; tests/colorimetry/test_tables.py compares them with colour-science.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Build the stored cubes of ``cubes/``, which ``uplift check`` compares, and the cubes and lights of the package."""
 
-from __future__ import annotations
-
 import shutil
 import warnings
 from itertools import product

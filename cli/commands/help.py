@@ -1,7 +1,5 @@
 """``uplift help``: topics that concern several commands, from the documentation of the code."""
 
-from __future__ import annotations
-
 import inspect
 import re
 from collections.abc import Callable

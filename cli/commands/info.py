@@ -1,7 +1,5 @@
 """``uplift info``: contents of a cube file."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import click

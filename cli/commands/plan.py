@@ -1,7 +1,5 @@
 """``uplift plan``: choose cube, wavelengths and texture format for a scene."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import click

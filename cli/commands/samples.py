@@ -1,7 +1,5 @@
 """``uplift samples``: copy the files of the examples into a folder."""
 
-from __future__ import annotations
-
 import click
 
 from .. import options

@@ -1,7 +1,5 @@
 """``uplift slices``: write a cube as OpenEXR and as a contact sheet."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import click

@@ -1,7 +1,5 @@
 """``uplift study``: measurements of models, solver and errors."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial

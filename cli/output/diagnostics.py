@@ -1,7 +1,5 @@
 """Errors and warnings on standard error: one line each, or JSON, with hints in terms of command-line options."""
 
-from __future__ import annotations
-
 import contextlib
 import signal
 from pathlib import Path

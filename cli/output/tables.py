@@ -1,7 +1,5 @@
 """Tables whose texts come from files; imported when a table is printed, as it loads rich."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from rich.cells import cell_len

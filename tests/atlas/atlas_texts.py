@@ -1,7 +1,5 @@
 """Entries as text, for the atlas tests."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 ATLASES = Path(__file__).parents[2] / "atlases"

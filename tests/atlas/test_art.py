@@ -1,7 +1,5 @@
 """Reader of the ART measurement archive."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

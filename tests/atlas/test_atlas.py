@@ -1,7 +1,5 @@
 """`Atlas` as a sequence with names, entries from Python, distributions of other libraries, and resampling."""
 
-from __future__ import annotations
-
 import warnings
 from types import SimpleNamespace
 

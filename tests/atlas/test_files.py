@@ -1,7 +1,5 @@
 """Files in general and tables: unreadable ones, sources, and round trips that keep every bit."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import tempfile

@@ -1,7 +1,5 @@
 """The files of atlases/ agree with tools/ship_atlases.py and the tables of colour-science."""
 
-from __future__ import annotations
-
 import runpy
 
 import pytest

@@ -1,7 +1,5 @@
 """Files in the layouts of instruments and programs give the spectra that they were written from."""
 
-from __future__ import annotations
-
 import contextlib
 import sys
 

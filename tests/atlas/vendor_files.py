@@ -3,8 +3,6 @@
 Each file in layouts/ is the text of a layout as a template of Jinja, in archives the texts of all parts.
 """
 
-from __future__ import annotations
-
 import io
 import re
 import zipfile

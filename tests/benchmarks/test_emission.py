@@ -1,7 +1,5 @@
 """Evidence on emission tables: what predictions must not know, other methods, exactness, on small tables."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import replace
 

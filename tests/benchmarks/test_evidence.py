@@ -1,7 +1,5 @@
 """Programs of pages whose computations nothing else tests: matrices of cameras, closed cells, the scan."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The pages of measurements are renderings of the stored data, and each has a program in benchmarks/."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import subprocess

@@ -1,7 +1,5 @@
 """Checks of other tools' answers, and rows of tools that are absent, crash or hang."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import time

@@ -1,8 +1,6 @@
 """The rendered ColorChecker, small and noisy: layout, reference, errors."""
 
 # ruff: noqa: E402  (what follows imports Mitsuba)
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

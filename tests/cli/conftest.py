@@ -1,7 +1,5 @@
 """Running the command line inside this process."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator
 from pathlib import Path

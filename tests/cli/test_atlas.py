@@ -1,7 +1,5 @@
 """``uplift atlas``."""
 
-from __future__ import annotations
-
 import csv
 import io
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``uplift bounds``, up to a cube that answers a choice on its page."""
 
-from __future__ import annotations
-
 import csv
 import io
 import tomllib

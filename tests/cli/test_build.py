@@ -1,7 +1,5 @@
 """``uplift build``."""
 
-from __future__ import annotations
-
 import os
 import re
 import signal

@@ -1,7 +1,5 @@
 """``uplift chart``."""
 
-from __future__ import annotations
-
 import os
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """``uplift check``, and cubes that are rebuilt without AVX-512."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import os

@@ -1,7 +1,5 @@
 """``uplift compare``."""
 
-from __future__ import annotations
-
 import csv
 import json
 import re

@@ -1,7 +1,5 @@
 """``uplift diff``."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

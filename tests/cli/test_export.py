@@ -1,7 +1,5 @@
 """``uplift export``."""
 
-from __future__ import annotations
-
 import shutil
 
 import numpy as np

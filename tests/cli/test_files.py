@@ -1,7 +1,5 @@
 """No command replaces a file that it reads, all outputs are checked before any is written, and any name will do."""
 
-from __future__ import annotations
-
 import shutil
 
 import numpy as np

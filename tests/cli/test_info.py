@@ -1,7 +1,5 @@
 """``uplift info``."""
 
-from __future__ import annotations
-
 import uplift
 from uplift.cube import digest
 

@@ -1,7 +1,5 @@
 """``uplift lights``, and commands that need a cube."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

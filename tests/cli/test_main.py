@@ -1,7 +1,5 @@
 """Behaviour that all commands share: help, completion, numbers, errors and warnings, tables and progress."""
 
-from __future__ import annotations
-
 import errno
 import json
 import subprocess

@@ -1,7 +1,5 @@
 """``uplift palette``."""
 
-from __future__ import annotations
-
 import matplotlib.image
 import numpy as np
 import pytest

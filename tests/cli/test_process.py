@@ -1,7 +1,5 @@
 """``uplift`` as a process: what it imports, its streams, the signals that end it, and its cache folder."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

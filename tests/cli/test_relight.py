@@ -1,7 +1,5 @@
 """``uplift relight`` and ``uplift samples``."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from PIL import Image

@@ -1,7 +1,5 @@
 """``uplift report``."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil

@@ -1,7 +1,5 @@
 """Cubes of a scene on the command line."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

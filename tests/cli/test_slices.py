@@ -1,7 +1,5 @@
 """``uplift slices``."""
 
-from __future__ import annotations
-
 import OpenEXR
 import pytest
 

@@ -1,7 +1,5 @@
 """``uplift study``."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

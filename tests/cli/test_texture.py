@@ -1,7 +1,5 @@
 """``uplift texture``."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

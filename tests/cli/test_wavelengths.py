@@ -1,7 +1,5 @@
 """``uplift wavelengths``."""
 
-from __future__ import annotations
-
 import matplotlib.image
 import numpy as np
 import pytest

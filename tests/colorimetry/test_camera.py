@@ -1,7 +1,5 @@
 """Sensors of cameras: sensitivities by name and from files, and the matrix of a camera that is a linear map of XYZ."""
 
-from __future__ import annotations
-
 import colour
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """L*a*b*, ΔE00 and dominant wavelength compared with published pairs and with colour-science."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import colour

@@ -1,7 +1,5 @@
 """Expected errors, learnt from left-out entries."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.spatial.distance import cdist

@@ -1,7 +1,5 @@
 """Gamuts of displays: matrices, Oklab, and laws of each mapping, with a root finder as the oracle."""
 
-from __future__ import annotations
-
 import colour
 import numpy as np
 import pytest

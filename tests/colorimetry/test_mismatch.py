@@ -1,7 +1,5 @@
 """Extreme reflectances, mismatch volumes and largest differences: laws, measured metamers and linear programs."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from matplotlib.path import Path

@@ -1,7 +1,5 @@
 """Sensors, lights, RGB spaces and codes by name, compared with colour-science."""
 
-from __future__ import annotations
-
 import colour
 import numpy as np
 import PyOpenColorIO

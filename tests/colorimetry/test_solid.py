@@ -1,7 +1,5 @@
 """The object-colour solid compared with a bounded linear solver."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.optimize import lsq_linear

@@ -1,7 +1,5 @@
 """The shipped tables are those of the installed colour-science, number by number."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

@@ -1,7 +1,5 @@
 """Errors: location, problem and hint on one line, a stable code, and the built-in error that each also is."""
 
-from __future__ import annotations
-
 import inspect
 
 import pytest

@@ -1,7 +1,5 @@
 """Files are complete or absent, and never take the place of an input."""
 
-from __future__ import annotations
-
 import errno
 import os
 import stat

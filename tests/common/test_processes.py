@@ -1,7 +1,5 @@
 """A child process may crash or hang; the limit of BLAS threads when several threads compute at once."""
 
-from __future__ import annotations
-
 import os
 import signal
 import time

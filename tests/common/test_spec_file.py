@@ -1,7 +1,5 @@
 """Reading and validation of TOML and JSON files: locations, limits and control characters."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.helpers import raises

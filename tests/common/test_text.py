@@ -1,7 +1,5 @@
 """Text that is safe to show, numbers in text, and CSV."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """Forged cube files with valid digests."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import struct

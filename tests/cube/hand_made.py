@@ -1,7 +1,5 @@
 """A cube of known numbers, without a fit."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

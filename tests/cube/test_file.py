@@ -1,7 +1,5 @@
 """Cube files: everything written is read back, and all other files are refused."""
 
-from __future__ import annotations
-
 import dataclasses
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Every valid cube is read back unchanged and written again as the same bytes."""
 
-from __future__ import annotations
-
 import tempfile
 from dataclasses import replace
 from pathlib import Path

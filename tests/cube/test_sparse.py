@@ -1,7 +1,5 @@
 """Files of sparse cubes: present points only, and errors for points without a place."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Base spectra: nearly the colour, dark where the colour is dark, and learnt ones better for unknown materials."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

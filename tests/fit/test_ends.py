@@ -1,7 +1,5 @@
 """Black, white, the primaries and colours near them: finite, and as exact as all others."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

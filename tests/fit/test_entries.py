@@ -1,7 +1,5 @@
 """Fitted atlas entries: exact colour, close spectrum, close colours under other lights."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.optimize import leastsq

@@ -1,7 +1,5 @@
 """Families of materials: the shipped library, kriging against the explicit covariance, and relevances."""
 
-from __future__ import annotations
-
 from importlib.resources import files
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Growth, improvement and storage, from the prior and as in Tódová 2020, section 3.1: any seeds fit all nodes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

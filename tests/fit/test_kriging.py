@@ -1,7 +1,5 @@
 """Kriging of deviations against dense linear algebra, and kernels learnt where the best kernel is known."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

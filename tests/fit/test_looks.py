@@ -1,7 +1,5 @@
 """Designed reflectances of looks: exact colours, wishes of real materials met, and the nearest colour where none is."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

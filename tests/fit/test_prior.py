@@ -1,7 +1,5 @@
 """The prior: the spectrum of an entry at its colour, and standard errors of left-out entries."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Realisable colours are fitted; all others are reported and replaced by the nearest realisable colour."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -4,8 +4,6 @@ that an atlas needs.
 Cells of the lattice of 6³ are 20 to 60 ΔE*ab long, so that corners are far from their entries; those of 64³ are near.
 """
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

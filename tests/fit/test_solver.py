@@ -1,7 +1,5 @@
 """The solver against scipy, run by optimistix itself, and with any other solver of optimistix in its place."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

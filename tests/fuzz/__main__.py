@@ -1,7 +1,5 @@
 """`make nightly`: every target with many inputs; those that fail are kept in out/fuzz."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor

@@ -1,7 +1,5 @@
 """Fuzz target of the command line: names that terminals, spreadsheets, pages or figures may obey."""
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import io

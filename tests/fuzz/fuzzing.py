@@ -1,7 +1,5 @@
 """Random mutation of seeds, and runs of a target with many inputs under limits of time and memory."""
 
-from __future__ import annotations
-
 import functools
 import re
 import resource

@@ -1,7 +1,5 @@
 """Fuzz targets of the readers: seeds of each format, and what is done with a file that is accepted."""
 
-from __future__ import annotations
-
 import csv
 import dataclasses
 import functools

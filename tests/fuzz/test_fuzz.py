@@ -1,7 +1,5 @@
 """Short fuzz campaigns of all readers and of the command line."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.fuzz import fuzzing

@@ -1,7 +1,5 @@
 """Writers that are killed, and builds at once: the old or a complete new file remains, and cubes are equal."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Cubes built for a scene: the answers of the complete cube to its colours, and errors for all others."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """OpenEXR slices, read by the OpenEXR package."""
 
-from __future__ import annotations
-
 import json
 import time
 from itertools import product

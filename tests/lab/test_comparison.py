@@ -1,7 +1,5 @@
 """Comparison of representations: errors are those of single products, the best filter is found, pictures have all."""
 
-from __future__ import annotations
-
 import csv
 import json
 import re

@@ -1,7 +1,5 @@
 """Timings and their environment."""
 
-from __future__ import annotations
-
 import subprocess
 
 import pytest

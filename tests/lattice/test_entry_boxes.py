@@ -1,7 +1,5 @@
 """Entry boxes against their definition."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

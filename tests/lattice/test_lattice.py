@@ -1,7 +1,5 @@
 """The lattice: numbering, cells, weights, neighbours."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,7 +1,5 @@
 """Emission tables of measured lamps: exact lamps, and input that is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

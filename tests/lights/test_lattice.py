@@ -1,7 +1,5 @@
 """The lattice over chromaticity: weights give back the chromaticity, single wavelengths are on its rim."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

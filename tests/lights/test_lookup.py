@@ -1,7 +1,5 @@
 """Queries of an emission table: exact colour, no negative power, lamps, and colours that no light has."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

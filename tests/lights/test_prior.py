@@ -1,7 +1,5 @@
 """Lights expected at chromaticities: exact, positive, near lamps where there are any; entries in discs."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

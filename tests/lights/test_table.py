@@ -1,7 +1,5 @@
 """Files of emission tables: round trip, damage, and content that is refused although its digest is valid."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Bounds of answers under other lights."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from tests.helpers import raises

@@ -1,7 +1,5 @@
 """Bulk queries agree with numpy, for all shapes, sizes and numbers of threads."""
 
-from __future__ import annotations
-
 import pickle
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Queries of a cube: shapes, types of input, blocks and threads, 8-bit codes, files by name, and invalid arguments."""
 
-from __future__ import annotations
-
 import os
 
 import colour

@@ -1,7 +1,5 @@
 """Entries with more coefficients than the nodes, in every way of looking a colour up."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

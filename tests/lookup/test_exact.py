@@ -1,7 +1,5 @@
 """Exact colours where nodes are unrealisable: docs/mathematics.md, 9."""
 
-from __future__ import annotations
-
 import pickle
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Missing points filled from another cube: exact colours in every model."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

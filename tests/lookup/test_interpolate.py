@@ -1,7 +1,5 @@
 """The four modes of interpolation: exact at nodes, near the colour elsewhere, continuous between cells."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

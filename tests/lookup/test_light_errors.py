@@ -1,7 +1,5 @@
 """Standard errors under any light: calibrated on materials that the cube does not know."""
 
-from __future__ import annotations
-
 import dataclasses
 import warnings
 

@@ -1,7 +1,5 @@
 """Results of detailed queries, by RGB and by XYZ inside and outside the space of the cube."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import colour

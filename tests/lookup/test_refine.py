@@ -1,7 +1,5 @@
 """Refinement in columns: the minimum-norm steps of the fit, and the distances of a direct evaluation."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The vectorised arc tangent compared with the C library, for all magnitudes; sliced matrix products."""
 
-from __future__ import annotations
-
 import jax
 import jax.numpy as jnp
 import numpy as np

@@ -1,7 +1,5 @@
 """Moments and multipliers (docs/mathematics.md, 4), compared with definitions and adaptive integration."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,7 +1,5 @@
 """Steps towards a colour compared with dense linear algebra."""
 
-from __future__ import annotations
-
 import jax
 import numpy as np
 

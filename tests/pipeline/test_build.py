@@ -1,7 +1,5 @@
 """Builds of the ColorChecker and without an atlas, in several sizes and both models."""
 
-from __future__ import annotations
-
 import dataclasses
 import inspect
 import warnings

@@ -1,7 +1,5 @@
 """Cubes of cameras: built, stored, read, queried and rebuilt."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Looks of files and builds: met exactly, recorded, rebuilt; refused where they contradict or cannot be met."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Builds with a prior, libraries and families left out: recorded, repeatable; contradictions are errors."""
 
-from __future__ import annotations
-
 import shutil
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Cubes of other ranges and steps of wavelengths: entries measured farther, and entries cut short."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

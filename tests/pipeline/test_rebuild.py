@@ -1,7 +1,5 @@
 """Rebuilds of cubes from their recorded options and atlas files."""
 
-from __future__ import annotations
-
 import dataclasses
 import shutil
 

@@ -1,7 +1,5 @@
 """Assessed cubes, shared by the session."""
 
-from __future__ import annotations
-
 import dataclasses
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Numbers of an assessment against slow reference implementations."""
 
-from __future__ import annotations
-
 import dataclasses
 import itertools
 

@@ -1,7 +1,5 @@
 """Report of an emission table: its numbers, and a page that is complete, self-contained and safe."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

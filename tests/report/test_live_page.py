@@ -1,7 +1,5 @@
 """Live page: the picture in the browser agrees with Python."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Look page: its numbers; in Chromium a drag changes the spectrum, the RGB stays, and colours are those of Python."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """Page and JSON of a report: complete, self-contained, and safe for any entry name."""
 
-from __future__ import annotations
-
 import json
 import re
 

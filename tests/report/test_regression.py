@@ -1,7 +1,5 @@
 """Comparison of a stored cube with a rebuilt one: what passes, and that all else fails."""
 
-from __future__ import annotations
-
 import dataclasses
 from pathlib import Path
 

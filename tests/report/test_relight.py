@@ -1,7 +1,5 @@
 """Relit colours: laws, a plain counterpart that integrates spectra, and measured atlas entries."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Relit images as pictures and as a page, in Chromium too."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Sample files: copies, and what pictures and measurements hold."""
 
-from __future__ import annotations
-
 import numpy as np
 import OpenImageIO
 import pytest

@@ -1,7 +1,5 @@
 """The ColorChecker under smooth and under spiky lights."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.conftest import MACBETH

@@ -1,7 +1,5 @@
 """Meyer 1988: the matrices, tables and figures of the paper, reproduced."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Gaussian quadrature for sampled weights: known rules, an exact oracle, polynomial exactness, undefined orders."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

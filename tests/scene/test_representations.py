@@ -1,7 +1,5 @@
 """Representations: laws of all of them, and each against direct computations or its paper."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Wavelengths on the ColorChecker: setups, the methods against references and each other, and invalid input."""
 
-from __future__ import annotations
-
 import colour
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Chromaticity diagrams of an emission table."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """SVG and PNG output."""
 
-from __future__ import annotations
-
 import re
 from xml.etree import ElementTree
 

@@ -1,7 +1,5 @@
 """Texts of numbers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

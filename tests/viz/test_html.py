@@ -1,7 +1,5 @@
 """Pages from templates: escaping, missing names, shared parts."""
 
-from __future__ import annotations
-
 import jinja2
 import pytest
 

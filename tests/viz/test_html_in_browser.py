@@ -1,7 +1,5 @@
 """Pages in Chromium: width, accessibility, schemes of colour; their own script works, no other one runs."""
 
-from __future__ import annotations
-
 import pytest
 
 from benchmarks.browser import browser

@@ -1,7 +1,5 @@
 """Cubes in notebooks: short text, escaped HTML, figures of spectra."""
 
-from __future__ import annotations
-
 import dataclasses
 from xml.etree import ElementTree
 

@@ -1,7 +1,5 @@
 """Placement of labels."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from uplift.viz.scatter import place_labels

@@ -1,7 +1,5 @@
 """Contact sheet: positions, colours and legends."""
 
-from __future__ import annotations
-
 from itertools import combinations, product
 
 import colour

@@ -1,7 +1,5 @@
 """Atlases of measured reflectances: readers and writers of text formats, and resampling."""
 
-from __future__ import annotations
-
 from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source, merge
 from uplift.atlas.formats import FORMATS, Format
 from uplift.atlas.measurements import MEASURED, Measured

@@ -1,7 +1,5 @@
 """Atlases and their entries: the result of every reader and the input of every writer."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from importlib import import_module
@@ -236,8 +234,8 @@ class Atlas:
     @overload
     def __getitem__(self, key: str | int) -> Entry: ...
     @overload
-    def __getitem__(self, key: slice) -> Atlas: ...
-    def __getitem__(self, key: str | int | slice) -> Entry | Atlas:
+    def __getitem__(self, key: slice) -> "Atlas": ...
+    def __getitem__(self, key: str | int | slice) -> "Entry | Atlas":
         if isinstance(key, slice):
             return replace(self, entries=self.entries[key])
         if not isinstance(key, str):

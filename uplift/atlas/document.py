@@ -1,7 +1,5 @@
 """Files as text with source locations, and parsing steps that all readers share: numbers, scales, units, XML."""
 
-from __future__ import annotations
-
 import dataclasses
 import hashlib
 import os
@@ -40,7 +38,7 @@ class SourceLocation:
     line: int | None = None
     entry: str | None = None
 
-    def at(self, line: int | None = None, entry: str | None = None) -> SourceLocation:
+    def at(self, line: int | None = None, entry: str | None = None) -> "SourceLocation":
         """Return the location of another line or entry of the same file."""
         return dataclasses.replace(self, line=line or self.line, entry=entry or self.entry)
 

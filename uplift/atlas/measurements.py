@@ -1,7 +1,5 @@
 """Spectra as the reader of a format returns them, and their conversion to an `Atlas`: order, scale and quantity."""
 
-from __future__ import annotations
-
 import contextlib
 import re
 import warnings

@@ -1,7 +1,5 @@
 """Resampling of entries to one wavelength grid."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Where atlases come from and go to: files, the atlases that are installed with uplift, and other libraries."""
 
-from __future__ import annotations
-
 import difflib
 import functools
 import hashlib

@@ -1,7 +1,5 @@
 """Cameras: measured spectral sensitivities, in place of the colour-matching functions of an observer."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from pathlib import Path
 

@@ -4,8 +4,6 @@ Modules that must not import colour-science use this implementation too. The tes
 the published pairs.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

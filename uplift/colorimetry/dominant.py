@@ -1,7 +1,5 @@
 """Dominant wavelength and excitation purity of a colour (Fishkin 1983, 3.12; CIE 15:2018, 9.3.2)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """Expected errors of predicted colours, learnt from measurements that were left out (docs/mathematics.md, 7)."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -12,8 +12,6 @@ mismatch volume consists of such reflectances. Maros 2003, "A generalized dual p
 Journal of Operational Research 149(1): the step over several bounds.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -7,8 +7,6 @@ the dominant wavelength (6.2.3). There the thesis keeps R + G + B, here the lumi
 In Oklab (Ottosson 2020, "A perceptual color space for image processing") lines of constant hue are nearly straight.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import NoReturn, Protocol
@@ -105,7 +103,7 @@ class Primaries:
         object.__setattr__(self, "rgb_to_xyz", matrix * lengths)
 
     @classmethod
-    def of(cls, numbers: Sequence[float]) -> Primaries:
+    def of(cls, numbers: Sequence[float]) -> "Primaries":
         """Create primaries from eight numbers, in the order of OpenEXR headers.
 
         Parameters

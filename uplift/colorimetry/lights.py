@@ -4,8 +4,6 @@ D65 is daylight, A tungsten. Of fluorescent lamps, FL2 is a cheap, FL7 a broadba
 a white LED, LED-RGB1 one of three narrow bands, HP1 a high-pressure sodium lamp.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import dataclass
 
@@ -67,7 +65,7 @@ class Lamps:
     def __len__(self) -> int:
         return len(self.names)
 
-    def without(self, names: Collection[str]) -> Lamps:
+    def without(self, names: Collection[str]) -> "Lamps":
         """Leave out lamps."""
         for name in names:
             if name not in self.names:

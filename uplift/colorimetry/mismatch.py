@@ -14,8 +14,6 @@ Finlayson & Morovic 2005, "Metamer sets", JOSA A 22(5). Logvinenko, Funt & Godau
 Transactions on Image Processing 23(1).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise

@@ -4,8 +4,6 @@ Tables are sampled from ``start`` to ``end`` every ``step`` nm; outside their ra
 Names that are unknown raise `UnknownNameError`, whose hint gives the nearest ones.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Sensors: the linear map from reflectance to linear RGB, as plain arrays (docs/mathematics.md, 1)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -5,8 +5,6 @@ wavelengths map to a zonotope of linear RGB, the sum of N segments from black to
 parallel facets, so the facets are known exactly.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """RGB spaces by name: of colour-science, of OpenColorIO (``$OCIO`` and its built-in ACES), or by chromaticities."""
 
-from __future__ import annotations
-
 import functools
 import os
 import re

@@ -3,8 +3,6 @@
 Image viewers show a PNG as sRGB for every space of the cube, so this is separate from the encoding of a cube.
 """
 
-from __future__ import annotations
-
 import decimal
 import re
 from dataclasses import dataclass

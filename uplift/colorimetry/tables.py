@@ -5,8 +5,6 @@ it: spectra on 380–780 nm every 5 nm, and RGB spaces. Everything else comes fr
 Copyright 2013 Colour Developers, BSD-3-Clause, as part of colour-science.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass

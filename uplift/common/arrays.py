@@ -1,7 +1,5 @@
 """Types of arrays and paths in signatures; blocks of rows."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from typing import Any

@@ -1,7 +1,5 @@
 """Import of colour-science on first use."""
 
-from __future__ import annotations
-
 import functools
 import warnings
 from types import ModuleType

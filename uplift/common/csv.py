@@ -5,8 +5,6 @@ an apostrophe before it, which spreadsheets hide; `plain_cell` takes it away aga
 text, stay as they are.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import re

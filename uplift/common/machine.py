@@ -1,7 +1,5 @@
 """The machine: threads of linear algebra, and memory."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import threading

@@ -1,7 +1,5 @@
 """Child processes that end with their parent: pools of workers, and single calls that may crash or hang."""
 
-from __future__ import annotations
-
 import contextlib
 import multiprocessing
 import os

@@ -1,7 +1,5 @@
 """Progress of long work: one event type and one callback type for every layer."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -5,8 +5,6 @@
 Only modules that read such files import this one: it loads pydantic.
 """
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Callable, Iterable

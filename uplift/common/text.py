@@ -1,7 +1,5 @@
 """Text from elsewhere: made safe to show, shortened for messages, and parsed as numbers or JSON."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """Name and version of the distribution, read from the source: the package index has another project `uplift`."""
 
-from __future__ import annotations
-
 DISTRIBUTION = "spectral-uplift"
 """Name on the package index."""
 VERSION = "0.2.0"

@@ -1,7 +1,5 @@
 """The content of a cube, and the file that stores it."""
 
-from __future__ import annotations
-
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
 from uplift.cube.file import contents, digest, read, write
 

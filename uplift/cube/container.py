@@ -3,8 +3,6 @@
 Equal contents have equal bytes.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

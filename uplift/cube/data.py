@@ -1,7 +1,5 @@
 """The content of a cube file: everything that a lookup needs, and how the cube was built."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -78,7 +76,7 @@ class AtlasTable:
     """None for a small atlas, and for files of earlier versions."""
     looks: int = 0
     """Number of looks: chosen spectra, of which no measurement is known."""
-    outside: AtlasTable | None = None
+    outside: "AtlasTable | None" = None
     """The O entries outside the RGB space, which answer XYZ and textures; their boxes have steps of 1 / (dim − 1)."""
 
     @property

@@ -1,7 +1,5 @@
 """Read and write cube files (docs/cube-file.md)."""
 
-from __future__ import annotations
-
 import os
 from dataclasses import replace
 from pathlib import Path

@@ -8,8 +8,6 @@ The learnt base adds the deviation that families of measured materials have from
 kriged relative to the brightening, so that dark colours stay dark, at the nodes of the table.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

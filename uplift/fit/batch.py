@@ -1,7 +1,5 @@
 """Batches of few shapes, so that XLA compiles rarely, over all devices of JAX; the compiled integrals of moments."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import Any
 

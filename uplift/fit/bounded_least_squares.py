@@ -3,8 +3,6 @@
 Palettes are solved by it (Bergner, Möller & Drew 2004, section 3.3), and the reflectances of looks.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ docs/mathematics.md, 6. `Marquardt`, a solver of optimistix that is stepped in n
 needs to be compiled for a few entries, and those that have converged leave the batch (docs/performance.md).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -219,7 +217,7 @@ class FittedEntries(NamedTuple):
     multipliers: Array
     error: Array
 
-    def rows(self, rows: Any) -> FittedEntries:
+    def rows(self, rows: Any) -> "FittedEntries":
         """Return some of the entries."""
         return FittedEntries(*(column[rows] for column in self))
 

@@ -11,8 +11,6 @@ atlases of many entries, and those which families explain well, decide; others l
 Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25 and 4.17 (ν = 3/2); 2.1 for the ridge.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from importlib.resources import files

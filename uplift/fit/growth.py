@@ -9,8 +9,6 @@ start. Nodes that fail are tried again from the mean of their fitted neighbours.
 `uplift.fit.growth_thesis` grows outward from seeds instead, as Tódová 2020 does.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

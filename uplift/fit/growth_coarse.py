@@ -1,7 +1,5 @@
 """Growth from a coarse lattice to finer ones: corrections are interpolated between nodes of earlier rounds."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from uplift.common.arrays import Array, Indices, blocks

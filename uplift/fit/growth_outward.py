@@ -1,7 +1,5 @@
 """Growth outward from the seeds, in shells: a node starts from its prior and the corrections on its way to a seed."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -3,8 +3,6 @@
 The algorithm of Tódová 2020, section 3.1.3, for any model and solver; docs/accuracy.md compares it with the default.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from uplift.common.arrays import Array, Indices, Mask

@@ -6,8 +6,6 @@ reflectance meets a target that it misses. The entry fit then brings the reflect
 measured one, with its colours weighted more.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -57,7 +55,7 @@ class LookGoal:
         pairs = zip(self.lights, self.colours(reflectance), self.xyz, strict=True)
         return np.array([delta_e_2000(lab(xyz, light.white), lab(target, light.white)) for light, xyz, target in pairs])
 
-    def softened(self, expected: Array, weight: float) -> LookGoal:
+    def softened(self, expected: Array, weight: float) -> "LookGoal":
         """Move the targets towards the colours of an expected reflectance (N,), on a straight line in XYZ."""
         return replace(self, xyz=weight * self.xyz + (1 - weight) * self.colours(expected))
 

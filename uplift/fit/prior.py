@@ -4,8 +4,6 @@ p(x) = s(x) + d(x), the base spectrum and the kriged deviation of the atlas entr
 Moments are linear in the spectrum, and so is the colour under another light: deviations are those of coefficients.
 """
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
@@ -75,7 +73,7 @@ class Prior:
         squares = self.errors.combine(*sums)[:, 0] + self.errors.floor
         return np.asarray(self.errors.radii.standard * np.sqrt(squares))
 
-    def with_entries(self, entries: FittedEntries) -> Prior:
+    def with_entries(self, entries: FittedEntries) -> "Prior":
         """Krige the deviations of other entries with the same kernel; the standard errors stay."""
         entries = entries.rows(np.lexsort(entries.rgb.T))  # of the same entries in any order, sums round alike
         deviations = self.model.to_storage(entries.multipliers) - self.base.coefficients(entries.rgb)

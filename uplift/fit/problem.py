@@ -1,7 +1,5 @@
 """What is fitted: the problem that all stages of a build share, and the nodes of a lattice with their goals."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -4,8 +4,6 @@ that keeps all entries.
 Tódová 2020, "Constrained spectral uplifting", section 3.1.2; docs/mathematics.md, 6.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -5,8 +5,6 @@ minimise |R⁻¹ (p − p₀)|² subject to r(p) = t, by damped steps (Nocedal &
 other solver of optimistix (`uplift.fit.stock_solvers`), over batches of fixed shapes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import chain, islice, repeat

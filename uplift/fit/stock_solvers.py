@@ -4,8 +4,6 @@ The problem is one of least squares: the residuals of the colour, and the differ
 weight `CLOSENESS`. It has one minimum near the prior, which all solvers find.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -49,7 +47,7 @@ class RowByRow:
 
     solver: Solver
 
-    def __call__(self, forward: ForwardMap, tolerance: Any) -> EachRow:
+    def __call__(self, forward: ForwardMap, tolerance: Any) -> "EachRow":
         """Make the solver of a batch."""
         return EachRow(self.solver, forward)
 

@@ -1,7 +1,5 @@
 """Storage of growth: multipliers as coefficients, the colours of what is stored, and the status of every node."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import jax

@@ -1,7 +1,5 @@
 """Cubes as OpenEXR: header attributes that identify a cube, and all numbers of all nodes, one part per blue slice."""
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping

@@ -1,7 +1,5 @@
 """The colours of images as a scene: `uplift.build` fits only the lattice points that answer them."""
 
-from __future__ import annotations
-
 import hashlib
 import warnings
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Panels of error over cost on logarithmic axes: markers with labels and the Pareto front, for figures and pages."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass

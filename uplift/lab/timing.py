@@ -1,7 +1,5 @@
 """Timings with median and range, the environment in which they are taken, and records of both."""
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import json
@@ -42,7 +40,7 @@ class Spread:
     def __format__(self, spec: str) -> str:
         return f"{self.median:{spec}} ({self.min:{spec}}–{self.max:{spec}})"
 
-    def scaled(self, factor: float) -> Spread:
+    def scaled(self, factor: float) -> "Spread":
         """Multiply all values by a factor."""
         return Spread(self.median * factor, self.min * factor, self.max * factor, self.runs)
 

@@ -1,7 +1,5 @@
 """The lattice over RGB: nodes, cells, neighbours, the boxes around atlas entries, and the table of its points."""
 
-from __future__ import annotations
-
 from uplift.lattice.entry_boxes import BoxHits, EntryBoxes, OutsideBoxes
 from uplift.lattice.lattice import CORNERS, Lattice, weighted_sum
 from uplift.lattice.point_table import ABSENT_VALUES, NO_ENTRY, NOT_FITTED, PointTable, Status

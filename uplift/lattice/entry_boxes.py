@@ -6,8 +6,6 @@ answer mixes the spectra at e and y by the same weights. It has exactly the colo
 the lattice on the faces of the box, and the entry at its centre. Needs numpy only.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product

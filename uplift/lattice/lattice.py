@@ -1,7 +1,5 @@
 """The regular grid over RGB: axis nodes, node numbers, cells and neighbours. Nodes are numbered blue fastest."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -123,7 +121,7 @@ class Lattice:
             cells[: self.dim - r, : self.dim - g, : self.dim - b] &= points.reshape(self.shape)[r:, g:, b:]
         return cells.ravel()
 
-    def thinned(self, stride: int) -> tuple[Lattice, Indices]:
+    def thinned(self, stride: int) -> tuple["Lattice", Indices]:
         """Return the coarser lattice of every ``stride``-th node and the last, and its nodes (m,) in this lattice."""
         kept = np.append(np.arange(0, self.dim - 1, stride), self.dim - 1)
         grid = np.meshgrid(kept, kept, kept, indexing="ij")

@@ -1,7 +1,5 @@
 """The arrays that a build computes for every lattice point, and how each point was fitted."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from enum import IntEnum
 from functools import cached_property
@@ -67,7 +65,7 @@ class PointTable:
         """(n,) True where a point has a spectrum: everywhere, unless the cube was built for a scene."""
         return self.status != Status.ABSENT
 
-    def restricted_to(self, points: Indices) -> PointTable:
+    def restricted_to(self, points: Indices) -> "PointTable":
         """Return the table with all nodes but some (k,) absent."""
         absent = np.ones(len(self.status), dtype=bool)
         absent[points] = False

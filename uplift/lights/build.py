@@ -1,7 +1,5 @@
 """The order of the build of an emission table: lamps → prior → nodes → table."""
 
-from __future__ import annotations
-
 import os
 import warnings
 from collections.abc import Collection, Sequence

@@ -1,7 +1,5 @@
 """Measured lamps in discs over u′v′: within a disc, answers blend to the lamp at its centre."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product

@@ -1,7 +1,5 @@
 """Fit the nodes of an emission table: the locus of single wavelengths, and expected lights moved to chromaticities."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

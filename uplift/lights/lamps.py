@@ -1,7 +1,5 @@
 """Lamps: spectral powers from the formats of atlas files."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import replace
 

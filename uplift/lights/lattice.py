@@ -5,8 +5,6 @@
 # across them give back the chromaticity exactly. With every spectrum at its node scaled to X + 15 Y + 3 Z = 1, the
 # denominator of u′v′, so do the weighted spectra.
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 

@@ -1,7 +1,5 @@
 """The emission table: linear RGB of any brightness in, spectral power out. Needs numpy only."""
 
-from __future__ import annotations
-
 import os
 from dataclasses import dataclass
 from pathlib import Path

@@ -3,8 +3,6 @@
 # Colours of surfaces are linear in the power of the light that falls on them, so the best prediction is the conditional
 # mean of the power. It is spiky near the chromaticities of lamps, and smooth far from them.
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import product
 

@@ -1,7 +1,5 @@
 """The content of an emission table, and the file that stores it (docs/cube-file.md, "Emission tables")."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Arguments of queries as plain arrays, and functions of them applied in blocks of bounded memory."""
 
-from __future__ import annotations
-
 import contextlib
 from collections import deque
 from collections.abc import Callable

@@ -14,8 +14,6 @@ Examples
 (2, 4, 3)
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import product
 from typing import Any, NamedTuple

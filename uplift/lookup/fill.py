@@ -1,7 +1,5 @@
 """Fill missing points of a sparse cube with the spectra of another cube, fitted by the sparse cube's model."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 from typing import Any

@@ -13,8 +13,6 @@ of coefficients.
 All of it in float64: the conversion from moments to multipliers amplifies rounding errors.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

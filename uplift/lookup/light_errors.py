@@ -4,8 +4,6 @@ RGB does not identify a material: the errors are those of materials like the ent
 finds colours that no entry is near to; of a material of another family with the colour of an entry nothing is known.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

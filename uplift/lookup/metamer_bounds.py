@@ -1,7 +1,5 @@
 """Bounds of answers: how far any reflectance of a colour can be from the answer under another light."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Tables of the values of all nodes, for queries of more colours than the lattice has points."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import partial
 
@@ -30,7 +28,7 @@ class NodeTable:
     @classmethod
     def of_present_points(
         cls, data: CubeData, points: Values, atlas: Values, wavelengths: Array | None = None
-    ) -> NodeTable:
+    ) -> "NodeTable":
         """Make a table from values (m, K) of the present points."""
         if data.complete_cells is None:
             return cls(data, points, atlas, wavelengths)

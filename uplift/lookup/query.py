@@ -1,7 +1,5 @@
 """Queries in full detail: spectrum, provenance and round trip of every colour."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 

@@ -4,8 +4,6 @@ Spectra are columns here, so that all arithmetic runs along contiguous memory. A
 add its changes, which need no arc tangents of large numbers.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from uplift.colorimetry.solid import solid, toward_grey

@@ -1,7 +1,5 @@
 """Spectrum models: families of reflectance spectra in (0, 1), one per file, behind the interface `Model`."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -8,8 +8,6 @@ The BLAS of numpy distributes products of tall and small matrices over threads a
 hundred times if other processes use the cores. Slices below its threshold stay on one thread.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -7,8 +7,6 @@ target (docs/mathematics.md, 5). With the damped pseudo-inverse A⁺ = Aᵀ (A A
 - Δx = A⁺ (t − r + A d) − d changes the prior spectrum least, from which x differs by d: the step of the fit.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -3,8 +3,6 @@
 docs/mathematics.md, 2. The fit works on the multipliers; a cube stores coefficients c.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar

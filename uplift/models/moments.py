@@ -9,8 +9,6 @@ Peters, Merzbach, Hanika & Dachsbacher 2019, "Using moments to represent bounded
 ACM TOG 38(4). docs/mathematics.md, 2 to 4.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

@@ -5,8 +5,6 @@ References
 Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", CGF 38(2), eq. 5.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Spectra of a build: the entries of its atlas and the families of its library, with warnings of those not used."""
 
-from __future__ import annotations
-
 import os
 import warnings
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """A look: a colour, and what it is to be under other lights; looks as a TOML file."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Looks of a build: checked, designed as reflectances, fitted as further entries, and recorded."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -47,7 +45,7 @@ class LookTargets:
     goals: tuple[LookGoal, ...]
     designs: Array
 
-    def fit(self, problem: Problem, entries: Constraints, prior: Prior) -> tuple[LookTargets, Constraints, Prior]:
+    def fit(self, problem: Problem, entries: Constraints, prior: Prior) -> tuple["LookTargets", Constraints, Prior]:
         """Design reflectances that differ as little as possible from those expected, and add them to the entries.
 
         The spectra of colours near a look deviate as that of the look. Kernel and standard errors of the prior stay, as

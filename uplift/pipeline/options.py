@@ -1,7 +1,5 @@
 """Build options and their validation."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, fields
 from numbers import Integral, Real
 from typing import Any, Literal
@@ -38,12 +36,13 @@ STEPS = (1.0, 5.0, 10.0)
 """Steps of the sensor's wavelengths in nm."""
 PROCESS_BYTES = 500_000_000
 """Memory of a build without its lattice."""
-TYPES: dict[str, tuple[Any, type, str]] = {
-    "int | Literal['auto']": (Integral, int, "a whole number or 'auto'"),
-    "int": (Integral, int, "a whole number"),
-    "float": (Real, float, "a number"),
-    "str": (str, str, "text"),
-    "bool": (bool | np.bool_, bool, "True or False"),
+Dim = int | Literal["auto"]
+TYPES: dict[Any, tuple[Any, type, str]] = {
+    Dim: (Integral, int, "a whole number or 'auto'"),
+    int: (Integral, int, "a whole number"),
+    float: (Real, float, "a number"),
+    str: (str, str, "text"),
+    bool: (bool | np.bool_, bool, "True or False"),
 }
 """By the annotation of an option: types that are accepted, that which is recorded as JSON, and their name."""
 RENAMED = {"within": "auto_tolerance", "start": "growth"}
@@ -57,7 +56,7 @@ class Options:
     Raises `OptionError` for a value of another type or outside its range, and `UnknownNameError`.
     """
 
-    dim: int | Literal["auto"] = 32
+    dim: Dim = 32
     model: str = "moments"
     coefficients: int = 9
     entry_coefficients: int = MAX_COUNT
@@ -81,7 +80,7 @@ class Options:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            object.__setattr__(self, field.name, _plain(field.name, str(field.type), getattr(self, field.name)))
+            object.__setattr__(self, field.name, _plain(field.name, field.type, getattr(self, field.name)))
         low, high = MAX_RANGE
         shown = f"got {self.shortest:g} to {self.longest:g}"
         limits = f"the range must hold {START:g} to {END:g} nm and lie within {low:g} to {high:g} nm"
@@ -146,12 +145,12 @@ def _require(valid: bool, problem: str, hint: str = "") -> None:
         raise OptionError(problem, code="option-out-of-range", hint=hint)
 
 
-def _plain(name: str, kind: str, value: Any) -> Any:
+def _plain(name: str, kind: Any, value: Any) -> Any:
     """Return the value of an option, by its annotation, as JSON can record it."""
-    if kind.startswith("tuple"):
+    if kind == tuple[str, ...]:
         if not isinstance(value, tuple | list):
             raise OptionError(f"{name} must be a sequence of names, got {format_value(value)}")
-        return tuple(_plain(name, "str", each) for each in value)
+        return tuple(_plain(name, str, each) for each in value)
     if name == "dim" and isinstance(value, str) and value == AUTO:
         return AUTO
     accepted, recorded, label = TYPES[kind]

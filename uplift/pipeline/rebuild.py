@@ -1,7 +1,5 @@
 """Repeat a build from the options and atlas files that a cube recorded."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass

@@ -1,7 +1,5 @@
 """Stored answers of a cube compared with those that it gives now: a test of what a renderer's users rely on."""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import dataclass

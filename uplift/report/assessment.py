@@ -1,7 +1,5 @@
 """Quality of a cube: errors of its lattice, of random colours and of atlas entries."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Small charts for pages, as svg elements: histograms with their statistics, and spectra."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +18,9 @@ WITH_LABEL, WITHOUT_LABEL = (0.13, 0.24, 0.84, 0.72), (0.1, 0.12, 0.87, 0.84)
 REFLECTANCE_LIMITS = (0.1, 0.25, 0.5, 1.0)
 
 
-def histogram_chart(values: Histogram, label: str, *, top: int | None = None, threshold: float | None = None) -> Markup:
+def histogram_chart(
+    values: "Histogram", label: str, *, top: int | None = None, threshold: float | None = None
+) -> Markup:
     """Draw counts over ``label``; the axis holds counts up to ``top``, a dashed line marks the threshold."""
     import matplotlib
 

@@ -1,7 +1,5 @@
 """Two cubes compared: where their answers differ, under which lights, and which atlas entries changed."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Two cubes compared, as a page: figures, maps over the lattice and over images, and the spectra that differ most."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -1,7 +1,5 @@
 """Errors of a cube at the colours of atlas entries, next to the answers of other methods; entries close to others."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -35,7 +33,7 @@ class EntryQuery:
     out_of_gamut: tuple[str, ...] = ()  # Names of the entries outside the cube's RGB space
     not_covered: tuple[str, ...] = ()  # Names of the entries for which a sparse cube has no points
 
-    def answerable_by(self, cube: Cube) -> EntryQuery:
+    def answerable_by(self, cube: Cube) -> "EntryQuery":
         """Keep the entries that a cube has points for."""
         covered = cube.covers(_inside(cube.data, self.rgb))
         names, not_covered = _partition(self.names, covered)
@@ -75,7 +73,7 @@ class EntryErrors:
         """Return the largest ΔE00 of the lattice under any light, (E,), or None."""
         return None if self.delta_e_lattice is None else self.delta_e_lattice.max(axis=1)
 
-    def take(self, rows: ArrayLike) -> EntryErrors:
+    def take(self, rows: ArrayLike) -> "EntryErrors":
         """Select entries by their rows (k,)."""
         order = np.asarray(rows, dtype=np.int64)
         selected: dict[str, Any] = {

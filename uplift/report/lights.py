@@ -1,7 +1,5 @@
 """Quality of an emission table as a self-contained HTML page: exact colours, powers, and expected errors."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Live page: one HTML file with a cube, the exported GLSL program and a few lights."""
 
-from __future__ import annotations
-
 import base64
 import os
 

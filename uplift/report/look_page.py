@@ -5,8 +5,6 @@ is a reflectance in (0, 1). Steps of least change, in the metric of the fit (doc
 a* and b* and keep the RGB.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Facts about a cube or an emission table, failures of a build, smoothness, round trips, calibration of errors."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

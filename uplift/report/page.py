@@ -1,7 +1,5 @@
 """An assessment as JSON values for programs, and as a self-contained HTML page."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """Comparison of a stored cube with a rebuilt one: whether this version reproduces stored cubes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

@@ -4,8 +4,6 @@ The figure has a row per light, a column per method, and a map of the difference
 sides of a line that moves.
 """
 
-from __future__ import annotations
-
 import base64
 import io
 import math

@@ -1,7 +1,5 @@
 """Copies of the sample files, which are installed in the folder ``files``."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -9,8 +9,6 @@ generalised eigenvalues of two such matrices. For masses of one sign this is the
 "Calculation of Gauss quadrature rules", Mathematics of Computation 23.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

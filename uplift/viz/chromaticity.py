@@ -1,7 +1,5 @@
 """Chromaticity diagrams (CIE 1976 u′v′) of an emission table: colours, expected errors, and the exact lamps."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

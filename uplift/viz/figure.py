@@ -1,7 +1,5 @@
 """Figures: colours and style in one place, empty figures and axes, PNG, SVG and PDF output."""
 
-from __future__ import annotations
-
 import hashlib
 import io
 import os

@@ -1,7 +1,5 @@
 """Numbers, times, sizes and counts as text."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 

@@ -6,8 +6,6 @@ escaped unless they are `markupsafe.Markup`; a name that a template does not rec
 functions of `uplift.viz.format` under their own names, and ``fixed``.
 """
 
-from __future__ import annotations
-
 import base64
 import hashlib
 import json

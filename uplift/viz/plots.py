@@ -1,7 +1,5 @@
 """Plots that commands write: spectra, powers of lights, strips of colour, and bounds of metamers in a* and b*."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

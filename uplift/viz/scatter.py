@@ -1,7 +1,5 @@
 """Labels next to markers where they cover nothing, and the panels that they are placed in."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise

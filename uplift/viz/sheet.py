@@ -6,8 +6,6 @@ highlight. Status colours differ by at least 16 ΔE00 for protanopes, deuteranop
 and the frequent regular nodes are inconspicuous.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -65,7 +63,7 @@ def check_sheet(path: StrPath, *, force: bool = False) -> None:
     check_output(path, force=force)
 
 
-def _draw_text(image: Image, labels: tuple[Label, ...]) -> Image:
+def _draw_text(image: Image, labels: tuple["Label", ...]) -> Image:
     """Draw the labels on the image (height, width, 3) in the font that comes with matplotlib."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

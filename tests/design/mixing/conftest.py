@@ -1,7 +1,5 @@
 """Fixtures: random spectra, pigments and colours."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Mixtures by kind of component, coats on grounds, and painting over images."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Layers agree with the sum over interreflections, surfaces with the integral of Fresnel's equations."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Kubelka and Munk's and Duntley's theories: equations as printed, integration, limits; K and S from colours."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Models by name: criteria of Fishkin 1983, 10.4, heuristics, and mixtures of measured paints."""
 
-from __future__ import annotations
-
 import colorsys
 
 import numpy as np

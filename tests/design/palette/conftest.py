@@ -1,7 +1,5 @@
 """Fixtures: one factor model for all tests, two lights, and a small palette."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Designs: bounds, optimality, missed goals, rows of the equations against their criteria, atlases and plots."""
 
-from __future__ import annotations
-
 import dataclasses
 from itertools import product
 

@@ -1,7 +1,5 @@
 """Examples of docs/palette.md and docs/palette-dial.md have the properties that the pages state."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Factor model: span, white, products, and colour errors well below those of RGB; products without sharpening."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Pictures from files: labels as colours or greys, and float weights; layers of the ball are where rays meet them."""
 
-from __future__ import annotations
-
 import matplotlib.image
 import numpy as np
 import OpenEXR

@@ -1,7 +1,5 @@
 """The relighting page: its contents, and in Chromium input by mouse, touch and keys, and pixels against numpy."""
 
-from __future__ import annotations
-
 import base64
 import json
 import re

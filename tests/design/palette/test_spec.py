@@ -1,7 +1,5 @@
 """Contents of palette specs, and the errors of invalid ones."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Fixtures: a cube of unusual phase and number of moments, and one of sigmoids with an atlas."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -3,8 +3,6 @@
 It returns reflectances (n, 4), and skips the test if the compiler, the browser or the driver is lacking.
 """
 
-from __future__ import annotations
-
 import subprocess
 
 import numpy as np

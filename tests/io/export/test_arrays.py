@@ -1,7 +1,5 @@
 """Cubes as npz, CSV and rgb2spec table, and cubes that were built for a scene."""
 
-from __future__ import annotations
-
 import csv
 import json
 import struct

@@ -1,7 +1,5 @@
 """docs/integrate.md: the code blocks run and agree with the cube."""
 
-from __future__ import annotations
-
 import re
 import shutil
 import subprocess

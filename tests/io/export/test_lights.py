@@ -1,7 +1,5 @@
 """Exported programs of lights agree with Python."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Exported programs agree with Python, in every language and mode."""
 
-from __future__ import annotations
-
 import subprocess
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Run exported GLSL on colours in headless Chromium, by WebGL 2."""
 
-from __future__ import annotations
-
 import base64
 import json
 

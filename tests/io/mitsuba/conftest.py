@@ -1,7 +1,5 @@
 """Fixtures: Mitsuba in its scalar spectral variant, with the texture plugin. Tests are skipped without it."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.parts import MITSUBA, need

@@ -1,7 +1,5 @@
 """Images and spectral textures in Mitsuba: texels in scalar and JIT variants, and the spectra of models."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

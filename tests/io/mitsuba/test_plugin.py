@@ -1,7 +1,5 @@
 """Scene descriptions of colours and of lights: properties, defaults, errors, and the environment."""
 
-from __future__ import annotations
-
 import sys
 
 import numpy as np

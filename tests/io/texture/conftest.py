@@ -1,7 +1,5 @@
 """Fixtures: image files of all kinds, and textures read by the OpenEXR package."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import matplotlib

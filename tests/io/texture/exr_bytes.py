@@ -1,7 +1,5 @@
 """OpenEXR files byte by byte, for headers that no library writes."""
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Colour spaces that image files state or the caller names, and the conversion of colours to the cube's."""
 
-from __future__ import annotations
-
 import struct
 import zlib
 

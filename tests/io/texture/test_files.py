@@ -1,7 +1,5 @@
 """Textures are written completely or not at all, with a checksum; hostile headers are refused."""
 
-from __future__ import annotations
-
 import zlib
 from collections import namedtuple
 

@@ -1,7 +1,5 @@
 """Conversion of images: decoding, gamut mapping, alpha, channels that pass through; reduced pictures."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 

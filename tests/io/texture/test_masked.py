@@ -1,7 +1,5 @@
 """Textures of several cubes: numbers and weights in masks, soft edges, and the errors of masks that do not fit."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from PIL import Image

@@ -1,7 +1,5 @@
 """Sequences of images: on processes, on a cluster, and resumed."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import sys

@@ -1,7 +1,5 @@
 """Spectra of colours and of lights: what other readers evaluate from a texture reproduces the image."""
 
-from __future__ import annotations
-
 import json
 import warnings
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Small tasks and charts."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.conftest import MACBETH

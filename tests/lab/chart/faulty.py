@@ -1,7 +1,5 @@
 """Peers of the chart that abort, hang or are not installed. A child process imports this module."""
 
-from __future__ import annotations
-
 import os
 import time
 

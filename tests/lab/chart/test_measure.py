@@ -1,7 +1,5 @@
 """Answers are checked before they are timed; broken methods have no times."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Test sets, and methods against reference implementations."""
 
-from __future__ import annotations
-
 from importlib import import_module
 
 import numpy as np

@@ -1,7 +1,5 @@
 """CSV files of charts, Pareto fronts against their definition, the recommendation of a cube, pictures and pages."""
 
-from __future__ import annotations
-
 import json
 import re
 import shlex

@@ -1,7 +1,5 @@
 """Held-out errors: an atlas with predictable spectra, results by hand, and plain predictors."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

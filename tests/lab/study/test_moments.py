@@ -1,7 +1,5 @@
 """The techniques against their definitions, the laws of the study, and the statements of its page."""
 
-from __future__ import annotations
-
 import warnings
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Sensitivity to queries and atlases."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Stability study: evaluation of builds, the design, and synthetic atlases that are as difficult as their names."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 

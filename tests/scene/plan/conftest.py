@@ -1,7 +1,5 @@
 """A scene so small that a plan for it takes seconds: few colours, few candidates, coarse lattices."""
 
-from __future__ import annotations
-
 import shutil
 import warnings
 

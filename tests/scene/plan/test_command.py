@@ -1,8 +1,6 @@
 # ruff: noqa: F811
 """``uplift plan``, ``uplift build --plan``, the page of a plan and its command lines."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import shlex

@@ -1,7 +1,5 @@
 """Samples of pixels, colour errors against a slow oracle, and the choice among candidates."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """A complete plan, and its errors by an independent computation with numpy and colour-science."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from dataclasses import replace

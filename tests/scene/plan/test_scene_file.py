@@ -1,7 +1,5 @@
 """Contents of scene files, and the errors of invalid ones."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.helpers import raises

@@ -1,7 +1,5 @@
 """Registry of the formats of atlas files, in the order in which they are recognised."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from importlib import import_module

@@ -4,8 +4,6 @@ An archive is a preamble and entries. An entry has two sections of ``key : value
 ``{a, b, …}`` or ``{{x, y}, …}``. Keys compare without case and spacing.
 """
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Iterable, Iterator

@@ -3,8 +3,6 @@
 Keywords precede ``BEGIN_DATA_FORMAT``, which lists the fields of a set. ``BEGIN_DATA`` follows with a set per line.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

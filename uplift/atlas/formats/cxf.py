@@ -1,7 +1,5 @@
 """Reader of CxF3 (ISO 17972-1), the colour exchange format of X-Rite programs, by the package colour-cxf."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from uplift.atlas.atlas import Header, SkippedEntry

@@ -1,7 +1,5 @@
 """Reader of ENVI spectral libraries (``.sli`` with ``.hdr``), by the package spectral."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Reader of JCAMP-DX (``.dx``, ``.jdx``), by the package jcamp."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import re

@@ -1,7 +1,5 @@
 """Reader of spreadsheets (``.xlsx``, ``.xls``, ``.ods``), by the package python-calamine."""
 
-from __future__ import annotations
-
 import io
 import zipfile
 from dataclasses import replace

@@ -4,8 +4,6 @@ A table may follow a preamble. Its wavelengths lie in a row, with a row per spec
 column per spectrum. Other columns may stand before and after them.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import itertools

@@ -1,7 +1,5 @@
 """Reader of IES TM-27-14 (``.spdx``), by colour-science."""
 
-from __future__ import annotations
-
 from uplift.atlas.document import Document, one_line, truncate
 from uplift.atlas.measurements import Measurements, Spectrum, parsed_by, wrong_quantity
 from uplift.common.colour_science import colour_science

@@ -5,8 +5,6 @@ numbers the docstrings quote. Spectra have shape (..., N), amounts (..., n), and
 Leading axes broadcast. docs/mixing.md has an example and results.
 """
 
-from __future__ import annotations
-
 from uplift.design.mixing.coats import Ingredients, Medium, make_coat, mix, overpainter
 from uplift.design.mixing.optics import Surface
 from uplift.design.mixing.pigments import dispersive

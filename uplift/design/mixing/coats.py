@@ -12,8 +12,6 @@ which is Saunderson's correction (eq. 10.10) of T² R_g, or Kubelka and Munk's r
 prints, with ρ_i = ρ, (1 − ρ)² / (ρ (1 − ρ T² R_g)): its sum starts at 1, but the term i = 0 was not subtracted.
 """
 
-from __future__ import annotations
-
 import json
 import warnings
 from collections.abc import Callable, Mapping

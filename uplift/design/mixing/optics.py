@@ -5,8 +5,6 @@ within is diffuse. Saunderson's correction (J. Opt. Soc. Am. 32, 1942, eq. 10.10
 reflectance, as in Kubelka and Munk's theory, and the measured one. Also D. B. Judd, J. Res. NBS 29, 1942.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Self
 
@@ -69,7 +67,7 @@ class Layer:
     transmittance: Array  # (..., N); the sum of both is at most 1
 
     @property
-    def diffuse(self) -> Layer:
+    def diffuse(self) -> "Layer":
         """The layer for diffuse light, the same for all kinds of light."""
         return self
 

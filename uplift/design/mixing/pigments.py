@@ -29,8 +29,6 @@ Duntley, J. Opt. Soc. Am. 1942; C. F. Bohren & D. R. Huffman, *Absorption and Sc
 1983, chapter 9.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -127,7 +125,7 @@ class Pigment:
         """γ = √(K (K + 2S)), shape (..., N)."""
         return np.sqrt(self.absorption * (self.absorption + 2 * self.scattering))
 
-    def mix(self, parts: ArrayLike) -> Pigment:
+    def mix(self, parts: ArrayLike) -> "Pigment":
         """Mix the pigments along the last axis but one by parts (..., n) (eq. 10.7)."""
         weights = as_shares(parts)
         return Pigment(weighted_sum(self.absorption, weights), weighted_sum(self.scattering, weights))

@@ -12,8 +12,6 @@ display it (eq. 7.1). Curves are treated as transmittances and multiplied as fil
 monitor RGB that matches the product.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache

@@ -1,7 +1,5 @@
 """Palettes: lights and materials designed for the colours that they must produce together (docs/palette.md)."""
 
-from __future__ import annotations
-
 from uplift.design.palette.colours import illuminant
 from uplift.design.palette.design import design, matrix, unmet_goals, write_designed
 from uplift.design.palette.factor import standard_model

@@ -1,7 +1,5 @@
 """Colours on a display: linear RGB of spectral powers without adaptation, their derivatives, and powers of lights."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -3,8 +3,6 @@
 S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, section 3.3.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import warnings

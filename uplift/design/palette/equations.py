@@ -6,8 +6,6 @@ Differences are scaled as for samples 10 nm apart, and none extends beyond the e
 S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, sections 3.2–3.3, eq. 18–24.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product

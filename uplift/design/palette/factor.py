@@ -4,8 +4,6 @@ S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004,
 docs/palette.md.
 """
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Palette: lights, materials, and the colours that materials must have under lights."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

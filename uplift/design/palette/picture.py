@@ -4,8 +4,6 @@ The ball has the materials as layers, above a bead of each. The first material i
 Layers of equal colour merge until a light separates them: none has an outline or a highlight.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 

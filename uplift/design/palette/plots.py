@@ -1,7 +1,5 @@
 """Plots of a design: its matrix of three-way patches (Bergner, figure 2), and its spectra."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -3,8 +3,6 @@
 S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, sections 2.2.2 and 5.1.
 """
 
-from __future__ import annotations
-
 import base64
 import zlib
 from dataclasses import dataclass

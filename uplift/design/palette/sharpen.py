@@ -6,8 +6,6 @@ light paths: a light and up to three reflections.
 S. Bergner, T. Möller, M. S. Drew, 2004, section 2.2; M. S. Drew, G. D. Finlayson, JOSA A 20(7), 2003.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Palette spec as a TOML file (docs/palette.md): lights and materials by kind, goals, free colours, differences."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping

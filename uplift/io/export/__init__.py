@@ -1,7 +1,5 @@
 """Cubes and emission tables in the formats of other programs, one format per module."""
 
-from __future__ import annotations
-
 from uplift.io.export.arrays import write_csv, write_npz
 from uplift.io.export.coeff import write_coeff
 from uplift.io.export.lights import write_light_program

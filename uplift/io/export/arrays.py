@@ -1,7 +1,5 @@
 """Cubes as arrays and tables: the contents of a cube file as npz, and its nodes as CSV."""
 
-from __future__ import annotations
-
 import json
 import os
 from typing import Any

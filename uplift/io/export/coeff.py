@@ -15,8 +15,6 @@ W. Jakob and J. Hanika, "A Low-Dimensional Function Space for Efficient Spectral
 reference implementation ``rgb2spec``.
 """
 
-from __future__ import annotations
-
 import os
 
 import numpy as np

@@ -1,7 +1,5 @@
 """An emission table as a program for renderers and shaders, in C or GLSL."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

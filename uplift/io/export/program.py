@@ -3,8 +3,6 @@
 In ``source/``, ``UP_READS`` and ``UP_TABLE`` are the parameter and the argument by which CUDA passes the table.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import warnings

@@ -1,7 +1,5 @@
 """The numbers that programs read: one array in single precision, laid out alike for all languages."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any

@@ -41,8 +41,6 @@ Examples
     mi.load_dict({"type": "uplift_envmap", "filename": "sky.exr"})
 """
 
-from __future__ import annotations
-
 from uplift.io.mitsuba.plugin import register
 
 __all__ = ["register"]

@@ -1,7 +1,5 @@
 """Conversion of Mitsuba scene descriptions to spectra and textures."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from functools import lru_cache, partial

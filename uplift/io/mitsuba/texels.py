@@ -1,7 +1,5 @@
 """Texels of an image: the numbers of their spectra, uplifted from RGB, and how they lie on a surface."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -98,7 +96,7 @@ class Placement:
     to_uv: Array
 
     @staticmethod
-    def read(props: Any) -> Placement:
+    def read(props: Any) -> "Placement":
         """Read the properties ``filter_type``, ``wrap_mode`` and ``to_uv``. Raises `OptionError`."""
         return Placement(
             _choice(props, "filter_type", FILTERS),

@@ -1,7 +1,5 @@
 """Texture and environment of Mitsuba, whose spectra Dr.Jit evaluates at the wavelengths of a ray."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cache
 from typing import Any

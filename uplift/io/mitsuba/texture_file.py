@@ -1,7 +1,5 @@
 """OpenEXR files: spectral textures, as `uplift texture` writes them, and images of colours, as it reads them."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import re

@@ -11,8 +11,6 @@ Examples
     texture.convert(uplifter, "wood.png", "wood.exr")
 """
 
-from __future__ import annotations
-
 from uplift.io.texture.colours import Counts
 from uplift.io.texture.conversion import Conversion, convert
 from uplift.io.texture.lights import prepare_lights

@@ -4,8 +4,6 @@ Matrix profiles, as displays have them, state their primaries and tone curves. L
 primaries, but evaluates curves with 8 bits only: they are read here. Profiles with lookup tables are not used.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import struct

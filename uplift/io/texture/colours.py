@@ -3,8 +3,6 @@
 Colours that had to change are counted.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, fields
@@ -159,7 +157,7 @@ class Counts:
     not_lights: int = 0
     too_bright: int = 0
 
-    def __add__(self, other: Counts) -> Counts:
+    def __add__(self, other: "Counts") -> "Counts":
         """Counts of both."""
         sums = {each.name: getattr(self, each.name) + getattr(other, each.name) for each in fields(self)}
         return Counts(**sums | {"max_change": max(self.max_change, other.max_change)})

@@ -1,7 +1,5 @@
 """Conversion of one image, a band of rows at a time, so that memory does not grow with its height."""
 
-from __future__ import annotations
-
 import os
 import time
 from collections.abc import Iterator

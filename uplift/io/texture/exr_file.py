@@ -3,8 +3,6 @@
 Reference: "OpenEXR File Layout", Academy Software Foundation, https://openexr.com/en/latest/OpenEXRFileLayout.html.
 """
 
-from __future__ import annotations
-
 import os
 import struct
 import zlib

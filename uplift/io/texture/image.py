@@ -3,8 +3,6 @@
 OpenImageIO reads all formats. Bands hold the numbers of the file, unconverted.
 """
 
-from __future__ import annotations
-
 import contextlib
 import itertools
 import os

@@ -1,7 +1,5 @@
 """An emission table prepared for images of lights: environment maps, screens, textures of lamps."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import dataclass, replace
 

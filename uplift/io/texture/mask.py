@@ -7,8 +7,6 @@ Spectra and moments of a mixture of cubes are those of its parts, weighted: mome
 the mixture of two reflectances of one colour has this colour, and stays in [0, 1]. Multipliers are mixed as moments.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import json

@@ -1,7 +1,5 @@
 """An image as one array, reduced to a size that a screen shows."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Conversion of many images, in the processes of this machine or on a Dask cluster."""
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import os

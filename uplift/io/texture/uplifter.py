@@ -3,8 +3,6 @@
 A pixel holds a reflectance spectrum, moments, or multipliers.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 from abc import ABC, abstractmethod

@@ -1,7 +1,5 @@
 """OpenEXR files written part by part, a band of rows at a time, and atomically."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import shutil

@@ -4,8 +4,6 @@ Domain: linear sRGB in [0, 1] under D65. Range: reflectance in [0, 1] at any wav
 `uplift.io.export.write_program`, compiled with the system's compiler. A call takes all colours, on one thread.
 """
 
-from __future__ import annotations
-
 import ctypes
 import shutil
 import subprocess

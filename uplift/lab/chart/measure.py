@@ -1,7 +1,5 @@
 """Selection and measurement of methods: their answers are checked first, and only correct ones are timed."""
 
-from __future__ import annotations
-
 import time
 import warnings
 from collections.abc import Callable, Sequence

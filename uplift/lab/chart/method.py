@@ -4,8 +4,6 @@ The judge is the observer and the illuminant at 1 nm, with the white and the mat
 fitted to these functions. Cubes are fitted to 380–780 nm at 5 nm, where other methods would be judged by our
 choice of range, step and matrix."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace

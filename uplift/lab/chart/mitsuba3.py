@@ -10,8 +10,6 @@ Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral up
 38(2).
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache, partial
 from importlib import import_module

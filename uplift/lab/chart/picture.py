@@ -2,8 +2,6 @@
 
 Of the cubes of this package a panel shows those that no other cube of the same kind and mode beats."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from uplift.colorimetry.lights import CHART_LIGHTS

@@ -13,8 +13,6 @@ Mallett & Yuksel 2019, "Spectral primary decomposition for rendering with sRGB r
 Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", CGF 38(2).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache, partial

@@ -1,7 +1,5 @@
 """A chart as rows of numbers and as CSV, its panels with Pareto fronts, and the recommendation of a cube."""
 
-from __future__ import annotations
-
 import csv
 import io
 import re

@@ -4,8 +4,6 @@ Measured reflectances under sets of lights, with the statistics of Kment 2011, s
 low-pass filters before point sampling that leave the smallest errors (section 6.3, tables A.1 and A.2); lights and
 surfaces are filtered alike."""
 
-from __future__ import annotations
-
 import math
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
@@ -99,7 +97,7 @@ class Scene:
         """Compute the colours of all surfaces from densely sampled products. The result has shape (K, E, 3)."""
         return light_set.lab((light_set.powers[:, None] * self.surfaces) @ xyz_weights())
 
-    def thinned(self, count: int = QUICK_SURFACES) -> Scene:
+    def thinned(self, count: int = QUICK_SURFACES) -> "Scene":
         """Select at most ``count`` surfaces, evenly spaced."""
         kept = np.unique(np.linspace(0, len(self.surfaces) - 1, count).round().astype(np.intp))
         return replace(self, surfaces=self.surfaces[kept])

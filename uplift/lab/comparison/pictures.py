@@ -1,7 +1,5 @@
 """Figures of a comparison, and its page: box plots as in Kment 2011, figures 6.1 and 6.2, and error over cost."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any
 

@@ -7,8 +7,6 @@ rendering", ACM TOG 38(4).
 Markoff 1896, for the duality between bounded and unbounded moment problems.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from uplift.common.arrays import Array, Complex, Mask

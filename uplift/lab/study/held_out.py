@@ -1,7 +1,5 @@
 """Errors on held-out measurements: cubes and a plain baseline that know half of an atlas predict the other half."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Every measured spectrum is reduced to its moments, reconstructed, and compared w
 *Constrained Spectral Uplifting*, table 4.1, sections 2.2.1 and 4.1.1, and appendix B.1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple

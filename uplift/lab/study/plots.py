@@ -1,7 +1,5 @@
 """Figures of the studies: reconstructions from moments, failures of builds, and how far an entry affects a cube."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any

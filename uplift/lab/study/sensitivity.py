@@ -1,7 +1,5 @@
 """Sensitivity of a cube to small changes of the query and of its atlas."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace

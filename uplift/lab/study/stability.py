@@ -4,8 +4,6 @@ A grid varies one axis against the model variants, with the other axes at values
 hypercube sample of all combinations covers the rest. Synthetic atlases are difficult to fit.
 """
 
-from __future__ import annotations
-
 import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping

@@ -8,8 +8,6 @@ Each decision is measured on colours of the scene's own textures; docs/plan.md d
     result.confirmed.quantile, result.options, result.sampling.wavelengths
 """
 
-from __future__ import annotations
-
 from uplift.scene.plan.planning import Plan, plan
 from uplift.scene.plan.scene_file import SceneFile, read_scene_file
 

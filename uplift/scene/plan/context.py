@@ -1,7 +1,5 @@
 """Inputs that all decisions of a plan share: the scene's colours and materials, and cubes to evaluate."""
 
-from __future__ import annotations
-
 import contextlib
 import warnings
 from collections.abc import Iterator

@@ -3,8 +3,6 @@
 Each function measures the candidates of one decision in order of cost, until no more are requested.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import product

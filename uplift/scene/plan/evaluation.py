@@ -1,7 +1,5 @@
 """Colour errors of a candidate on test colours, under the lights of the scene, and the choice among candidates."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -26,7 +24,7 @@ class ColourGroup:
     reflectances: Array
     weights: Array
 
-    def subsample(self, count: int) -> ColourGroup:
+    def subsample(self, count: int) -> "ColourGroup":
         """At most ``count`` colours, drawn at equal steps of the cumulative weight."""
         if len(self.rgb) <= count:
             return self
@@ -85,7 +83,7 @@ class EvaluationSet:
         """Reference spectra of all groups, (n, N)."""
         return np.concatenate([group.reflectances for group in self.groups])
 
-    def subsample(self, count: int) -> EvaluationSet:
+    def subsample(self, count: int) -> "EvaluationSet":
         """At most ``count`` colours of each group."""
         return replace(self, groups=tuple(group.subsample(count) for group in self.groups))
 

@@ -1,7 +1,5 @@
 """Plan as a self-contained HTML page, and its summary as text for the page and the terminal."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Plans as JSON files, which ``uplift build --plan`` and other tools read, and the commands that carry them out."""
 
-from __future__ import annotations
-
 import os
 import shlex
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """Order of a plan's decisions: coefficients, lattice, wavelengths, storage; then the build and its verification."""
 
-from __future__ import annotations
-
 import tempfile
 import time
 from collections.abc import Iterable, Mapping

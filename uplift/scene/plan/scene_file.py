@@ -1,7 +1,5 @@
 """SCENE.toml: the textures to render, the lights on them, and the tolerated colour error."""
 
-from __future__ import annotations
-
 import glob
 import os
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ Kment 2011, "Spectral data representation techniques for realistic image synthes
 sections and equations in this package refer to it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 

@@ -7,8 +7,6 @@ efficient full-spectrum photorealism". Deville, Merzouk, Cazier & Paul 1994, "Sp
 application". Kment 2011, sections 4.3, 5.4 and 5.5.
 """
 
-from __future__ import annotations
-
 import functools
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -9,8 +9,6 @@ runs from −1 to 1 across it, −2 to 2 for Mitchell, at any extent. Lanczos is
 2004, cited in the text: τ cycles of sinc under the main lobe of another.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Representations by models of reflectance (TM, SG), by components of a scene (LM), and by random wavelengths (HW)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Representations by samples that are multiplied one by one, and the dense spectra that all representations encode."""
 
-from __future__ import annotations
-
 import functools
 from abc import ABC, abstractmethod
 from dataclasses import dataclass

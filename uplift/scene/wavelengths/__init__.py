@@ -12,8 +12,6 @@ True
 True
 """
 
-from __future__ import annotations
-
 from uplift.scene.wavelengths.choose import METHODS, Choice, choose, choose_orders, fit_weights
 from uplift.scene.wavelengths.sampling import ColourErrors, Sampling, grid, make_setup
 

@@ -1,7 +1,5 @@
 """A given number of wavelengths, or the fewest that meet a target."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 

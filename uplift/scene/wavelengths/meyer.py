@@ -5,8 +5,6 @@ Processing 41(1). Sections 2.1, 2.2 and appendix A: cones from confusion points,
 Sections 3 and 4: quadrature, tables 1a, 1b and 2.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Wavelengths, weights and prefiltered lights fitted to the materials and lights of a setup, by least squares."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cached_property
 

@@ -1,7 +1,5 @@
 """Figure of a choice of wavelengths: each light with its powers, and the weights."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Materials under lights on a full grid, and a few wavelengths in its place, with the colour errors they cause."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -69,7 +67,7 @@ class RenderSetup:
         """Powers (K, n) of the lights at wavelengths (n,) nm, as a renderer without prefiltering reads them."""
         return interp_curves(wavelengths, self.wavelengths, self.powers)
 
-    def only(self, materials: ArrayLike) -> RenderSetup:
+    def only(self, materials: ArrayLike) -> "RenderSetup":
         """Some of the materials, by indices or a mask (M,), under the same lights."""
         return replace(self, reflectances=self.reflectances[np.asarray(materials)])
 
@@ -253,7 +251,7 @@ class ColourErrors:
         """Maximum over all materials and lights."""
         return float(self.delta_e.max())
 
-    def under(self, light: int) -> ColourErrors:
+    def under(self, light: int) -> "ColourErrors":
         """Select the errors under one light.
 
         Parameters
