@@ -1,17 +1,22 @@
 """Settings of the process: streams, signals, and variables that must precede the import of JAX or numpy."""
 
+import contextlib
 import io
 import os
 import signal
+import stat
 import sys
 import warnings
 from pathlib import Path
 
 from uplift.common.errors import UpliftWarning
 from uplift.common.files import remove_temporaries
+from uplift.common.text import printable
 
 ENDING = ("SIGTERM", "SIGHUP", "SIGBREAK")
 """Signals that end a command and its worker processes, as well as Ctrl-C."""
+_CACHES: set[Path] = set()
+"""The folder of compiled code that is checked and in use."""
 
 
 def prepare_process() -> None:
@@ -25,6 +30,10 @@ def prepare_process() -> None:
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # not under nohup
             signal.signal(number, _end)
     os.environ["MPLBACKEND"] = "agg"  # which needs no display
+    os.environ["PYTHONSAFEPATH"] = "1"  # worker processes load no module from the working folder
+    if os.path.lexists("matplotlibrc"):  # matplotlib would obey it
+        with contextlib.chdir(os.sep):
+            import matplotlib  # noqa: F401
     sys.warnoptions.append("ignore:resource_tracker:UserWarning")  # of multiprocessing, about a process that was ended
 
 
@@ -57,28 +66,64 @@ def hide_drawing_notes() -> None:
 def enable_jit_cache() -> None:
     """Keep compiled JAX code in the user's cache folder, so that later commands do not compile it again.
 
-    JAX runs the code that it finds there. A folder that other users can write to is not used, with a warning.
+    JAX runs the code that it finds there. A folder that other users can change or replace is not used, with a warning.
     """
     if "JAX_COMPILATION_CACHE_DIR" in os.environ:
         return
     from platformdirs import user_cache_dir
 
+    folder = Path(user_cache_dir("uplift"))
+    if not folder.is_absolute():  # a user without a home compiles every time
+        return
     try:
-        folder = Path(user_cache_dir("uplift"))
-        if not folder.is_absolute():  # a user without a home compiles every time
-            return
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        status = folder.stat()
-    except (OSError, RuntimeError):
+        folder = folder.resolve(strict=True)  # the folder that is checked, not a link to it
+        str(folder).encode()  # JAX takes UTF-8 only
+        problem = _exposure(folder) if os.name == "posix" else None
+    except (OSError, RuntimeError, UnicodeError) as error:
+        problem = getattr(error, "strerror", None) or (
+            "not UTF-8" if isinstance(error, UnicodeError) else "loop of links"
+        )
+    if problem:
+        hint = "correct or remove the folder, or name another one by JAX_COMPILATION_CACHE_DIR"
+        text = f"compiled code is not kept, which costs seconds each time: {printable(str(folder))}: {problem}"
+        warnings.warn(UpliftWarning(text, hint=hint), stacklevel=2)
         return
-    if os.name == "posix" and (status.st_uid != os.getuid() or status.st_mode & 0o022):
-        problem = f"other users can write to {folder}: compiled code is not kept there"
-        hint = "remove the folder, or name another one by JAX_COMPILATION_CACHE_DIR"
-        warnings.warn(UpliftWarning(problem, hint=hint), stacklevel=2)
-        return
+    _CACHES.add(folder)
     os.environ["JAX_COMPILATION_CACHE_DIR"] = str(folder)
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0")
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
+
+
+def _exposure(folder: Path) -> str | None:
+    """Return how other users could change the files of a folder, or put another folder in its place; None if not."""
+    user, status = os.getuid(), folder.stat()
+    if status.st_uid != user or status.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        return "other users can write to it"
+    for place in folder.parents:
+        status = place.stat()
+        shared = status.st_mode & stat.S_IWOTH or (status.st_mode & stat.S_IWGRP and not _is_private(status.st_gid))
+        if status.st_uid not in (user, 0) or (shared and not status.st_mode & stat.S_ISVTX):  # as /tmp has
+            return f"other users can write to {place}"
+    return None
+
+
+def _is_private(group: int) -> bool:
+    """Whether a group is the user's own, as on systems whose umask is 0002."""
+    import grp
+    import pwd
+
+    with contextlib.suppress(KeyError):  # a user without a name
+        name, found = pwd.getpwuid(os.getuid()).pw_name, grp.getgrgid(group)
+        return found.gr_name == name and set(found.gr_mem) <= {name}
+    return False
+
+
+def remove_compiled_code() -> None:
+    """Remove the compiled code that `enable_jit_cache` keeps: JAX never replaces an entry that it cannot read."""
+    for folder in _CACHES:
+        for entry in folder.glob("*-cache"):
+            entry.unlink(missing_ok=True)
 
 
 def use_one_blas_thread() -> None:

@@ -10,6 +10,7 @@ import click
 from uplift.common.errors import Diagnostic, OutputError, UpliftError, UpliftWarning
 from uplift.common.text import printable
 
+from ..startup import remove_compiled_code
 from .console import emit, json_text
 
 BAD_INPUT, INTERNAL_ERROR = 2, 70
@@ -103,6 +104,8 @@ def show_usage_error(error: click.ClickException) -> None:
 
 def show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
     """Print warnings of the library on one line each, and no others; replaces `warnings.showwarning`."""
+    if str(message).startswith("Error reading persistent compilation cache entry"):
+        remove_compiled_code()
     if isinstance(message, UpliftWarning):
         text = message.describe(hint_for(message))
         _print(f"{click.style('warning:', fg='yellow', bold=True)} {text}")

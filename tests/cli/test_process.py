@@ -19,6 +19,7 @@ UPLIFT = f"{sys.executable} -m uplift_cli"
 SECONDS = 60
 """Limit of waiting for what takes a second or two."""
 COMMANDS = ("--help", "--version", "query --help", "query 0 0 0", "query 0 0 0 --format csv", "info")
+needs_modes = pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
 needs_full = pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no such device")
 needs_proc = pytest.mark.skipif(not os.path.exists("/proc/self/task"), reason="needs /proc")
 
@@ -149,22 +150,111 @@ def test_a_killed_worker_is_one_line(texture, tmp_path):
     assert list((tmp_path / "out").iterdir()) == []
 
 
+MARK = "open({path!r}, 'a').write(__name__ + ' ')\nraise ImportError('a module of the working folder')\n"
+
+
+@pytest.fixture
+def strange_folder(tmp_path):
+    """A working folder with a module for each one of Python, and some others, that leave a trace in a file."""
+    folder = tmp_path / "strange"
+    folder.mkdir()
+    for name in {*sys.stdlib_module_names, "click", "numpy", "jax", "PIL", "matplotlib", "uplift"} - {"__main__"}:
+        (folder / f"{name}.py").write_text(MARK.format(path=str(tmp_path / "trace")))
+    for name in ("a.png", "b.png"):
+        Image.fromarray(np.full((2, 2, 3), 100, np.uint8)).save(folder / name)
+    yield folder
+    assert not (tmp_path / "trace").exists()
+
+
+def test_no_module_of_the_working_folder_is_loaded_by_a_command_and_its_workers(strange_folder, tmp_path):
+    script = tmp_path / "uplift"  # as pip installs it
+    script.write_text("from uplift_cli.__main__ import run\nif __name__ == '__main__':\n    run()\n")
+    command = [sys.executable, str(script), "texture", "a.png", "b.png", "-o", "out", "--processes", "2"]
+    subprocess.run(command, cwd=strange_folder, check=True, capture_output=True, timeout=SECONDS)
+    assert len(list(strange_folder.glob("out/*"))) == 2
+
+
+def test_no_module_of_the_working_folder_is_loaded_by_a_command_of_a_module(strange_folder):
+    for name in (
+        "runpy",
+        "importlib",
+        "contextlib",
+        "types",
+        "warnings",
+        "functools",
+    ):  # which Python loads itself for -m
+        (strange_folder / f"{name}.py").unlink(missing_ok=True)
+    command = [sys.executable, "-m", "uplift_cli", "query", "0.1", "0.2", "0.3", "--plot", "plot.png"]
+    subprocess.run(command, cwd=strange_folder, check=True, capture_output=True, timeout=SECONDS)
+
+
+def test_settings_of_matplotlib_in_the_working_folder_are_not_obeyed(tmp_path):
+    for name, text in (("plain", ""), ("strange", "figure.dpi: 20\nsavefig.dpi: 20\naxes.facecolor: red\n")):
+        (tmp_path / name).mkdir()
+        if text:
+            (tmp_path / name / "matplotlibrc").write_text(text)
+        command = [sys.executable, "-m", "uplift_cli", "query", "0.1", "0.2", "0.3", "--plot", "plot.png"]
+        subprocess.run(command, cwd=tmp_path / name, check=True, capture_output=True, timeout=SECONDS)
+    assert (tmp_path / "strange" / "plot.png").read_bytes() == (tmp_path / "plain" / "plot.png").read_bytes()
+
+
 @pytest.fixture
 def cache(tmp_path, monkeypatch):
-    """The user's cache folder, which does not exist yet."""
+    """The user's cache folder, which does not exist yet; the folders above it are the user's alone."""
     monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", "")  # so that it is restored
     monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR")
-    monkeypatch.setattr("platformdirs.user_cache_dir", lambda name: str(tmp_path / "cache"))
-    return tmp_path / "cache"
+    monkeypatch.setattr("platformdirs.user_cache_dir", lambda name: str(tmp_path / "a" / "cache"))
+    return tmp_path / "a" / "cache"
 
 
-@pytest.mark.skipif(os.name == "nt", reason="permissions of POSIX")
+def used_cache():
+    enable_jit_cache()
+    return os.environ.pop("JAX_COMPILATION_CACHE_DIR", None)
+
+
+@needs_modes
 @pytest.mark.parametrize("mode", [0o770, 0o702])
 def test_compiled_code_is_kept_in_a_private_folder_only(cache, mode):
-    enable_jit_cache()
-    assert os.environ.pop("JAX_COMPILATION_CACHE_DIR") == str(cache)
+    assert used_cache() == str(cache)
     assert cache.stat().st_mode & 0o777 == 0o700
     cache.chmod(mode)
     with warns("warning"):
-        enable_jit_cache()
-    assert "JAX_COMPILATION_CACHE_DIR" not in os.environ
+        assert used_cache() is None
+
+
+@needs_modes
+def test_compiled_code_is_not_kept_where_another_folder_can_take_its_place(cache):
+    cache.mkdir(0o700, parents=True)
+    cache.parent.chmod(0o777)
+    with warns("warning"):
+        assert used_cache() is None
+    cache.parent.chmod(0o1777)  # as /tmp, where users can replace their own folders only
+    assert used_cache() == str(cache)
+
+
+@needs_modes
+def test_jax_uses_the_folder_that_was_checked_not_a_link_to_it(cache, tmp_path):
+    (tmp_path / "kept").mkdir(0o700)
+    cache.parent.mkdir()
+    cache.symlink_to(tmp_path / "kept")
+    assert used_cache() == str(tmp_path / "kept")
+
+
+BUILD = f"env -u JAX_COMPILATION_CACHE_DIR {UPLIFT} build --dim 2 --force -o"
+
+
+def test_a_cache_folder_that_cannot_be_used_is_a_warning(tmp_path):
+    (tmp_path / "loop").symlink_to(tmp_path / "loop")
+    for folder in (tmp_path / "loop", f"{tmp_path}/\udcff"):
+        done = shell(f"{BUILD} {tmp_path}/cube.uplift", XDG_CACHE_HOME=str(folder))
+        assert (done.returncode, done.stderr.count(b"compiled code is not kept")) == (0, 1)
+
+
+def test_compiled_code_that_cannot_be_read_is_removed(tmp_path):
+    for damage in (True, False, False):
+        assert shell(f"{BUILD} {tmp_path}/cube.uplift", XDG_CACHE_HOME=str(tmp_path)).returncode == 0
+        entries = list(tmp_path.glob("uplift/*-cache"))
+        assert entries
+        for entry in entries if damage else ():
+            entry.write_bytes(b"damaged")
+    assert b"damaged" not in [entry.read_bytes() for entry in entries]

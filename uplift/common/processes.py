@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing.connection import Connection
+from multiprocessing.context import SpawnContext
 from typing import Any, TypeVar
 
 from uplift.common.files import remove_temporaries
@@ -28,10 +29,10 @@ def call_in_child(function: Callable[..., Result], *arguments: Any, seconds: flo
     The function and its arguments are pickled. Its exceptions are raised here; a child that crashes, or has no answer
     after ``seconds`` and is killed, raises `ChildError`.
     """
-    spawn = multiprocessing.get_context("spawn")  # JAX cannot be forked
-    ours, theirs = spawn.Pipe()
-    child = spawn.Process(target=_answer, args=(theirs, function, arguments), daemon=True)
-    child.start()
+    with _spawning() as spawn:
+        ours, theirs = spawn.Pipe()
+        child = spawn.Process(target=_answer, args=(theirs, function, arguments), daemon=True)
+        child.start()
     theirs.close()
     try:
         if not ours.poll(seconds):
@@ -71,18 +72,35 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
 
     A pipe ties them: the system closes its end in this process even if this process is killed.
     """
-    spawn = multiprocessing.get_context("spawn")  # JAX cannot be forked
-    reader, writer = spawn.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(count, mp_context=spawn, initializer=_tie, initargs=(reader,))
+    with _spawning() as spawn:
+        reader, writer = spawn.Pipe(duplex=False)
+        pool = ProcessPoolExecutor(count, mp_context=spawn, initializer=_tie, initargs=(reader,))
+        try:
+            yield pool
+        except BaseException:
+            writer.close()
+            raise
+        finally:
+            pool.shutdown(cancel_futures=True)
+            writer.close()
+            reader.close()
+
+
+@contextlib.contextmanager
+def _spawning() -> Iterator[SpawnContext]:
+    """Provide the context of new processes, which JAX needs: it cannot be forked.
+
+    They load no module from the working folder in place of one of Python's. Later they get its sys.path.
+    """
+    before = os.environ.get("PYTHONSAFEPATH")
+    os.environ["PYTHONSAFEPATH"] = "1"
     try:
-        yield pool
-    except BaseException:
-        writer.close()
-        raise
+        yield multiprocessing.get_context("spawn")
     finally:
-        pool.shutdown(cancel_futures=True)
-        writer.close()
-        reader.close()
+        if before is None:
+            os.environ.pop("PYTHONSAFEPATH", None)
+        else:
+            os.environ["PYTHONSAFEPATH"] = before
 
 
 def _tie(reader: Connection) -> None:
