@@ -13,10 +13,11 @@ from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
-    from uplift.cube import CubeData
+    from uplift.lookup import Cube
 
 PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl"}
-SUFFIXES = {"coeff": ".coeff", **PROGRAMS, "npz": ".npz", "csv": ".csv", "html": ".html"}
+LUTS = {"cube": ".cube", "clf": ".clf"}
+SUFFIXES = {"coeff": ".coeff", **PROGRAMS, **LUTS, "npz": ".npz", "csv": ".csv", "html": ".html"}
 
 
 @click.command("export")
@@ -28,7 +29,11 @@ SUFFIXES = {"coeff": ".coeff", **PROGRAMS, "npz": ".npz", "csv": ".csv", "html":
     type=click.Choice(tuple(SUFFIXES)),
     help="Format to write. [default: by the suffix of --output]",
 )
-@click.option("--res", type=options.Whole(), help="Resolution of a coeff table along each axis. [default: 64]")
+@click.option("--res", type=options.Whole(), help="Nodes of a table along each axis. [default: coeff 64, cube, clf 33]")
+@click.option("--light", metavar="NAME", help="Illuminant of the colours that a cube or clf table shows.")
+@click.option(
+    "--adapt/--no-adapt", default=None, help="Show the white of the light as white, or tinted. [default: adapt]"
+)
 @click.option(
     "--mode",
     type=click.Choice(("spectra", "moments")),
@@ -46,6 +51,8 @@ def command(
     output: str | None,
     style: str | None,
     res: int | None,
+    light: str | None,
+    adapt: bool | None,
     mode: str | None,
     table: str | None,
     fill_missing: bool,
@@ -57,6 +64,8 @@ def command(
     c, cuda, glsl, hlsl
            program that looks up colours
     coeff  table of rgb2spec, for Mitsuba and colour-science
+    cube, clf
+           table of the colours under --light, for grading and compositing
     html   page that relights images in a browser
     npz    all arrays of the cube, for numpy
     csv    one line per node
@@ -72,14 +81,19 @@ def command(
       uplift export macbeth-32.uplift -o cube.h
       uplift export macbeth-32.uplift -o filed.h --table file
       uplift export macbeth-32.uplift -o moments.glsl --mode moments
+      uplift export macbeth-32.uplift -o sodium.cube --light HP1
       uplift export macbeth-32.uplift --format csv
     """
     suffix = "" if output is None else Path(output).suffix.lower()
     style = style or next((name for name in SUFFIXES if SUFFIXES[name] == suffix), None)
     if style is None:
         raise click.UsageError(f"Give --format, or --output ending in {', '.join(SUFFIXES.values())}.")
-    if res is not None and style != "coeff":
-        raise click.UsageError("--res applies to --format coeff only: other formats keep the nodes of the cube.")
+    if res is not None and style not in ("coeff", *LUTS):
+        raise click.UsageError("--res applies to coeff, cube and clf only: other formats keep the nodes of the cube.")
+    if style in LUTS and light is None:
+        raise click.UsageError("A cube or clf table shows the colours under a light: give --light, such as HP1.")
+    if style not in LUTS and (light, adapt) != (None, None):
+        raise click.UsageError("--light and --adapt apply to cube and clf only.")
     if mode is not None and style not in PROGRAMS:
         raise click.UsageError("--mode applies to programs only: other formats do not interpolate.")
     if table is not None and style not in PROGRAMS:
@@ -88,17 +102,22 @@ def command(
     from uplift.lookup import load
 
     path = check_output(output or Path(cube).stem + SUFFIXES[style], inputs=[cube], force=force)
-    given = {"res": res, "mode": mode, "form": table}
+    given = {"res": res, "mode": mode, "form": table, "light": light, "adapt": adapt}
     settings = {key: value for key, value in given.items() if value is not None}
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
-    say(f"{path}: {_write(loaded.data, path, style, force=force, **settings)}")
+    say(f"{path}: {_write(loaded, path, style, force=force, **settings)}")
 
 
-def _write(data: CubeData, path: Path, style: str, **settings: Any) -> str:
+def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     """Write a cube, and return a description of the file."""
-    from uplift.io.export import write_coeff, write_csv, write_npz, write_program
+    from uplift.io.export import write_coeff, write_csv, write_lut, write_npz, write_program
     from uplift.report.live_page import write_page
 
+    data = cube.data
+    if style in LUTS:
+        error = write_lut(cube, path=path, **settings)
+        shown = f"mean {error.mean:.2g}, largest {error.largest:.2g}"
+        return f"colours under {settings['light']}, ΔE00 from the cube's: {shown}"
     if style == "coeff":
         enable_jit_cache()
         with progress_bar("fitting sigmoids"):

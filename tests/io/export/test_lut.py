@@ -1,0 +1,69 @@
+"""Relighting as a look-up table, as OpenColorIO reads and applies it."""
+
+import numpy as np
+import PyOpenColorIO
+import pytest
+
+from tests.helpers import raises
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.observer import sensor
+from uplift.colorimetry.srgb import decode, encode
+from uplift.common.errors import OptionError, OutputError, UnknownNameError
+from uplift.io.export import write_lut
+
+LIGHT = "HP1"
+NODES = np.random.default_rng(1).integers(0, 9, (60, 3)) / 8
+OTHERS = np.random.default_rng(2).random((500, 3))
+
+
+def apply(path, colours):
+    """Apply a file to colours (n, 3) with a library that knows nothing of uplift."""
+    transform = PyOpenColorIO.FileTransform(str(path), interpolation=PyOpenColorIO.INTERP_TETRAHEDRAL)
+    pixels = colours.astype(np.float32)
+    PyOpenColorIO.Config.CreateRaw().getProcessor(transform).getDefaultCPUProcessor().applyRGB(pixels)
+    return pixels.astype(float)
+
+
+def expected(cube, linear):
+    """Linear RGB of the spectra of linear RGB, with the white of the light as white."""
+    screen = sensor("sRGB", LIGHT)
+    return cube.reflectance(linear, screen.wavelengths) @ screen.matrix.T
+
+
+def test_a_table_of_codes_holds_the_relit_colours(small_cube, tmp_path):
+    write_lut(small_cube, LIGHT, tmp_path / "relight.cube", res=9)
+    right = expected(small_cube, decode(NODES))
+    inside = (right >= 0) & (right <= 1)
+    assert inside.mean() > 0.9
+    np.testing.assert_allclose(apply(tmp_path / "relight.cube", NODES)[inside], encode(right)[inside], atol=1e-6)
+
+
+def test_a_clf_file_takes_linear_colours_and_states_its_error(small_cube, tmp_path):
+    error = write_lut(small_cube, LIGHT, tmp_path / "relight.clf")
+    linear = decode(OTHERS)
+    found, right = apply(tmp_path / "relight.clf", linear), expected(small_cube, linear)
+    measured = delta_e_rgb(sensor("sRGB", LIGHT), found, right)
+    assert measured.mean() < 1.3 * error.mean < 0.2
+    assert measured.max() < 2 * error.largest
+
+
+def test_greys_stay_grey_only_if_the_light_is_adapted(small_cube, tmp_path):
+    white = np.ones((1, 3))
+    write_lut(small_cube, LIGHT, tmp_path / "adapted.clf", res=3)
+    np.testing.assert_allclose(apply(tmp_path / "adapted.clf", white), 1, atol=1e-4)
+    write_lut(small_cube, LIGHT, tmp_path / "tinted.clf", res=3, adapt=False)
+    own = small_cube.data.sensor
+    tint = own.xyz_to_rgb @ sensor("sRGB", LIGHT).light.white
+    np.testing.assert_allclose(apply(tmp_path / "tinted.clf", white)[0], tint, rtol=1e-4, atol=1e-6)
+
+
+def test_bad_input_writes_nothing(small_cube, tmp_path):
+    path = tmp_path / "relight.cube"
+    with raises(OptionError, "option"):
+        write_lut(small_cube, LIGHT, path, res=1)
+    with pytest.raises(UnknownNameError):
+        write_lut(small_cube, "moonlight", path)
+    assert not path.exists()
+    path.touch()
+    with pytest.raises(OutputError):
+        write_lut(small_cube, LIGHT, path, res=2)
