@@ -25,7 +25,7 @@ OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
 SPACE_NAMES = "colorimetry.tables:names:RGB space"
 OBSERVER_NAMES = ("colorimetry.tables:names:observer", "colorimetry.tables:names:camera")
-ILLUMINANT_NAMES = "colorimetry.tables:names:illuminant"
+ILLUMINANT_NAMES = "colorimetry.lights:COMMON_NAMES", "colorimetry.tables:names:illuminant"
 
 
 class Number(click.ParamType):  # type: ignore[type-arg]
@@ -107,7 +107,7 @@ def atlas(help: str, default: str = "") -> Decorator:
 
 def light(help: str, default: str) -> Decorator:
     """``--light`` as ``lights``."""
-    complete = completion(ILLUMINANT_NAMES)
+    complete, help = completion(*ILLUMINANT_NAMES), f"{help}, such as led, 3200K or FL11"
     return _repeatable("--light", "lights", help, default, metavar="NAME", shell_complete=complete)
 
 
@@ -244,7 +244,7 @@ sensor = stacked(
         "--illuminant",
         default="D65",
         help="Illuminant under which RGB are defined.",
-        shell_complete=completion(ILLUMINANT_NAMES),
+        shell_complete=completion(*ILLUMINANT_NAMES),
     ),
     click.option(
         "--observer",

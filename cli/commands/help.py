@@ -44,7 +44,7 @@ def _gamut() -> str:
     return "\n\n".join(f"{name}: {summary}" for name, summary in zip(MAPPINGS, summaries, strict=True))
 
 
-def _illuminants() -> str:
+def _lights() -> str:
     from uplift.colorimetry import lights
     from uplift.colorimetry.tables import names
 
@@ -72,7 +72,7 @@ def _exit_codes() -> str:
 TOPICS: dict[str, tuple[str, Callable[[], str]]] = {
     "exit-codes": ("what a script can test", _exit_codes),
     "gamut": ("colours outside [0, 1]: --out-of-gamut", _gamut),
-    "illuminants": ("names of illuminants: --light, --illuminant", _illuminants),
+    "lights": ("names of illuminants: --light, --illuminant", _lights),
     "modes": ("ways to interpolate a cube: query --mode", _modes),
     "observers": ("names of standard observers: --observer", _observers),
     "spaces": ("names of RGB spaces: --space, --input-space", _spaces),

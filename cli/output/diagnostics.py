@@ -34,13 +34,14 @@ HINTS = {
     "not-an-emission-table": "build one with 'uplift lights build', or use 'uplift query' and the like for a cube",
     "rgb-out-of-gamut": "map it inside with --out-of-gamut, or use --encoded for 8-bit codes",
     "sparse-cube": "use --fill-missing where the command has it, or a cube built without --scene",
+    "unknown-illuminant": "{} 'uplift help lights' lists all names",
 }
-"""Hints in place of the library's, which name parameters of Python, by the code of an error or a warning."""
+"""Hints in place of the library's, {}, which name parameters of Python, by the code of an error or a warning."""
 
 
 def hint_for(diagnostic: Diagnostic) -> str:
     """Return the hint of the command line for an error or warning, or else the library's own."""
-    return HINTS.get(diagnostic.code, diagnostic.hint)
+    return HINTS.get(diagnostic.code, "{}").format(diagnostic.hint)
 
 
 class CommandFailure(click.ClickException):

@@ -65,6 +65,7 @@ def test_stored_nodes_are_reproduced_exactly(name, repository):
     [
         (lambda: observer.sensor("sRBG"), "unknown-rgb-space", "'sRGB'"),
         (lambda: observer.light("D66"), "unknown-illuminant", "'D65'"),
+        (lambda: observer.light("tungten"), "unknown-illuminant", "'tungsten'"),
         (lambda: observer.light("D65", "CIE 1931 2 Degree"), "unknown-observer", "'CIE 1931 2 Degree Standard"),
         (lambda: observer.axis_nodes("srgbb", 4), "unknown-axis-spacing", "'srgb'"),
         (lambda: observer.lamps().without(("A", "D66")), "unknown-lamp", "'D65'"),
@@ -154,3 +155,38 @@ def test_colours_outside_srgb_keep_their_luminance():
     codes = to_display_codes(red, wide)
     assert decode(codes / 255) @ SRGB.rgb_to_xyz[1] == pytest.approx(wide.xyz(red)[1], abs=2e-3)
     np.testing.assert_array_equal(codes, np.rint(255 * encode(map_to_gamut(linear, SRGB, "desaturate").rgb)))
+
+
+@pytest.mark.parametrize(("name", "standard"), [("Tungsten", "A"), ("led", "LED-B3"), ("sodium", "HP1")])
+def test_lights_have_everyday_names(name, standard):
+    assert observer.light(name).name == standard
+    np.testing.assert_array_equal(observer.illuminant_spd(name), observer.illuminant_spd(standard))
+
+
+@pytest.mark.parametrize("kelvin", [1000, 3200, 3999])
+def test_black_bodies_are_those_of_colour_science(kelvin):
+    theirs = colour.sd_blackbody(kelvin, colour.SpectralShape(380, 780, 5)).values
+    ours = observer.illuminant_spd(f"{kelvin} k")
+    np.testing.assert_allclose(ours / ours[36], theirs / theirs[36], rtol=5e-4)  # theirs has a rounded constant
+    objects = observer.aligned(observer.sensor("sRGB", f"{kelvin}K"))[1]
+    np.testing.assert_allclose(objects.values / objects.values[36], ours / ours[36], rtol=1e-9)
+
+
+def test_illuminant_a_is_a_black_body():
+    """Of 2848 K by the radiation constant 1.435e7 nm K (CIE 15:2004, 3.1)."""
+    ours = observer.illuminant_spd(f"{2848 * 1.4387768775 / 1.435:.3f}K")
+    standard = observer.illuminant_spd("A")
+    np.testing.assert_allclose(ours / ours[36], standard / standard[36], rtol=1e-5)
+
+
+@pytest.mark.parametrize("nominal", [50, 55, 65, 75])
+def test_temperatures_from_4000_k_are_cie_daylight(nominal):
+    found = observer.illuminant_spd(f"{nominal}00K")
+    np.testing.assert_allclose(found, observer.illuminant_spd(f"D{nominal}"), rtol=0, atol=1e-3)
+    assert observer.sensor("sRGB", f"{nominal}00.0 K").illuminant == f"{nominal}00K"
+
+
+@pytest.mark.parametrize("name", ["999K", "25001K", "0K"])
+def test_temperatures_out_of_range_are_refused(name):
+    with raises(OptionError, "option"):
+        observer.light(name)

@@ -2,13 +2,31 @@
 
 D65 is daylight, A tungsten. Of fluorescent lamps, FL2 is a cheap, FL7 a broadband and FL11 a three-band one. LED-B3 is
 a white LED, LED-RGB1 one of three narrow bands, HP1 a high-pressure sodium lamp.
+
+Other names: daylight (D65), tungsten (A), fluorescent (FL2), led (LED-B3), sodium (HP1), and temperatures such as
+3200K. From 4000K to 25000K they are CIE daylight (CIE 15:2004, 3.1) of this nominal temperature, as D65 is 6500K;
+below, from 1000K, black bodies.
 """
 
+import re
 from collections.abc import Collection
 from dataclasses import dataclass
 
+import numpy as np
+
 from uplift.common.arrays import Array
-from uplift.common.errors import unknown_name
+from uplift.common.errors import OptionError, unknown_name
+
+COMMON_NAMES = {"daylight": "D65", "tungsten": "A", "fluorescent": "FL2", "led": "LED-B3", "sodium": "HP1"}
+"""Names of illuminants for readers who do not know those of the CIE."""
+TEMPERATURES = (1000.0, 25000.0)
+"""Range of colour temperatures in K."""
+DAYLIGHT_FROM = 4000.0
+"""Lowest colour temperature in K of CIE daylight (CIE 15:2004, 3.1)."""
+NOMINAL = 1.4388 / 1.4380
+"""Colour temperatures of CIE daylight over nominal ones, which refer to an older radiation constant."""
+SECOND_RADIATION_CONSTANT = 1.4387768775e7
+"""h c / k in nm K."""
 
 DEFAULT_ILLUMINANT = "D65"
 """Illuminant that RGB refers to by default."""
@@ -52,6 +70,34 @@ KMENT_LIGHTS = {"smooth": ("A", "B", "C"), "spiky": ("FL2", "FL7", "FL11")}
 
 STANDARD_ILLUMINANTS = ("A", "D50", "D55", "D65", "D75")
 """Illuminants that an emission table without an atlas returns exactly."""
+
+
+def standard_name(name: str) -> str:
+    """Return the name of an illuminant for one of `COMMON_NAMES`, and temperatures as ``3200K``; other names stay.
+
+    >>> standard_name("Tungsten"), standard_name("3200 k"), standard_name("FL11")
+    ('A', '3200K', 'FL11')
+    """
+    kelvin = temperature(name)
+    return COMMON_NAMES.get(name.casefold(), name) if kelvin is None else f"{kelvin:g}K"
+
+
+def temperature(name: str) -> float | None:
+    """Return the colour temperature of a name such as ``3200K``, None for other names; `OptionError` out of range."""
+    found = re.fullmatch(r"(\d{1,6}(?:\.\d{1,3})?) ?K", name, re.IGNORECASE)
+    if found is None:
+        return None
+    kelvin = float(found[1])
+    if not TEMPERATURES[0] <= kelvin <= TEMPERATURES[1]:
+        raise OptionError(
+            f"a colour temperature must be from 1000K to 25000K, got {name}", hint="black bodies end at 4000K"
+        )
+    return kelvin
+
+
+def black_body(kelvin: float, wavelengths: Array) -> Array:
+    """Compute the relative power of a black body by Planck's law. Shapes: ``wavelengths`` (N,) nm → (N,)."""
+    return np.asarray(wavelengths**-5 / np.expm1(SECOND_RADIATION_CONSTANT / (wavelengths * kelvin)) * 1e15)
 
 
 @dataclass(frozen=True, eq=False)

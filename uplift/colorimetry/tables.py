@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from uplift.colorimetry import lights
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import unknown_name
@@ -74,6 +75,7 @@ def _rows(kind: str) -> dict[str, int]:
 
 def stated_name(kind: str, name: str) -> str:
     """Return the name that colour-science states for a name, which may be an alias or have other capitals."""
+    name = lights.standard_name(name) if kind == "illuminant" else name
     if name in _rows(kind):
         return str(_file()[f"{kind}: stated"][_rows(kind)[name]])
     return str(look_up(kind, name).name)
@@ -85,7 +87,11 @@ def samples(kind: str, name: str, start: float = START, end: float = END, step: 
 
     ``kind`` is one of the keys of `TABLES`, such as ``"display"`` for the power of the primaries of a display.
     """
-    if kind in SPECTRA and (start, end, step) == WAVELENGTHS and name in _rows(kind):
+    name = lights.standard_name(name) if kind == "illuminant" else name
+    kelvin = lights.temperature(name) if kind == "illuminant" else None
+    if kelvin is not None and kelvin < lights.DAYLIGHT_FROM:
+        values = lights.black_body(kelvin, np.arange(start, end + step / 2, step))
+    elif kind in SPECTRA and (start, end, step) == WAVELENGTHS and name in _rows(kind):
         values = _file()[f"{kind}: samples"][_rows(kind)[name]]
     else:
         shape = colour_science().SpectralShape(start, end, step)
@@ -112,9 +118,26 @@ def bradford(source: Array, target: Array) -> Array:
 
 
 def look_up(kind: str, name: str) -> Any:
-    """Return an object of colour-science by its name."""
+    """Return an object of colour-science by its name, for an illuminant also by the names of `lights`."""
     table = getattr(colour_science(), TABLES[kind])
+    known = list(table)
+    if kind == "illuminant":
+        name, known = lights.standard_name(name), [*known, *lights.COMMON_NAMES, "3200K"]
+        if (kelvin := lights.temperature(name)) is not None:
+            return _of_temperature(kelvin, name)
     try:
         return table[name]
     except KeyError:
-        raise unknown_name(name, table, kind) from None
+        raise unknown_name(name, known, kind) from None
+
+
+def _of_temperature(kelvin: float, name: str) -> Any:
+    """Return a black body or CIE daylight as an object of colour-science."""
+    colour = colour_science()
+    if kelvin < lights.DAYLIGHT_FROM:
+        wavelengths = np.arange(300.0, 1001.0)
+        return colour.SpectralDistribution(lights.black_body(kelvin, wavelengths), wavelengths, name=name)
+    kelvin = min(kelvin * lights.NOMINAL, lights.TEMPERATURES[1])
+    found = colour.sd_CIE_illuminant_D_series(colour.temperature.CCT_to_xy_CIE_D(kelvin))
+    found.name = name
+    return found

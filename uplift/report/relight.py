@@ -9,13 +9,14 @@ import io
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.delta_e import delta_e_2000, rgb_to_lab
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.colorimetry.observer import display_sensors
@@ -78,7 +79,13 @@ class Rendering:
 
     def difference(self, first: str, second: str) -> Difference:
         """Compare two methods, relative to the white of the light."""
-        return Difference(delta_e_rgb(self.sensor, self.colours[first], self.colours[second]))
+        return self._differences[first, second]
+
+    @cached_property
+    def _differences(self) -> dict[tuple[str, str], Difference]:
+        """All pairs, as a page, a figure and a table need them several times."""
+        lab = {method: rgb_to_lab(self.sensor, colours) for method, colours in self.colours.items()}
+        return {pair: Difference(delta_e_2000(*map(lab.__getitem__, pair))) for pair in combinations(lab, 2)}
 
     def screen_codes(self, method: str) -> NDArray[np.uint8]:
         """Return 8-bit sRGB codes (height, width, 3) of a method; colours outside the gamut are desaturated."""

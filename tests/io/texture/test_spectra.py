@@ -69,6 +69,13 @@ def test_multipliers_evaluate_to_the_exact_colour(cube, photo, tmp_path, request
     assert delta_e_rgb(sensor, back, photo[1]).mean() < 5e-3
 
 
+def test_multipliers_of_a_colour_do_not_depend_on_how_often_it_occurs(small_cube, rng):
+    few = rng.uniform(0, 1, (50, 3)).astype(np.float32)
+    rows = rng.integers(0, 50, (30, 40))
+    sample = texture.Multipliers().make_sampler(small_cube, 1)
+    np.testing.assert_array_equal(sample(few[rows]), sample(few)[rows])
+
+
 def test_moments_are_those_of_the_cube(small_cube, colours, tmp_path):
     source = write_exr(tmp_path / "in.exr", planes(colours))
     texture.convert(texture.prepare(small_cube, texture.Moments()), source, tmp_path / "out.exr")

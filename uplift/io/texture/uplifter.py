@@ -17,7 +17,7 @@ from uplift import models
 from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace, find_space
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError
 from uplift.io import exr
 from uplift.io.texture.colours import ColourChannels, Counts, Floats, check_encoding, make_decoder
@@ -189,7 +189,12 @@ class Multipliers(PixelEncoding):
     def make_sampler(self, cube: Cube, threads: int) -> Sampler:
         refined = partial(refined_multipliers, cube.data)
         width = cube.data.model.count
-        return lambda rgb: blockwise(refined, rgb.astype(float), width, np.float32, threads)
+
+        def sample(rgb: Floats) -> Floats:
+            colours, rows = _different(rgb)  # images have few: a colour takes long, and has the same answer each time
+            return blockwise(refined, colours.astype(float), width, np.float32, threads)[rows]
+
+        return sample
 
     def outside(self, cube: Cube) -> Floats | None:
         table = cube.data.atlas.outside
@@ -198,6 +203,17 @@ class Multipliers(PixelEncoding):
 
 PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {each.name: each for each in (Spectrum, Moments, Multipliers)}
 """Pixel encodings with their defaults, by name."""
+
+
+def _different(rgb: Floats) -> tuple[Floats, Indices]:
+    """Return the different colours (n, 3) of an image (…, 3), and the row (…) of each pixel among them."""
+    flat = np.ascontiguousarray(rgb, dtype=np.float32).reshape(-1, 3)
+    words = flat.view(np.uint32).astype(np.uint64)
+    keys = (words[:, 0] << 32 | words[:, 1]) * np.uint64(0x9E3779B97F4A7C15) ^ words[:, 2]
+    _, first, rows = np.unique(keys, return_index=True, return_inverse=True)
+    if (flat[first][rows] != flat).any():  # two colours have one key
+        return flat, np.arange(len(flat)).reshape(rgb.shape[:-1])
+    return flat[first], rows.reshape(rgb.shape[:-1])
 
 
 def spectral_channels(quantity: str, wavelengths: Array) -> tuple[str, ...]:

@@ -19,6 +19,8 @@ ROWS_PER_CHUNK = 16
 """Rows that OpenEXR compresses together as ZIP."""
 MAX_BAND_BYTES = 1 << 27
 """Size of a band to write, as floats."""
+COMPRESSION = "zip:1"
+"""ZIP at its lowest level: the same pixels in files a few per cent larger, compressed in 2/3 of the time."""
 SPACE_MARGIN = 2
 """Factor by which the rest of an image may compress better than the rows written so far."""
 
@@ -52,7 +54,7 @@ class OutputPart:
         spec.x, spec.y = window.x, window.y
         spec.full_x, spec.full_y, spec.full_width, spec.full_height = window.display
         spec.attribute("PixelAspectRatio", window.aspect)
-        spec.attribute("compression", "zip")
+        spec.attribute("compression", COMPRESSION)
         spec.attribute("DateTime", self.date)  # the default is now, which makes every file different
         if self.name:
             spec.attribute("oiio:subimagename", self.name)
