@@ -23,7 +23,7 @@ from uplift.common.arrays import Array
 from uplift.lab.timing import time_calls
 from uplift.lookup import Bounds, Cube, bounds, load
 from uplift.lookup.light_errors import LIKELY, NORMAL_RADIUS, lab_errors
-from uplift.report.look_page import write_look_page
+from uplift.report.look_page import page
 from uplift.viz.plots import plot_bounds
 
 ATLAS = MACBETH
@@ -119,7 +119,7 @@ def screenshot(cube: Cube, found: list[Bounds]) -> None:
     """Choose a colour on the page and take a screenshot."""
     with tempfile.TemporaryDirectory() as folder, browser() as tab:
         path = Path(folder) / "page.html"
-        write_look_page(cube, found, path)
+        path.write_text(page(cube, found), encoding="utf-8")
         tab.window(*WINDOW)
         tab.open(path)
         for region, key, times in CHOICE:

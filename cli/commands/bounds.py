@@ -75,9 +75,10 @@ def command(
 
         plot_bounds(stream.cube, [found for _, found in blocks], plot_path, force=force)
     if html is not None:
-        from uplift.report.look_page import write_look_page
+        from uplift.common.files import write_text
+        from uplift.report.look_page import page
 
-        write_look_page(stream.cube, next(iter(blocks))[1], html, force=force)
+        write_text(page(stream.cube, next(iter(blocks))[1]), html, force=force)
         say(f"{html}: page to choose a look on", err=True)
     if style == "json":
         print_json_answers((each for block in blocks for each in _objects(stream, *block)), single=single)

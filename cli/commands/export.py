@@ -110,8 +110,9 @@ def command(
 
 def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     """Write a cube, and return a description of the file."""
+    from uplift.common.files import write_text
     from uplift.io.export import write_coeff, write_csv, write_lut, write_npz, write_program
-    from uplift.report.live_page import write_page
+    from uplift.report.live_page import page
 
     data = cube.data
     if style in LUTS:
@@ -127,7 +128,8 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     if style == "csv":
         return f"{write_csv(data, path, **settings)} nodes"
     if style == "html":
-        return f"page, {write_page(data, path, **settings) / 1e6:.1f} MB"
+        write_text(page(data), path, **settings)
+        return f"page, {path.stat().st_size / 1e6:.1f} MB"
     written = write_program(data, path, style=style, **settings)
     size = sum(each.stat().st_size for each in written) / 1e6
     tables = "".join(f", table in {each}" for each in written[1:])

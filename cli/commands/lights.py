@@ -113,7 +113,7 @@ def info(table_path: str, style: str, plot_path: str | None, html: str | None, f
     """
     from uplift.common.files import check_outputs, write_text
     from uplift.lights.lookup import find_table, load_emission
-    from uplift.report.measures import summarise_emission
+    from uplift.lights.table import summarise
 
     check_outputs((plot_path, html), inputs=[table_path], force=force)
     table = load_emission(table_path)
@@ -127,7 +127,7 @@ def info(table_path: str, style: str, plot_path: str | None, html: str | None, f
 
         file = Path(find_table(table_path))
         write_text(render_light_report(table, file.name, file.stat().st_size), html, force=force)
-    print_facts(table_path, summarise_emission(table.data), style)
+    print_facts(table_path, summarise(table.data), style)
 
 
 @command.command("export")

@@ -68,9 +68,10 @@ def command(
     enable_jit_cache()
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
     from uplift.common.errors import OutputError
-    from uplift.common.files import check_output
+    from uplift.common.files import check_output, write_text
     from uplift.io.texture.picture import read_picture
-    from uplift.report.relight import RGB_PRODUCT, relight, write_relit_page, write_relit_sheet
+    from uplift.report.measures import mean_p95_max
+    from uplift.report.relight import RGB_PRODUCT, relight, relit_page, write_relit_sheet
     from uplift.samples import sample_path
     from uplift.viz.figure import SUFFIXES
 
@@ -100,15 +101,16 @@ def command(
             relit.append(
                 relight(name, picture.rgb, cubes, lights or RELIGHT_LIGHTS, opacity=opacity, reduction=reduction)
             )
-        write = write_relit_page if suffix == PAGE else write_relit_sheet
-        write(relit, output, force=force)
+        if suffix == PAGE:
+            write_text(relit_page(relit), output, force=force)
+        else:
+            write_relit_sheet(relit, output, force=force)
     rows = []  # ΔE00 of every method from the products of RGB
     for image in relit:
         for rendering in image.renderings:
             for spectra in image.methods[1:]:
-                found = rendering.difference(RGB_PRODUCT, spectra)
                 key = {"image": image.name, "light": rendering.light, "spectra": spectra}
-                rows.append(key | {"mean": found.mean, "p95": found.p95, "max": found.max})
+                rows.append(key | mean_p95_max(rendering.difference(RGB_PRODUCT, spectra)))
     if style == "json":
         print_json({"output": output, "differences": rows})
         return

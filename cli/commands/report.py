@@ -85,9 +85,9 @@ def _summary(assessment: Assessment) -> str:
 
     parts = [f"{pluralise(assessment.failures.over_threshold, 'node')} over the threshold"]
     if assessment.entries is not None:
-        entries = assessment.entries
-        parts.append(pluralise(len(entries.names), "entry", "entries"))
-        parts.append(f"ΔE00 mean {entries.delta_e.mean():.2f}, worst {entries.worst[0]:.2f} ('{entries.names[0]}')")
+        names, answers = assessment.entries.names, assessment.entries.answers
+        parts.append(pluralise(len(names), "entry", "entries"))
+        parts.append(f"ΔE00 mean {answers.delta_e.mean():.2f}, worst {answers.worst[0]:.2f} ('{names[0]}')")
     if assessment.calibration is not None:
         calibration, light = assessment.calibration, assessment.data.error_illuminant
         parts.append(f"68 % within {calibration.actual:.2f} under {light}, predicted {calibration.predicted:.2f}")

@@ -31,7 +31,7 @@ def test_a_cube_does_not_differ_from_itself(small_cube):
     assert found.largest == 0
     assert found.is_within(0)
     assert not any(each.worst(5).size for each in found.sets)
-    assert found.entry_names == small_cube.data.atlas.names
+    assert found.pairs.names == small_cube.data.atlas.names
 
 
 def test_the_node_that_changed_is_the_worst(small_cube, changed):
@@ -40,23 +40,29 @@ def test_the_node_that_changed_is_the_worst(small_cube, changed):
     assert found.entries.largest.max() == 0
     rgb, nm = small_cube.data.lattice.points[210], small_cube.data.sensor.wavelengths
     expected = delta_e_spectra(light("A"), small_cube.reflectance(rgb, nm), changed.reflectance(rgb, nm))
-    assert found.nodes.delta_e[1, 210] == pytest.approx(expected)
+    assert found.nodes.delta_e[210, 1] == pytest.approx(expected)
     assert not found.is_within(0.9 * found.largest)
     assert found.is_within(found.largest)
 
 
 def test_entries_are_compared_by_name(small_cube, plain_cube):
     found = diff_cubes({"a": small_cube, "b": plain_cube}, LIGHTS)
-    assert found.removed == small_cube.data.atlas.names
+    assert found.pairs.removed == small_cube.data.atlas.names
     assert not found.is_within(100)
-    assert diff_cubes({"a": plain_cube, "b": small_cube}, LIGHTS).added == small_cube.data.atlas.names
+    assert diff_cubes({"a": plain_cube, "b": small_cube}, LIGHTS).pairs.added == small_cube.data.atlas.names
     # Renamed entries are compared with those that now have their names.
     names = (*reversed(small_cube.data.atlas.names),)
     renamed = Cube(replace(small_cube.data, atlas=replace(small_cube.data.atlas, names=names)))
     found = diff_cubes({"a": small_cube, "b": renamed}, LIGHTS)
     nm = small_cube.data.sensor.wavelengths
     spectra = small_cube.data.entry_spectra.reflectance(np.arange(len(names)), nm)
-    np.testing.assert_allclose(found.entries.delta_e[0], delta_e_spectra(light("D65"), spectra, spectra[::-1]))
+    np.testing.assert_allclose(found.entries.delta_e[:, 0], delta_e_spectra(light("D65"), spectra, spectra[::-1]))
+
+
+def test_entries_outside_the_space_are_compared(cyan_cube):
+    found = diff_cubes({"a": cyan_cube, "b": cyan_cube}, LIGHTS)
+    assert found.pairs.names == (*cyan_cube.data.atlas.names, "cyan")
+    assert found.is_within(0)
 
 
 def test_lattices_of_other_dims_are_compared_at_the_nodes_of_both(plain_cube):
@@ -70,7 +76,7 @@ def test_images_json_and_page(small_cube, changed):
     image[0, 0] = small_cube.data.lattice.points[210]
     found = diff_cubes({"a": small_cube, "b": changed}, LIGHTS, {"image.png": image})
     assert found.images[0].worst(1).tolist() == [0]
-    assert found.images[0].delta_e.shape == (2, 6)
+    assert found.images[0].delta_e.shape == (6, 2)
     figures = json.loads(json.dumps(to_json(found, 0.01, 2), allow_nan=False))
     assert [row["moved"] for row in figures["differences"] if row["set"] == "nodes"][1] >= 1
     assert not figures["passed"]

@@ -51,7 +51,7 @@ def test_the_table_has_all_lamps(html, found):
 
 
 def test_colours_are_exact_and_powers_are_not_negative(found):
-    assert found.round_trip.largest < 1e-6
+    assert found.round_trip.max < 1e-6
     assert found.smallest_power >= 0
     assert 0 < found.expected_error.median < 10
 

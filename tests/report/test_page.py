@@ -49,7 +49,7 @@ def test_page_loads_nothing(html):
 def test_table_and_spectra_are_sorted_worst_first(html, judged):
     rows = Page(html).table("entry", "worst")
     assert [row[0].parts[0] for row in rows] == list(judged.entries.names)
-    assert [row[1].value for row in rows] == pytest.approx(judged.entries.worst.tolist())
+    assert [row[1].value for row in rows] == pytest.approx(judged.entries.answers.worst.tolist())
     drawn = re.findall(r'<figcaption><b title="[^"]*">([^<]*)</b>', html)
     assert drawn == list(judged.entries.names[:3])
 
@@ -106,7 +106,7 @@ def test_histogram_counts_every_value():
         found = make_histogram(values, edges)
         assert found.counts.sum() == 6
         assert (np.diff(edges) > 0).all()
-        assert (found.mean, found.largest) == (values.mean(), 5.0)
+        assert (found.mean, found.max) == (values.mean(), 5.0)
         assert edges[-1] >= 5
     assert make_histogram(values, log_edges(values, 1e-9)).logarithmic
     assert not make_histogram(values, linear_edges(values)).logarithmic
@@ -115,13 +115,13 @@ def test_histogram_counts_every_value():
 def test_json_holds_the_numbers_of_the_assessment(judged):
     found = json.loads(json.dumps(to_json(judged), allow_nan=False))
     assert [entry["name"] for entry in found["entries"]] == list(judged.entries.names)
-    assert list(found["entries"][0]["delta_e_2000"].values()) == judged.entries.delta_e[0].tolist()
+    assert list(found["entries"][0]["delta_e_2000"].values()) == judged.entries.answers.delta_e[0].tolist()
     assert found["entries"][0]["srgb"]["A"]["answered"].startswith("#")
-    assert found["fitting_distance"]["max"] == judged.distance.largest
+    assert found["fitting_distance"]["max"] == judged.distance.max
     crowded = [entry["name"] for entry in found["crowding"]["entries"]]
     assert crowded == list(judged.crowding.entries.names)
     first, entries = found["entries"][0], judged.entries
-    assert list(first["delta_e_2000_lattice"].values()) == entries.delta_e_lattice[0].tolist()
+    assert list(first["delta_e_2000_lattice"].values()) == entries.lattice.delta_e[0].tolist()
     assert (first["reach"], first["standard_error"]) == (entries.half_width[0], entries.predicted[0])
 
 

@@ -67,12 +67,6 @@ def test_measures_fail_above_their_limits_and_as_nan(name):
         assert RebuildDifference(PATH, measures | {name: value}, {}, {}, ()).failures == failures
 
 
-def test_nan_in_the_spectra_fails(data):
-    sensor = dataclasses.replace(data.sensor, wavelengths=np.full(81, np.nan))
-    failures = compare_rebuilt(PATH, data, dataclasses.replace(data, sensor=sensor)).failures
-    assert {"spectra_max", "spectra_rms", "delta_e_A"} <= set(failures)
-
-
 def with_atlas(data, **changes):
     return dataclasses.replace(data, atlas=dataclasses.replace(data.atlas, **changes))
 

@@ -84,6 +84,21 @@ class AtlasTable:
         """Number M of the entries that were measured, which are the first ones."""
         return len(self.names) - self.looks
 
+    @property
+    def with_outside(self) -> "AtlasTable":
+        """All entries: those in the RGB space, then those outside it."""
+        if (more := self.outside) is None:
+            return self
+
+        def both(name: str) -> Array:
+            return np.concatenate([getattr(self, name), getattr(more, name)])
+
+        spectra = self.spectra
+        if spectra is not None and more.spectra is not None:
+            spectra = EntrySpectra(spectra.model, np.concatenate([spectra.coefficients, more.spectra.coefficients]))
+        names = (*self.names, *more.names)
+        return AtlasTable(names, both("rgb"), both("coefficients"), both("half_width"), both("error"), spectra)
+
     def spectra_in(self, model: Model) -> EntrySpectra:
         """Return the spectra that answer the colours of the entries; ``model`` is that of the nodes."""
         return self.spectra or EntrySpectra(model, self.coefficients)

@@ -172,3 +172,23 @@ def _check(data: EmissionData) -> None:
     overlap = bool((apart[~np.eye(len(uv), dtype=bool)] < -MAX_OFFSET).any())
     valid = not overlap and bool((radius <= MAX_RADIUS).all())
     require(valid, f"discs must not overlap, and have radii up to {MAX_RADIUS:g}")
+
+
+def summarise(data: EmissionData) -> dict[str, Any]:
+    """Summarise an emission table, most general facts first."""
+    knots, rings = data.lattice.shape
+    first, second = data.wavelengths[:2].tolist()
+    return {
+        "format": KIND.format,
+        "knots": knots,
+        "rings": rings,
+        "nodes": knots * rings,
+        "space": data.space,
+        "observer": data.observer,
+        "wavelengths": {"first": first, "last": float(data.wavelengths[-1]), "step": second - first},
+        "mean_expected_error": float(data.error.mean(dtype=np.float64)),
+        "largest_expected_error": float(data.error.max()),
+        "lamps": list(data.entries.names),
+        "provenance": dict(data.provenance),
+        "digest": emission_digest(data),
+    }

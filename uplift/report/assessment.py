@@ -13,28 +13,10 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lookup import Cube
+from uplift.report import fidelity, measures
 from uplift.report.charts import Histogram, linear_edges, log_edges, make_histogram
-from uplift.report.fidelity import (
-    Alternative,
-    Crowding,
-    EntryErrors,
-    EntryQuery,
-    entry_errors,
-    find_alternatives,
-    find_crowding,
-    from_other_atlas,
-    from_own_atlas,
-    from_stored_entries,
-)
-from uplift.report.measures import (
-    Calibration,
-    Failures,
-    check_calibration,
-    collect_failures,
-    compute_smoothness,
-    round_trip_errors,
-    summarise,
-)
+from uplift.report.fidelity import Answers, Crowding, EntryErrors
+from uplift.report.measures import Calibration, Failures, check_calibration
 
 MIN_ERROR = 1e-9  # smaller distances and ΔE00 are rounding errors and are counted in the lowest bin
 MIN_STEP = 1e-4  # smaller rms differences of reflectance are counted in the lowest bin
@@ -59,8 +41,7 @@ class Assessment:
     sources: tuple[str, ...]  # Names of the files that the measured spectra come from
     own: bool  # Whether the cube was built from these files
     entries: EntryErrors | None  # Errors of the entries; None without a measured spectrum to compare with
-    # Answers of other methods at the colours of ``entries``; empty without entries
-    alternatives: tuple[Alternative, ...]
+    alternatives: dict[str, Answers]  # Those of other methods at the colours of ``entries``; empty without entries
     delta_e: dict[str, Histogram]  # ΔE00 of the entries by name of the light
     out_of_gamut: tuple[str, ...]  # Entries of ``sources`` outside the cube's RGB space
     not_covered: tuple[str, ...]  # Entries of ``sources`` for which a sparse cube has no points
@@ -81,24 +62,26 @@ def assess(cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequen
     data = cube.data
     sensors = display_sensors(lights, data.sensor.observer, *data.sensor.range)
     own = atlas is not None and _built_from(data, atlas)
-    query = _entry_query(cube, atlas, own)
-    errors = None if query is None or not query.names else entry_errors(cube, query, sensors)
-    calibration = (
-        None
-        if own or errors is None
-        else check_calibration(errors.actual, errors.predicted, cube.error_bound(errors.rgb))
-    )
-    present = data.points.present
-    steps, distances = compute_smoothness(data), data.points.distance[present]
-    standard_errors = None if data.points.standard_error is None else data.points.standard_error[present]
+    in_gamut: tuple[str, ...] = ()
+    errors = None
+    if atlas is not None and atlas.entries:
+        query = fidelity.from_own_atlas(data, atlas) if own else fidelity.from_other_atlas(data, atlas)
+        in_gamut, query = query.names, query.answerable_by(cube)
+        errors = fidelity.entry_errors(cube, query, sensors) if query.names else None
+    calibration = None
+    if errors is not None and not own:
+        calibration = check_calibration(errors.actual, errors.predicted, cube.error_bound(errors.rgb))
+    points, steps = data.points, measures.compute_smoothness(data)
+    distances = points.distance[points.present]
+    standard_errors = None if points.standard_error is None else points.standard_error[points.present]
     return Assessment(
         name=name,
         size=size,
         data=data,
-        facts=summarise(data),
-        failures=collect_failures(data),
+        facts=measures.summarise(data),
+        failures=measures.collect_failures(data),
         distance=make_histogram(distances, log_edges(distances, MIN_ERROR)),
-        round_trips=_comparable(round_trip_errors(cube), lambda values: log_edges(values, MIN_ERROR)),
+        round_trips=_comparable(measures.round_trip_errors(cube), lambda values: log_edges(values, MIN_ERROR)),
         standard_error=None
         if standard_errors is None
         else make_histogram(standard_errors, linear_edges(standard_errors)),
@@ -108,15 +91,20 @@ def assess(cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequen
         sources=() if atlas is None else tuple(source.name for source in atlas.sources),
         own=own,
         entries=errors,
-        alternatives=() if errors is None else find_alternatives(data, errors, sensors),
+        alternatives={} if errors is None else fidelity.find_alternatives(data, errors, sensors),
         delta_e={} if errors is None else _comparable(_by_light(errors, sensors), linear_edges),
-        out_of_gamut=() if query is None else query.out_of_gamut,
-        not_covered=() if query is None else query.not_covered,
+        out_of_gamut=() if atlas is None else _missing(atlas.names, in_gamut),
+        not_covered=_missing(in_gamut, () if errors is None else errors.names),
         calibration=calibration,
         light_calibrations={} if calibration is None or errors is None else _light_calibrations(cube, errors, sensors),
         unlike=0.0 if calibration is None or errors is None else float(cube.unlike_atlas(errors.rgb).mean()),
         crowding=_crowding(cube, errors if own else None, sensors),
     )
+
+
+def _missing(names: Sequence[str], present: Sequence[str]) -> tuple[str, ...]:
+    found = set(present)
+    return tuple(name for name in names if name not in found)
 
 
 def _light_calibrations(cube: Cube, errors: EntryErrors, lights: tuple[Sensor, ...]) -> dict[str, Calibration]:
@@ -125,13 +113,10 @@ def _light_calibrations(cube: Cube, errors: EntryErrors, lights: tuple[Sensor, .
     if data.atlas.left_out is None:
         return {}
     found = {}
-    for sensor, actual in zip(lights, errors.delta_e.T, strict=True):
-        if sensor.illuminant not in (data.error_illuminant, data.sensor.illuminant):
-            found[sensor.illuminant] = check_calibration(
-                actual,
-                cube.standard_error(errors.rgb, sensor.light),
-                cube.error_bound(errors.rgb, sensor.light),
-            )
+    for light, actual in _by_light(errors, lights).items():
+        if light not in (data.error_illuminant, data.sensor.illuminant):
+            predicted, bound = cube.standard_error(errors.rgb, light), cube.error_bound(errors.rgb, light)
+            found[light] = check_calibration(actual, predicted, bound)
     return {light: each for light, each in found.items() if each is not None}
 
 
@@ -142,22 +127,15 @@ def _built_from(data: CubeData, atlas: Atlas) -> bool:
     return bool(given) and given <= recorded
 
 
-def _entry_query(cube: Cube, atlas: Atlas | None, own: bool) -> EntryQuery | None:
-    if atlas is None or not atlas.entries:
-        return None
-    query = from_own_atlas(cube.data, atlas) if own else from_other_atlas(cube.data, atlas)
-    return query.answerable_by(cube)
-
-
 def _crowding(cube: Cube, measured: EntryErrors | None, lights: tuple[Sensor, ...]) -> Crowding | None:
-    stored = from_stored_entries(cube.data).answerable_by(cube)
+    stored = fidelity.from_stored_entries(cube.data).answerable_by(cube)
     if not stored.names:
         return None
-    return find_crowding(cube.data, entry_errors(cube, stored, lights) if measured is None else measured)
+    return fidelity.find_crowding(cube.data, measured or fidelity.entry_errors(cube, stored, lights))
 
 
 def _by_light(errors: EntryErrors, lights: tuple[Sensor, ...]) -> dict[str, Array]:
-    return {sensor.illuminant: errors.delta_e[:, column] for column, sensor in enumerate(lights)}
+    return {sensor.illuminant: errors.answers.delta_e[:, column] for column, sensor in enumerate(lights)}
 
 
 def _comparable(values: dict[str, Array], edges: Callable[[Array], Array]) -> dict[str, Histogram]:

@@ -86,12 +86,12 @@ STEPS = (1, 2, 2.5, 5, 10)  # bin widths in units of a power of ten
 class Histogram:
     """Distribution of values."""
 
+    mean: float
+    median: float
+    p95: float  # 95 % quantile
+    max: float
     edges: Array  # (B + 1,) Edges of the bins
     counts: Indices  # (B,) Values per bin; values outside the edges are counted in the outermost bins
-    mean: float  # Mean, median, 95 % quantile and maximum of the values
-    median: float  # Mean, median, 95 % quantile and maximum of the values
-    p95: float  # Mean, median, 95 % quantile and maximum of the values
-    largest: float  # Mean, median, 95 % quantile and maximum of the values
 
     @property
     def logarithmic(self) -> bool:
@@ -104,7 +104,7 @@ def make_histogram(values: ArrayLike, edges: Array) -> Histogram:
     array = np.asarray(values, dtype=float)
     counts, _ = np.histogram(np.clip(array, edges[0], edges[-1]), edges)
     median, p95 = np.quantile(array, (0.5, 0.95)).tolist()
-    return Histogram(edges, counts.astype(np.int64), float(array.mean()), median, p95, float(array.max()))
+    return Histogram(float(array.mean()), median, p95, float(array.max()), edges, counts.astype(np.int64))
 
 
 def log_edges(values: ArrayLike, floor: float) -> Array:

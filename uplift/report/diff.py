@@ -5,15 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
-from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Indices
+from uplift.cube import CubeData
 from uplift.lookup import Cube
+from uplift.lookup.blocks import blockwise
 from uplift.lookup.cube import common_sensor
+from uplift.report.measures import delta_e_under, mean_p95_max
 
-BLOCK = 1 << 14
-"""Colours whose spectra are in memory at once."""
 NODES, ENTRIES = "nodes", "entries"
 """Names of the sets of colours that come from the cubes."""
 
@@ -26,18 +25,53 @@ class Changes:
     rgb: Array
     """(n, 3) linear RGB."""
     delta_e: Array
-    """(L, n) ΔE00 under each light."""
+    """(n, L) ΔE00 under each light."""
 
     @property
     def largest(self) -> Array:
         """(n,) largest ΔE00 of each colour under any light."""
-        return np.asarray(self.delta_e.max(axis=0, initial=0.0))
+        return np.asarray(self.delta_e.max(axis=1, initial=0.0))
 
     def worst(self, count: int) -> Indices:
         """Rows of at most ``count`` colours that differ, each once, largest ΔE00 first."""
         _, rows = np.unique(self.rgb, axis=0, return_index=True)
         order = rows[np.argsort(-self.largest[rows], kind="stable")[:count]]
         return order[self.largest[order] > 0]
+
+
+@dataclass(frozen=True, eq=False)
+class EntryPairs:
+    """The entries of two cubes, matched by name, in the RGB space and outside it."""
+
+    names: tuple[str, ...]
+    """Entries that both cubes have."""
+    rgb: Array
+    """(E, 3) their linear RGB in the first cube."""
+    spectra: tuple[Array, Array]
+    """(E, N) their reflectances in each, at the wavelengths of the first."""
+    removed: tuple[str, ...]
+    """Entries of the first cube alone."""
+    added: tuple[str, ...]
+    """Entries of the second cube alone."""
+
+
+def pair_entries(first: CubeData, second: CubeData) -> EntryPairs:
+    """Match the entries of two cubes by name."""
+    tables = first.atlas.with_outside, second.atlas.with_outside
+    row_of = [{name: row for row, name in enumerate(table.names)} for table in tables]
+    shared = tuple(name for name in row_of[0] if name in row_of[1])
+    rows = [np.array([each[name] for name in shared], dtype=np.int64) for each in row_of]
+    wavelengths = first.sensor.wavelengths
+    return EntryPairs(
+        names=shared,
+        rgb=tables[0].rgb[rows[0]],
+        spectra=(
+            tables[0].spectra_in(first.model).reflectance(rows[0], wavelengths),
+            tables[1].spectra_in(second.model).reflectance(rows[1], wavelengths),
+        ),
+        removed=tuple(name for name in row_of[0] if name not in row_of[1]),
+        added=tuple(name for name in row_of[1] if name not in row_of[0]),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,14 +83,10 @@ class CubeDiff:
     lights: tuple[str, ...]
     nodes: Changes
     """Nodes of the lattice of the first cube, then those of the second if it has another lattice."""
+    pairs: EntryPairs
     entries: Changes
-    """Spectra of the entries that both cubes have, in the order of `entry_names`."""
+    """Spectra of ``pairs``."""
     images: tuple[Changes, ...]
-    entry_names: tuple[str, ...]
-    removed: tuple[str, ...]
-    """Entries of the first cube alone."""
-    added: tuple[str, ...]
-    """Entries of the second cube alone."""
     uncovered: int
     """Colours that one of the cubes lacks, because it was built for a scene. Their difference counts as 0."""
 
@@ -72,7 +102,7 @@ class CubeDiff:
 
     def is_within(self, tolerance: float) -> bool:
         """Whether both cubes have the same entries, and no colour differs by more than ΔE00 ``tolerance``."""
-        return not self.removed and not self.added and self.largest <= tolerance
+        return not self.pairs.removed and not self.pairs.added and self.largest <= tolerance
 
 
 def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping[str, Array] | None = None) -> CubeDiff:
@@ -89,41 +119,29 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
     nodes = nodes if np.array_equal(nodes, others) else np.concatenate([nodes, others])
     colours = {NODES: nodes, **{name: rgb.reshape(-1, 3) for name, rgb in (images or {}).items()}}
     covered = {name: first.covers(rgb) & second.covers(rgb) for name, rgb in colours.items()}
+
+    def difference(rgb: Array) -> Array:
+        answers = [cube.reflectance(rgb, sensor.wavelengths) for cube in (first, second)]
+        return delta_e_under(under, *answers)
+
     changes = []
     for name, rgb in colours.items():
-        delta_e = np.zeros((len(under), len(rgb)))
-        rows = np.flatnonzero(covered[name])
-        for begin in range(0, len(rows), BLOCK):
-            block = rows[begin : begin + BLOCK]
-            answers = [cube.reflectance(rgb[block], sensor.wavelengths) for cube in (first, second)]
-            delta_e[:, block] = _delta_e(under, *answers)
+        delta_e = np.zeros((len(rgb), len(under)))
+        delta_e[covered[name]] = blockwise(difference, rgb[covered[name]], len(under))
         changes.append(Changes(name, rgb, delta_e))
 
-    rows_of = [{name: row for row, name in enumerate(cube.data.atlas.names)} for cube in (first, second)]
-    shared = tuple(name for name in rows_of[0] if name in rows_of[1])
-    entries = [np.array([each[name] for name in shared], dtype=np.int64) for each in rows_of]
-    spectra = [
-        cube.data.entry_spectra.reflectance(found, sensor.wavelengths)
-        for cube, found in zip((first, second), entries, strict=True)
-    ]
+    pairs = pair_entries(first.data, second.data)
     first_name, second_name = cubes
     return CubeDiff(
         names=(first_name, second_name),
         cubes=(first, second),
         lights=tuple(each.name for each in under),
         nodes=changes[0],
-        entries=Changes(ENTRIES, first.data.atlas.rgb[entries[0]], _delta_e(under, *spectra)),
+        pairs=pairs,
+        entries=Changes(ENTRIES, pairs.rgb, delta_e_under(under, *pairs.spectra)),
         images=tuple(changes[1:]),
-        entry_names=shared,
-        removed=tuple(name for name in rows_of[0] if name not in rows_of[1]),
-        added=tuple(name for name in rows_of[1] if name not in rows_of[0]),
         uncovered=sum(int((~mask).sum()) for mask in covered.values()),
     )
-
-
-def _delta_e(lights: Sequence[Light], first: Array, second: Array) -> Array:
-    """ΔE00 (L, n) under lights between reflectances (n, N)."""
-    return np.array([delta_e_spectra(light, first, second) for light in lights]).reshape(len(lights), len(first))
 
 
 def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, object]:
@@ -136,26 +154,24 @@ def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, ob
             {
                 "set": each.name,
                 "light": name,
-                "mean": float(values.mean()),
-                "p95": float(np.quantile(values, 0.95)),
-                "max": float(values.max()),
+                **mean_p95_max(values),
                 **({} if tolerance is None else {"moved": int((values > tolerance).sum())}),
             }
             for each in diff.sets
-            for name, values in zip(diff.lights, each.delta_e, strict=True)
+            for name, values in zip(diff.lights, each.delta_e.T, strict=True)
         ],
         "worst": [
             {
                 "set": each.name,
-                **({"entry": diff.entry_names[row]} if each is diff.entries else {}),
+                **({"entry": diff.pairs.names[row]} if each is diff.entries else {}),
                 "rgb": each.rgb[row].tolist(),
-                "light": diff.lights[each.delta_e[:, row].argmax()],
+                "light": diff.lights[each.delta_e[row].argmax()],
                 "delta_e": float(each.largest[row]),
             }
             for each in diff.sets
             for row in each.worst(worst)
         ],
-        "entries_removed": list(diff.removed),
-        "entries_added": list(diff.added),
+        "entries_removed": list(diff.pairs.removed),
+        "entries_added": list(diff.pairs.added),
         "uncovered": diff.uncovered,
     }

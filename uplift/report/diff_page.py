@@ -81,19 +81,13 @@ def _spectra(diff: CubeDiff, changes: Changes, row: int) -> dict[str, object]:
     sensor, rgb = diff.cubes[0].data.sensor, changes.rgb[row]
     wavelengths = sensor.wavelengths
     if changes is diff.entries:
-        name = diff.entry_names[row]
-        rows = [np.array([cube.data.atlas.names.index(name)]) for cube in diff.cubes]
-        answers = [
-            cube.data.entry_spectra.reflectance(each, wavelengths)[0]
-            for cube, each in zip(diff.cubes, rows, strict=True)
-        ]
+        name, answers = diff.pairs.names[row], [each[row] for each in diff.pairs.spectra]
     else:
-        name = changes.name
-        answers = [cube.reflectance(rgb, wavelengths) for cube in diff.cubes]
+        name, answers = changes.name, [cube.reflectance(rgb, wavelengths) for cube in diff.cubes]
     return {
         "name": name,
         "code": hex_codes(rgb[None], sensor)[0],
-        "light": diff.lights[int(changes.delta_e[:, row].argmax())],
+        "light": diff.lights[int(changes.delta_e[row].argmax())],
         "delta_e": float(changes.largest[row]),
         "chart": spectra_chart(wavelengths, answers[0], answers[1], None),
     }

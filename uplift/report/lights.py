@@ -10,8 +10,9 @@ from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.lights.lattice import chromaticity
 from uplift.lights.lookup import EmissionTable
+from uplift.lights.table import summarise
 from uplift.report.charts import Histogram, histogram_chart, linear_edges, log_edges, make_histogram
-from uplift.report.measures import COLOURS, SEED, summarise_emission
+from uplift.report.measures import COLOURS, SEED
 from uplift.viz.chromaticity import draw_colours, draw_errors, draw_lamps
 from uplift.viz.figure import STYLE, to_page_svg
 from uplift.viz.html import render
@@ -73,7 +74,7 @@ def render_light_report(table: EmissionTable, name: str, size: int) -> str:
         title=name,
         size=size,
         report=assessment,
-        facts=summarise_emission(table.data),
+        facts=summarise(table.data),
         provenance=table.data.provenance,
         count=COLOURS,
         diagrams=[(title, _diagram(draw, label, table)) for title, (draw, label) in DIAGRAMS.items()],

@@ -1,7 +1,6 @@
 """Live page: one HTML file with a cube, the exported GLSL program and a few lights."""
 
 import base64
-import os
 
 import numpy as np
 
@@ -9,7 +8,6 @@ from uplift.colorimetry.observer import light
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.common.files import write_text
 from uplift.cube import CubeData
 from uplift.io.export.program import cube_program
 from uplift.io.export.table import COLUMNS, make_table
@@ -20,8 +18,8 @@ GROUP = 4  # wavelengths of one call of the program
 SPACE = "sRGB"
 
 
-def write_page(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
-    """Write the live page of a cube: it relights images by spectra, next to a product of RGB."""
+def page(data: CubeData) -> str:
+    """Render the live page of a cube: it relights images by spectra, next to a product of RGB."""
     if data.complete_cells is not None:
         raise OptionError(
             "a page needs all nodes, but the cube was built for the colours of a scene",
@@ -33,13 +31,6 @@ def write_page(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fa
             f"a page shows images in sRGB, got a cube of {data.sensor.space}",
             hint="build the cube without another RGB space",
         )
-    text = page(data)
-    write_text(text, path, force=force)
-    return len(text.encode())
-
-
-def page(data: CubeData) -> str:
-    """Render the page."""
     table = make_table(data, "spectra")
     program = cube_program(data, table, "glsl", "spectra", "cube", "file")
     image = table.image()

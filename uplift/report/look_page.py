@@ -14,9 +14,8 @@ from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.lights import DESCRIPTIONS
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Light, Sensor
-from uplift.common.arrays import Array, StrPath
+from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.common.files import write_text
 from uplift.lookup import Bounds, Cube
 from uplift.models import Moments
 from uplift.models.moments import MAX_COUNT
@@ -27,15 +26,8 @@ MARGIN = 1e-6  # distance of the answer from 0 and 1, where the odds are 0 or in
 CODE_SLACK = 1e-6  # distance in encoded codes at which a colour is written as '#rrggbb'
 
 
-def write_look_page(cube: Cube, found: Sequence[Bounds], path: StrPath, *, force: bool = False) -> int:
-    """Write a page on which the look of a colour is chosen."""
-    text = page(cube, found)
-    write_text(text, path, force=force)
-    return len(text.encode())
-
-
 def page(cube: Cube, found: Sequence[Bounds]) -> str:
-    """Render the page."""
+    """Render a page on which the look of a colour is chosen, from its bounds under some lights."""
     if not found or len(found[0].xyz) != 1:
         count = len(found[0].xyz) if found else 0
         raise OptionError(

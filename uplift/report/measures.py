@@ -1,19 +1,30 @@
-"""Facts about a cube or an emission table, failures of a build, smoothness, round trips, calibration of errors."""
+"""Facts about a cube, failures of a build, smoothness, round trips, calibration of errors."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry import Light, delta_e_rgb, delta_e_spectra
 from uplift.colorimetry.expected_error import COVERAGE
 from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData, digest
 from uplift.lattice import Status
-from uplift.lights.table import KIND, EmissionData, emission_digest
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
+
+
+def delta_e_under(lights: Sequence[Light], first: Array, second: Array) -> Array:
+    """Compute ΔE00 (n, L) under lights between reflectances (n, N)."""
+    return np.stack([delta_e_spectra(light, first, second) for light in lights], axis=1)
+
+
+def mean_p95_max(delta_e: Array) -> dict[str, float]:
+    """Summarise ΔE00 by the mean, the value that 95 % stay within, and the largest value."""
+    return {"mean": float(delta_e.mean()), "p95": float(np.quantile(delta_e, 0.95)), "max": float(delta_e.max())}
+
 
 MAX_LISTED = 24  # points over the threshold that a report lists
 
@@ -22,7 +33,6 @@ MAX_LISTED = 24  # points over the threshold that a report lists
 class Failures:
     """Failures that a cube records."""
 
-    counts: dict[str, int]  # Lattice points by status
     over_threshold: int  # Number of lattice points over the threshold
     worst_points: Indices  # (k,) Indices of the worst of these, worst first
     improvements: tuple[dict[str, Any], ...]  # Steps of the improvement pass
@@ -36,16 +46,12 @@ def collect_failures(data: CubeData) -> Failures:
     failed = np.isin(points.status, (Status.UNFITTED, Status.UNREALISABLE))
     rows = np.flatnonzero(failed | ~(points.distance <= data.threshold))
     return Failures(
-        counts=points.counts(),
         over_threshold=len(rows),
         worst_points=rows[np.argsort(-points.distance[rows], kind="stable")][:MAX_LISTED],
         improvements=tuple(recorded.get("improvements", ())),
         left_out=tuple(recorded.get("left_out", ())) if data.atlas.outside is None else (),
         skipped=tuple(recorded.get("skipped", ())),
     )
-
-
-NO_PAIR = -1.0  # placeholder for a difference to an absent point
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,48 +67,35 @@ def compute_smoothness(data: CubeData) -> Smoothness:
 
     The lattice is processed by planes of equal red: spectra of two planes are in memory at a time.
     """
+    dim = data.lattice.dim
+    rows = np.arange(dim**3).reshape(dim, dim, dim)
     parts: list[NDArray[np.float32]] = []
-    largest = NO_PAIR
-    pair: tuple[tuple[int, ...], ...] = ()
-    previous: Array | None = None
-    for red in range(data.lattice.dim):
-        plane = _plane(data, red)
-        for axis, (first, second) in enumerate(_neighbours(previous, plane)):
-            rms = np.nan_to_num(np.sqrt(((second - first) ** 2).mean(axis=-1)), nan=NO_PAIR)
-            parts.append(rms[rms != NO_PAIR].astype(np.float32))
-            if rms.max() > largest:
-                largest = float(rms.max())
-                pair = _positions(axis, red, np.unravel_index(int(rms.argmax()), rms.shape))
+    largest, steepest = -1.0, (0, 0)
+    previous = np.full((dim, dim, len(data.sensor.wavelengths)), np.nan)
+    for here in rows:
+        plane = _spectra(data, here)
+        pairs = (
+            (plane[:, :-1], plane[:, 1:], here[:, :-1], here[:, 1:]),  # along blue
+            (plane[:-1], plane[1:], here[:-1], here[1:]),  # along green
+            (previous, plane, here - dim**2, here),  # along red
+        )
+        for first, second, *ends in pairs:
+            rms = np.sqrt(((second - first) ** 2).mean(axis=-1))
+            present = ~np.isnan(rms)
+            parts.append(rms[present].astype(np.float32))
+            if present.any() and np.nanmax(rms) > largest:
+                low, high = (int(each.flat[np.nanargmax(rms)]) for each in ends)
+                largest, steepest = float(np.nanmax(rms)), (low, high)
         previous = plane
-    return Smoothness(np.concatenate(parts), data.lattice.nodes[np.array(pair)])
+    return Smoothness(np.concatenate(parts), data.lattice.points[np.array(steepest)])
 
 
-def _plane(data: CubeData, red: int) -> Array:
-    """Spectra (dim, dim, N) of the points of one red, green first; NaN if absent."""
-    dim, wavelengths = data.lattice.dim, data.sensor.wavelengths
-    rows = slice(red * dim**2, (red + 1) * dim**2)
+def _spectra(data: CubeData, rows: Indices) -> Array:
+    """Spectra (..., N) of lattice points (...); NaN if absent."""
     present = data.points.present[rows]
-    plane = np.full((dim**2, len(wavelengths)), np.nan)
-    plane[present] = reflectance(data.model, data.points.coefficients[rows][present], wavelengths)
-    return plane.reshape(dim, dim, -1)
-
-
-def _neighbours(previous: Array | None, plane: Array) -> list[tuple[Array, Array]]:
-    """Pairs along blue and green within a plane, and along red to the previous plane."""
-    within = [(plane[:, :-1], plane[:, 1:]), (plane[:-1], plane[1:])]
-    return within if previous is None else [*within, (previous, plane)]
-
-
-def _positions(axis: int, red: int, index: tuple[np.intp, ...]) -> tuple[tuple[int, ...], ...]:
-    """Positions (red, green, blue) of two neighbours; ``axis`` 0 is blue, 1 green, 2 red."""
-    green, blue = (int(part) for part in index)
-    first = [red, green, blue]
-    second = list(first)
-    if axis == 2:
-        first[0] -= 1
-    else:
-        second[2 - axis] += 1
-    return tuple(first), tuple(second)
+    spectra = np.full((*rows.shape, len(data.sensor.wavelengths)), np.nan)
+    spectra[present] = reflectance(data.model, data.points.coefficients[rows[present]], data.sensor.wavelengths)
+    return spectra
 
 
 COLOURS = 4096
@@ -199,24 +192,4 @@ def summarise(data: CubeData) -> dict[str, Any]:
         "rounds": None if points.round is None else int(points.round.max()) + 1,
         "provenance": dict(data.provenance),
         "digest": digest(data),
-    }
-
-
-def summarise_emission(data: EmissionData) -> dict[str, Any]:
-    """Summarise an emission table, most general facts first."""
-    knots, rings = data.lattice.shape
-    first, second = data.wavelengths[:2].tolist()
-    return {
-        "format": KIND.format,
-        "knots": knots,
-        "rings": rings,
-        "nodes": knots * rings,
-        "space": data.space,
-        "observer": data.observer,
-        "wavelengths": {"first": first, "last": float(data.wavelengths[-1]), "step": second - first},
-        "mean_expected_error": float(data.error.mean(dtype=np.float64)),
-        "largest_expected_error": float(data.error.max()),
-        "lamps": list(data.entries.names),
-        "provenance": dict(data.provenance),
-        "digest": emission_digest(data),
     }

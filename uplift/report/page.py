@@ -2,37 +2,44 @@
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import is_dataclass
 from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry import Sensor
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.report.assessment import Assessment
-from uplift.report.charts import Histogram, histogram_chart, spectra_chart
-from uplift.report.fidelity import Alternative, EntryErrors
+from uplift.report.charts import histogram_chart, spectra_chart
+from uplift.report.fidelity import Answers, EntryErrors
 from uplift.report.measures import SEED
 
 
 def to_json(assessment: Assessment) -> dict[str, Any]:
     """Convert an assessment to JSON values."""
     data = assessment.data
-    return _plain(
+    values: dict[str, Any] = _plain(
         {
             "cube": assessment.name,
             "bytes": assessment.size,
             "build": assessment.facts,
             "failures": _failures(assessment),
-            "fitting_distance": _histogram(assessment.distance),
+            "fitting_distance": assessment.distance,
             "round_trip": {
                 "colours": assessment.round_trips["spectra"].counts.sum(),
                 "seed": SEED,
                 "illuminant": data.sensor.illuminant,
-                "delta_e_2000": {mode: _histogram(each) for mode, each in assessment.round_trips.items()},
+                "delta_e_2000": assessment.round_trips,
             },
-            "standard_error": _standard_error(assessment),
-            "smoothness": {**_histogram(assessment.smoothness), "steepest": assessment.steepest},
+            "standard_error": {
+                "light": data.error_illuminant,
+                "delta_e_2000": assessment.standard_error,
+                "calibration": assessment.calibration and assessment.calibration.to_json(),
+                "calibrations": {light: each.to_json() for light, each in assessment.light_calibrations.items()},
+                "unlike_atlas": assessment.unlike,
+            },
+            "smoothness": vars(assessment.smoothness) | {"steepest": assessment.steepest},
             "lights": [sensor.illuminant for sensor in assessment.lights],
             "atlas": {
                 "files": assessment.sources,
@@ -40,24 +47,28 @@ def to_json(assessment: Assessment) -> dict[str, Any]:
                 "outside": assessment.out_of_gamut,
                 "absent": assessment.not_covered,
             },
-            "delta_e_2000": {light: _histogram(each) for light, each in assessment.delta_e.items()},
+            "delta_e_2000": assessment.delta_e,
             "entries": [] if assessment.entries is None else _entries(assessment.entries, assessment.lights),
-            "alternatives": [_alternative(each, assessment.lights) for each in assessment.alternatives],
+            "alternatives": [
+                {"name": name, "delta_e_2000": _by_light(other, assessment.lights)}
+                for name, other in assessment.alternatives.items()
+            ],
             "crowding": _crowding(assessment),
         }
     )
+    return values
 
 
 def swatches(errors: EntryErrors, sensor: Sensor) -> list[tuple[str, ...]]:
     """``#rrggbb`` of every entry under a light: target, answer and, for the cube's own entries, the lattice."""
-    spectra = [each for each in (errors.target, errors.answer, errors.lattice) if each is not None]
+    spectra = [errors.target, errors.answers.spectra, *([errors.lattice.spectra] if errors.lattice else [])]
     return list(zip(*(hex_codes(sensor.rgb(each)) for each in spectra), strict=True))
 
 
 def _failures(assessment: Assessment) -> dict[str, Any]:
     failures, data = assessment.failures, assessment.data
     return {
-        "status": failures.counts,
+        "status": assessment.facts["status"],
         "over_threshold": failures.over_threshold,
         "worst": [
             {
@@ -70,17 +81,6 @@ def _failures(assessment: Assessment) -> dict[str, Any]:
         "improvements": failures.improvements,
         "left_out": failures.left_out,
         "skipped": failures.skipped,
-    }
-
-
-def _standard_error(assessment: Assessment) -> dict[str, Any]:
-    errors, calibration = assessment.standard_error, assessment.calibration
-    return {
-        "light": assessment.data.error_illuminant,
-        "delta_e_2000": None if errors is None else _histogram(errors),
-        "calibration": None if calibration is None else calibration.to_json(),
-        "calibrations": {light: each.to_json() for light, each in assessment.light_calibrations.items()},
-        "unlike_atlas": assessment.unlike,
     }
 
 
@@ -98,36 +98,23 @@ def _crowding(assessment: Assessment) -> dict[str, Any] | None:
     }
 
 
-def _histogram(values: Histogram) -> dict[str, Any]:
-    return {
-        "mean": values.mean,
-        "median": values.median,
-        "p95": values.p95,
-        "max": values.largest,
-        "edges": values.edges,
-        "counts": values.counts,
-    }
-
-
 def _entries(errors: EntryErrors, lights: tuple[Sensor, ...]) -> list[dict[str, Any]]:
     names = [sensor.illuminant for sensor in lights]
     codes = {sensor.illuminant: swatches(errors, sensor) for sensor in lights}
+    answers, lattice = errors.answers, errors.lattice
 
     def at(values: Any, row: int) -> Any:
         return None if values is None else values[row]
-
-    def by_light(values: Any, row: int) -> dict[str, Any] | None:
-        return None if values is None else dict(zip(names, values[row], strict=True))
 
     return [
         {
             "name": name,
             "rgb": errors.rgb[row],
             "cell": errors.cells[row],
-            "delta_e_2000": by_light(errors.delta_e, row),
-            "delta_e_2000_lattice": by_light(errors.delta_e_lattice, row),
-            "rms": errors.rms[row],
-            "rms_lattice": at(errors.rms_lattice, row),
+            "delta_e_2000": dict(zip(names, answers.delta_e[row], strict=True)),
+            "delta_e_2000_lattice": lattice and dict(zip(names, lattice.delta_e[row], strict=True)),
+            "rms": answers.rms[row],
+            "rms_lattice": lattice and lattice.rms[row],
             "delta_e_2000_reference": errors.actual[row],
             "standard_error": at(errors.predicted, row),
             "reach": at(errors.half_width, row),
@@ -141,22 +128,16 @@ def _entries(errors: EntryErrors, lights: tuple[Sensor, ...]) -> list[dict[str, 
     ]
 
 
-def _alternative(other: Alternative, lights: tuple[Sensor, ...]) -> dict[str, Any]:
-    """Errors of another method, by light and in the order of the entries."""
-    return {
-        "name": other.name,
-        "delta_e_2000": {
-            sensor.illuminant: {
-                "mean": other.mean[column],
-                "max": other.largest[column],
-                "entries": other.delta_e[:, column],
-            }
-            for column, sensor in enumerate(lights)
-        },
-    }
+def _by_light(other: Answers, lights: tuple[Sensor, ...]) -> dict[str, Any]:
+    """Errors of another method, in the order of the entries."""
+    columns = zip(lights, other.mean, other.largest, other.delta_e.T, strict=True)
+    return {sensor.illuminant: {"mean": mean, "max": most, "entries": each} for sensor, mean, most, each in columns}
 
 
 def _plain(value: Any) -> Any:
+    """JSON values of nested dictionaries, sequences, arrays and dataclasses; null for numbers that are not finite."""
+    if is_dataclass(value):
+        value = vars(value)
     if isinstance(value, Mapping):
         return {str(key): _plain(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
@@ -165,6 +146,9 @@ def _plain(value: Any) -> Any:
         return _plain(value.tolist())
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
+
+Swatch = tuple[str, float | None]
+"""``#rrggbb`` of an answer under a light, or nothing, and its ΔE00."""
 
 VISIBLE, LARGE = 1.0, 3.0  # ΔE00: the difference that is just visible side by side, and one that is obvious
 
@@ -229,29 +213,26 @@ def _errors_by_light(assessment: Assessment) -> Iterator[dict[str, Any]]:
         yield {
             "light": light,
             "distribution": values,
-            "worst": entries.names[int(entries.delta_e[:, column].argmax())],
-            "alternatives": [(other.mean[column], other.largest[column]) for other in assessment.alternatives],
-            "lattice": None if entries.delta_e_lattice is None else entries.delta_e_lattice[:, column],
+            "worst": entries.names[int(entries.answers.delta_e[:, column].argmax())],
+            "alternatives": [(other.mean[column], other.largest[column]) for other in assessment.alternatives.values()],
+            "lattice": entries.lattice and entries.lattice.delta_e[:, column],
         }
 
 
-def _compared(assessment: Assessment, count: int) -> Iterator[list[dict[str, Any]]]:
+def _compared(assessment: Assessment, count: int) -> Iterator[dict[str, list[Swatch]]]:
     """Swatches and ΔE00 of the first entries: rows of measured, answered and alternatives, by light."""
     if (entries := assessment.entries) is None:
         return
-    answers = {"measured": (entries.target, None), "this cube": (entries.answer, entries.delta_e)}
-    answers |= {other.name: (other.answer, other.delta_e) for other in assessment.alternatives}
+    answers = {"this cube": entries.answers, **assessment.alternatives}
     for row in range(min(count, len(entries.names))):
-        yield [
-            {
-                "name": name,
-                "cells": _cells(assessment.lights, answer[row], None if errors is None else errors[row]),
-            }
-            for name, (answer, errors) in answers.items()
-        ]
+        measured = _cells(assessment.lights, entries.target[row], None)
+        cells = {
+            name: _cells(assessment.lights, each.spectra[row], each.delta_e[row]) for name, each in answers.items()
+        }
+        yield {"measured": measured} | cells
 
 
-def _cells(lights: tuple[Sensor, ...], answer: Array, errors: Array | None) -> list[tuple[str, float | None]]:
+def _cells(lights: tuple[Sensor, ...], answer: Array, errors: Array | None) -> list[Swatch]:
     """Colour and ΔE00 of a spectrum (N,) under each light; an empty colour for an unknown spectrum."""
     if np.isnan(answer).any():
         return [("", None)] * len(lights)

@@ -1,21 +1,21 @@
 """Comparison of a stored cube with a rebuilt one: whether this version reproduces stored cubes."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.solid import solid
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Mask
 from uplift.common.errors import CubeFileError
 from uplift.cube import CubeData
 from uplift.lattice import Status
 from uplift.models import reflectance
+from uplift.report.diff import pair_entries
+from uplift.report.measures import delta_e_under
 
 # Largest differences allowed between machines: at least thirty times the effect of other instruction sets
 # (docs/data/stability-determinism.json). On one machine there are none, for any number of threads.
@@ -70,29 +70,25 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
             hint="build the cube again",
         )
     compared = _well_determined(stored) & (stored.points.present | rebuilt.points.present)
-    wavelengths = stored.sensor.wavelengths
-    nodes = [reflectance(data.model, data.points.coefficients[compared], wavelengths) for data in (stored, rebuilt)]
-    rows = [_entry_rows(data) for data in (stored, rebuilt)]
-    shared = [name for name in rows[0] if name in rows[1]]
-    entries = [_entry_spectra(data, shared) for data in (stored, rebuilt)]
-    first, second = (np.concatenate(spectra) for spectra in zip(nodes, entries, strict=True))
+    pairs = pair_entries(stored, rebuilt)
+    first, second = (
+        np.concatenate([reflectance(data.model, data.points.coefficients[compared], stored.sensor.wavelengths), own])
+        for data, own in zip((stored, rebuilt), pairs.spectra, strict=True)
+    )
     difference = np.abs(first - second)
+    lights = [light(name, stored.sensor.observer, *stored.sensor.range) for name in REGRESSION_LIGHTS]
+    delta_e = delta_e_under(lights, first, second)
     measures = {
         "rgb": float(np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[compared].max()),
         "spectra_max": float(difference.max()),
         "spectra_rms": float(np.sqrt((difference**2).mean())),
-    }
-    moved = np.zeros(len(shared))
-    for name in REGRESSION_LIGHTS:
-        under = light(name, stored.sensor.observer, *stored.sensor.range)
-        delta_e = delta_e_spectra(under, first, second)
-        measures[f"delta_e_{name}"] = float(delta_e.max())
-        moved = np.maximum(moved, delta_e[len(nodes[0]) :])
+    } | dict(zip((f"delta_e_{name}" for name in REGRESSION_LIGHTS), delta_e.max(axis=0).tolist(), strict=True))
+    moved = delta_e[np.count_nonzero(compared) :].max(axis=1)
     # Cubes of earlier versions have the names of entries outside their RGB space only.
-    old, new = ({*_entry_rows(data), *data.provenance.get("left_out", ())} for data in (stored, rebuilt))
-    changes = [EntryChange(name, "removed") for name in rows[0] if name not in new]
-    changes += [EntryChange(name, "added") for name in rows[1] if name not in old]
-    changes += [EntryChange(shared[row], "moved", float(moved[row])) for row in np.flatnonzero(moved > MOVED)]
+    old, new = (data.provenance.get("left_out", ()) for data in (stored, rebuilt))
+    changes = [EntryChange(name, "removed") for name in pairs.removed if name not in new]
+    changes += [EntryChange(name, "added") for name in pairs.added if name not in old]
+    changes += [EntryChange(pairs.names[row], "moved", float(moved[row])) for row in np.flatnonzero(moved > MOVED)]
     before, after = (_counts(data, compared) for data in (stored, rebuilt))
     return RebuildDifference(path, measures, before, after, tuple(changes))
 
@@ -100,21 +96,6 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
 def _same_lattice(stored: CubeData, rebuilt: CubeData) -> bool:
     nodes, other = stored.lattice.nodes, rebuilt.lattice.nodes
     return nodes.shape == other.shape and bool((np.abs(nodes - other) <= NODE_TOLERANCE).all())
-
-
-def _entry_rows(data: CubeData) -> dict[str, int]:
-    """Rows of entries in the atlas table, then of those outside the RGB space in theirs, counted on, by name."""
-    outside = () if data.atlas.outside is None else data.atlas.outside.names
-    return {name: row for row, name in enumerate((*data.atlas.names, *outside))}
-
-
-def _entry_spectra(data: CubeData, names: Sequence[str]) -> Array:
-    """Reflectance (E, N) of entries by name."""
-    tables = [each for each in (data.entry_spectra, data.outside_spectra) if each is not None]
-    at = data.sensor.wavelengths
-    spectra = np.concatenate([each.reflectance(np.arange(len(each.coefficients)), at) for each in tables])
-    row_of = _entry_rows(data)
-    return np.asarray(spectra[[row_of[name] for name in names]])
 
 
 def _well_determined(data: CubeData) -> Mask:

@@ -23,10 +23,10 @@ from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array, StrPath
-from uplift.common.files import write_text
 from uplift.io.texture.colours import Floats
 from uplift.lookup import Cube, bulk
 from uplift.lookup.cube import common_sensor
+from uplift.report.measures import mean_p95_max
 from uplift.viz.figure import GREY, INK, RAMP, colour_map, figure_text, new_figure, ramp_codes, write_figure
 from uplift.viz.html import render, resource
 
@@ -34,28 +34,6 @@ RGB_PRODUCT = "RGB × light"  # name of the method that multiplies the RGB of th
 MIN_MAP_LIMIT = 2.0  # smallest ΔE00 at the dark end of a map: invisible differences stay pale
 JPEG_QUALITY = 92
 ROWS = 64  # rows whose spectra are in memory at once
-
-
-@dataclass(frozen=True, eq=False)
-class Difference:
-    """ΔE00 between the colours of two methods."""
-
-    delta_e: Array  # (height, width) ΔE00 of each pixel
-
-    @property
-    def mean(self) -> float:
-        """Mean over all pixels."""
-        return float(self.delta_e.mean())
-
-    @property
-    def p95(self) -> float:
-        """Value that 95 % of the pixels stay within."""
-        return float(np.quantile(self.delta_e, 0.95))
-
-    @property
-    def max(self) -> float:
-        """Largest value."""
-        return float(self.delta_e.max())
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,15 +55,15 @@ class Rendering:
         description = DESCRIPTIONS.get(self.light)
         return f"{self.light}, {description}" if description else self.light
 
-    def difference(self, first: str, second: str) -> Difference:
-        """Compare two methods, relative to the white of the light."""
+    def difference(self, first: str, second: str) -> Array:
+        """Return ΔE00 (height, width) between two methods, relative to the white of the light."""
         return self._differences[first, second]
 
     @cached_property
-    def _differences(self) -> dict[tuple[str, str], Difference]:
+    def _differences(self) -> dict[tuple[str, str], Array]:
         """All pairs, as a page, a figure and a table need them several times."""
         lab = {method: rgb_to_lab(self.sensor, colours) for method, colours in self.colours.items()}
-        return {pair: Difference(delta_e_2000(*map(lab.__getitem__, pair))) for pair in combinations(lab, 2)}
+        return {pair: delta_e_2000(*map(lab.__getitem__, pair)) for pair in combinations(lab, 2)}
 
     def screen_codes(self, method: str) -> NDArray[np.uint8]:
         """Return 8-bit sRGB codes (height, width, 3) of a method; colours outside the gamut are desaturated."""
@@ -94,8 +72,8 @@ class Rendering:
     @property
     def map_limit(self) -> float:
         """ΔE00 at the dark end of maps: nearly all differences from `RGB_PRODUCT` are below."""
-        methods = (method for method in self.colours if method != RGB_PRODUCT)
-        return max(MIN_MAP_LIMIT, math.ceil(max(self.difference(RGB_PRODUCT, method).p95 for method in methods)))
+        differences = [self.difference(RGB_PRODUCT, method) for method in self.colours if method != RGB_PRODUCT]
+        return max(MIN_MAP_LIMIT, math.ceil(max(np.quantile(each, 0.95) for each in differences)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,7 +168,7 @@ def _draw_row(figure: Any, axes: Sequence[Any], image: Relit, rendering: Renderi
         if method != RGB_PRODUCT:
             each.set_xlabel(_caption(rendering.difference(RGB_PRODUCT, method)), fontsize=9, color=GREY)
     difference = rendering.difference(RGB_PRODUCT, image.methods[-1])
-    drawn = axes[-1].imshow(difference.delta_e, cmap=colour_map(), vmin=0, vmax=rendering.map_limit)
+    drawn = axes[-1].imshow(difference, cmap=colour_map(), vmin=0, vmax=rendering.map_limit)
     bar = figure.colorbar(drawn, ax=axes[-1], fraction=0.04, pad=0.02, extend="max")
     bar.outline.set_visible(False)
     bar.locator = MaxNLocator(4, integer=True)
@@ -201,24 +179,18 @@ def _draw_row(figure: Any, axes: Sequence[Any], image: Relit, rendering: Renderi
         each.spines[:].set_visible(False)
 
 
-def _caption(difference: Difference) -> str:
-    return f"ΔE00 from RGB × light: mean {difference.mean:.1f}, 95 % {difference.p95:.1f}"
+def _caption(delta_e: Array) -> str:
+    found = mean_p95_max(delta_e)
+    return f"ΔE00 from RGB × light: mean {found['mean']:.1f}, 95 % {found['p95']:.1f}"
 
 
-def write_relit_page(relit: Sequence[Relit], path: StrPath, *, force: bool = False) -> int:
-    """Write relit images as one self-contained HTML page."""
-    text = _page(relit)
-    write_text(text, path, force=force)
-    return len(text.encode())
-
-
-def _page(relit: Sequence[Relit]) -> str:
-    """Render the page. It opens under the light with the largest differences."""
+def relit_page(relit: Sequence[Relit]) -> str:
+    """Render relit images as one self-contained HTML page. It opens under the light with the largest differences."""
     first, methods = relit[0], relit[0].methods
     lights = [rendering.light_label for rendering in first.renderings]
     last = methods[-1]
     changes = [
-        np.mean([image.renderings[number].difference(RGB_PRODUCT, last).mean for image in relit])
+        np.mean([image.renderings[number].difference(RGB_PRODUCT, last).mean() for image in relit])
         for number in range(len(lights))
     ]
     limits = [max(image.renderings[number].map_limit for image in relit) for number in range(len(lights))]
@@ -249,10 +221,11 @@ def _section(image: Relit, limits: Sequence[float]) -> dict[str, Any]:
         for (one, first), (other, second) in combinations(enumerate(image.methods), 2):
             difference = rendering.difference(first, second)
             label = f"ΔE00 map of {image.name} under {rendering.light}: {first}, {second}"
-            source = _map(difference.delta_e / limit)
+            source = _map(difference / limit)
             layers.append({"light": number, "shows": f"{one}-{other}", "label": label, "source": source})
-            figures = (difference.mean, difference.p95, difference.max)
-            rows.append((rendering.light, first, second, *(f"{figure:.2f}" for figure in figures)))
+            rows.append(
+                (rendering.light, first, second, *(f"{each:.2f}" for each in mean_p95_max(difference).values()))
+            )
     height, width, _ = image.renderings[0].colours[RGB_PRODUCT].shape
     size = {"width": width, "height": height, "reduction": image.reduction}
     return {"name": image.name, **size, "layers": layers, "rows": rows}
