@@ -2,27 +2,38 @@
 
 import ast
 import json
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[1]
 TARGET = ROOT / "docs" / "data" / "errors.json"
-NAMED = {"unknown_name", "_look_up", "_samples"}
-"""Functions whose third argument is the kind of a name; an unknown name has the code ``unknown-`` and the kind."""
+KEYWORDS = {"code", "foreign"}
+"""Arguments that are codes."""
 
 
-def calls(tree: ast.AST) -> Iterator[tuple[str, str]]:
-    """Yield the function name and the code of every call with a literal ``code`` or a literal kind of name."""
+def codes(tree: ast.AST) -> Iterator[tuple[str, str]]:
+    """Yield function or class and code: of classes, of arguments, and of names that have a text in the same file."""
+    named = defaultdict(list)
     for node in ast.walk(tree):
-        if not isinstance(node, ast.Call):
-            continue
-        name = node.func.id if isinstance(node.func, ast.Name) else getattr(node.func, "attr", "")
-        if name in NAMED and len(node.args) > 2 and isinstance(node.args[2], ast.Constant):
-            yield name, "unknown-" + "-".join(str(node.args[2].value).casefold().split())
-        for keyword in node.keywords:
-            if keyword.arg == "code" and isinstance(keyword.value, ast.Constant):
-                yield name, str(keyword.value.value)
+        if isinstance(node, ast.Assign):
+            pairs = [(node.targets[0], node.value)]
+            if isinstance(node.targets[0], ast.Tuple) and isinstance(node.value, ast.Tuple):
+                pairs = list(zip(node.targets[0].elts, node.value.elts, strict=True))
+            for target, value in pairs:
+                if isinstance(target, ast.Name):
+                    named[target.id].append(value)
+    for node in ast.walk(tree):
+        found: list[tuple[str, ast.expr]] = []
+        if isinstance(node, ast.ClassDef):
+            own = (each for each in node.body if isinstance(each, ast.Assign))
+            found = [(node.name, each.value) for each in own if ast.unparse(each.targets[0]) == "code"]
+        elif isinstance(node, ast.Call):
+            name = node.func.id if isinstance(node.func, ast.Name) else getattr(node.func, "attr", "")
+            values = [keyword.value for keyword in node.keywords if keyword.arg in KEYWORDS]
+            found = [(name, each) for value in values for each in named.get(ast.unparse(value), [value])]
+        yield from ((name, str(each.value)) for name, each in found if isinstance(each, ast.Constant) and each.value)
 
 
 def collect(root: Path = ROOT) -> list[dict[str, Any]]:
@@ -30,7 +41,7 @@ def collect(root: Path = ROOT) -> list[dict[str, Any]]:
     found: dict[tuple[str, str], set[str]] = {}
     for path in sorted((root / "uplift").rglob("*.py")):
         package = ".".join(path.relative_to(root).parent.parts)
-        for name, code in calls(ast.parse(path.read_text(encoding="utf-8"))):
+        for name, code in codes(ast.parse(path.read_text(encoding="utf-8"))):
             kind = "warning" if name.endswith(("Warning", "warn", "_warn")) else "error"
             found.setdefault((code, kind), set()).add(package)
     return [

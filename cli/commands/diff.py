@@ -78,9 +78,7 @@ def command(
     paths = expand_patterns(images)
     if output is not None:
         if Path(output).suffix.lower() != ".html":
-            raise OutputError(
-                "the name of a page must end in .html", code="unknown-suffix", path=output, hint="name the page .html"
-            )
+            raise OutputError("the name of a page must end in .html", path=output, hint="name the page .html")
         check_output(output, inputs=(first, second, *paths), force=force)
     names = (first, second) if first != second else (first, f"{second} (again)")
     cubes = dict(zip(names, map(load, (first, second)), strict=True))

@@ -81,7 +81,6 @@ def command(
     if suffix not in (*SUFFIXES, PAGE):
         raise OutputError(
             f"the suffix of relit images must be one of {', '.join((*SUFFIXES, PAGE))}, got '{suffix}'",
-            code="unknown-suffix",
             path=output,
             hint="give a file name ending in .png for a picture, or .html for a page",
         )

@@ -24,7 +24,6 @@ HINTS = {
     "atlas-not-found": "name its folder with --atlas-dir, or build the cube again",
     "colour-not-a-light": "use --out-of-gamut clip for the nearest colour towards white",
     "colour-not-in-scene": "use --fill-missing, or build the cube with the image in --scene",
-    "cube-not-found": "build a cube with 'uplift build'",
     "encoded-floats-not-mapped": "use --out-of-gamut clip, or --encoding linear",
     "entry-crowded": "use --dim auto for a lattice that is large enough; 'uplift report' shows details",
     "file-exists": "use --force to replace it, or choose another name",

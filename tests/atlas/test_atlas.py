@@ -39,7 +39,7 @@ def test_an_atlas_is_a_sequence_with_names():
     assert (ATLAS["grey"], ATLAS[0], ATLAS[-1]) == (GREY, RED, GREY)
     assert (ATLAS[1:].names, ATLAS[1:].sources) == (("grey",), ATLAS.sources)
     assert repr(ATLAS) == "Atlas(2 entries, 380–780 nm, 1 skipped, from a.txt)"
-    with raises(UnknownNameError, "unknown-atlas-entry"):
+    with raises(UnknownNameError, "unknown-name"):
         ATLAS["gray"]
     with pytest.raises(IndexError):
         ATLAS[2]

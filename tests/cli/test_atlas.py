@@ -59,7 +59,7 @@ def test_invalid_input_is_an_error(refuse, misuse):
     error = refuse("atlas", "none.txt")
     assert (error.code, error.where) == ("file-not-found", "none.txt")
     assert "'macbeth'" in refuse("atlas", "macbet.txt").hint
-    assert refuse("atlas", MACBETH, "--space", "sRGBB").code == "unknown-rgb-space"
+    assert refuse("atlas", MACBETH, "--space", "sRGBB").code == "unknown-name"
     assert "-o" in misuse("atlas", "-o", "out.csv")
 
 

@@ -119,10 +119,10 @@ def test_recommendations(quick, run, refuse, repository):
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
-        (("--methods", "x"), "unknown-method"),
+        (("--methods", "x"), "option"),
         (("--colours", 3), "option"),
         (("--recommend",), "option"),
-        (("--recommend", "--tolerance", 1, "--light", "FL12"), "unknown-light"),
+        (("--recommend", "--tolerance", 1, "--light", "FL12"), "unknown-name"),
         (("--from", "none.csv"), "file-not-found"),
         (("-o", "file"), "output"),
     ],

@@ -75,16 +75,16 @@ def test_failed_cubes_do_not_stop_the_others(run, shown, home, stored, modified,
     failed = dict.fromkeys(("none.uplift", "text.uplift", str(other_lattice), str(modified)), "FAILED")
     assert verdicts == failed | {str(stored): "passed"}
     assert reported(result, shown) == [
-        ("cube-not-found", "none.uplift"),
+        ("file-not-found", "none.uplift"),
         ("not-a-cube", "text.uplift"),
-        ("lattice-mismatch", str(other_lattice)),
+        ("cube-file", str(other_lattice)),
     ]
 
 
 def test_json_has_the_errors_of_failed_cubes(run, other_lattice):
     result = run("check", "none.uplift", other_lattice, "--format", "json", code=1)
     assert result.stderr == ""
-    codes = {"none.uplift": "cube-not-found", str(other_lattice): "lattice-mismatch"}
+    codes = {"none.uplift": "file-not-found", str(other_lattice): "cube-file"}
     for failed, (path, code) in zip(json.loads(result.stdout), codes.items(), strict=True):
         assert (failed["cube"], failed["passed"], failed["failures"]) == (path, False, [code])
         assert (failed["error"]["code"], failed["error"]["where"]) == (code, path)
@@ -94,7 +94,7 @@ def test_json_has_the_errors_of_failed_cubes(run, other_lattice):
 def test_update_replaces_failed_cubes_that_can_be_rebuilt(run, shown, stored, modified, other_lattice):
     before = stored.read_bytes()
     result = run("check", "-q", "--update", "none.uplift", stored, modified, other_lattice, code=1)
-    assert [failure.error.code for failure in shown] == ["cube-not-found"]
+    assert [failure.error.code for failure in shown] == ["file-not-found"]
     assert result.stderr.splitlines()[1:] == [f"{modified}: replaced", f"{other_lattice}: replaced"]
     assert before == stored.read_bytes() == modified.read_bytes() == other_lattice.read_bytes()
     run("check", modified, other_lattice)

@@ -77,9 +77,9 @@ def test_written_spectra_are_an_atlas_and_lamps(run, misuse, home, macbeth):
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
-        (("--light", "F2"), "unknown-illuminant"),
-        (("--tolerance", 0), "target-not-positive"),
-        (("--write", "GQ16", "-o", "new"), "no-spectrum"),
+        (("--light", "F2"), "unknown-name"),
+        (("--tolerance", 0), "option"),
+        (("--write", "GQ16", "-o", "new"), "option"),
         (("--write", "PS16", "-o", "file"), "output"),
         (("-o", "file"), "output"),
         (("-o", "out"), "file-exists"),

@@ -30,9 +30,9 @@ def test_json_and_page(run, cubes, home):
 @pytest.mark.parametrize(
     ("options", "code"),
     [
-        (("--output", "page.png"), "unknown-suffix"),
+        (("--output", "page.png"), "output"),
         (("--tolerance", "-1"), "option"),
-        (("--light", "no lamp"), "unknown-illuminant"),
+        (("--light", "no lamp"), "unknown-name"),
         (("missing.png",), "file-not-found"),
     ],
 )

@@ -92,4 +92,4 @@ def test_nothing_is_written_if_one_output_exists(refuse, home, inputs, words):
 
 def test_outputs_differ(refuse, inputs):
     words = "palette palette.toml --plot a.png --plot-spectra ./a.png --force"
-    assert refuse(*words.split()).code == "duplicate-output"
+    assert refuse(*words.split()).code == "output"

@@ -27,7 +27,7 @@ def test_slices_have_the_name_of_the_cube(run, cube, home):
 
 
 def test_bad_input_is_refused(run, refuse, cube, home):
-    assert refuse("slices", "missing.uplift", "-o", "out.exr").code == "cube-not-found"
+    assert refuse("slices", "missing.uplift", "-o", "out.exr").code == "file-not-found"
     for exists, other in (("out.exr", "sheet.png"), ("sheet.png", "out.exr")):
         (home / exists).write_text("old")
         assert refuse("slices", cube, "-o", "out.exr", "--plot", "sheet.png").where == exists

@@ -70,8 +70,8 @@ def test_default_atlases_are_those_of_the_working_folder_or_the_shipped_ones(row
         (("moments", "--atlas", "tcs.txt", "--atlas", "copy/tcs.txt"), "atlas"),
         (("moments", "--atlas", "tcs.txt", "-o", "file"), "output"),
         (("held-out", "--atlas", "two.csv", "--dim", 4), "too-few-entries"),
-        (("stability", *SETTINGS, "--atlases", "none,moon"), "unknown-atlas"),
-        (("sensitivity", "--method", "otsu"), "unknown-method"),
+        (("stability", *SETTINGS, "--atlases", "none,moon"), "unknown-name"),
+        (("sensitivity", "--method", "otsu"), "option"),
     ],
 )
 def test_invalid_input_is_an_error(refuse, home, tcs, options, code):

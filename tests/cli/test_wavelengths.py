@@ -55,7 +55,7 @@ def test_plot(choose, home):
     ("options", "code"),
     [
         ("--count 0", "option"),
-        ("--count 4 --light D66", "unknown-illuminant"),
+        ("--count 4 --light D66", "unknown-name"),
         ("--count 3 --method meyer", "undefined-rule"),
     ],
 )

@@ -39,7 +39,7 @@ def test_what_the_file_lacks_comes_from_colour_science():
     assert tables.rgb_space("SRGB").name == "sRGB"
     assert tables.stated_name("observer", "cie_10_1964") == "CIE 1964 10 Degree Standard Observer"
     assert tables.rgb_space("no space") is None
-    with raises(UnknownNameError, "unknown-illuminant"):
+    with raises(UnknownNameError, "unknown-name"):
         tables.samples("illuminant", "no lamp")
 
 

@@ -42,7 +42,7 @@ def test_every_error_is_also_a_built_in_error(kind):
 def test_unknown_name_suggests_near_names_regardless_of_case():
     error = unknown_name("d56", ("D50", "D55", "D65", "A"), "illuminant")
     assert isinstance(error, UnknownNameError)
-    assert error.code == "unknown-illuminant"
+    assert error.code == "unknown-name"
     assert error.problem == "unknown illuminant 'd56'"
     assert "'D65'" in error.hint
     assert "'A'" not in error.hint

@@ -75,7 +75,7 @@ def test_errors_match_explicit_loops(checker):
 
 def test_result_that_is_not_finite_is_an_error(checker):
     broken = SampleRepresentation("broken", "broken", np.full((401, 3), np.nan), np.eye(3))
-    with raises(UpliftError, "result-not-finite"):
+    with raises(UpliftError, "error"):
         compare(checker, [broken], quick=True)
 
 
@@ -154,7 +154,7 @@ def test_named_lights_form_one_set():
     atlases = {"macbeth": read_atlas(MACBETH)}
     (part,) = make_scene(atlases, ["HP1", "LED-B3", "HP1"]).sets
     assert part.title == "given lights (HP1, LED-B3)"
-    with raises(UnknownNameError, "unknown-illuminant"):
+    with raises(UnknownNameError, "unknown-name"):
         make_scene(atlases, ["F2"])
     with raises(AtlasError):
         make_scene({"none": Atlas()})
@@ -187,7 +187,7 @@ def test_surfaces_count_first_then_lights_then_errors(target, name):
 
 @pytest.mark.parametrize("target", [0, float("nan"), float("inf")])
 def test_target_must_be_positive(target):
-    with raises(OptionError, "target-not-positive"):
+    with raises(OptionError, "option"):
         cheapest(FOUND, "smooth", target)
 
 

@@ -13,7 +13,7 @@ from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.solid import solid
-from uplift.common.errors import ColourError, OptionError
+from uplift.common.errors import ColourError, UnknownNameError
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube, query, query_xyz
 from uplift.lookup.blocks import BLOCK
@@ -81,7 +81,7 @@ def test_results_are_in_order_across_blocks(small_cube):
 def test_invalid_queries_are_refused(small_cube):
     with raises(ColourError, "rgb-out-of-gamut"):
         results_of(small_cube, (0.5, 0.5, 1.5))
-    with raises(OptionError, "unknown-mode"):
+    with raises(UnknownNameError, "unknown-name"):
         results_of(small_cube, (0.5, 0.5, 0.5), mode="exact")
 
 
@@ -164,7 +164,7 @@ def test_other_colours_raise():
     assert not solid(cube.data.sensor.matrix).contains(rgb[None]).any()
     with raises(ColourError, "colour-unrealisable"):
         list(query_xyz(cube, [[0.05, 0.9, 0.1]]))
-    with raises(ColourError, "rgb-not-finite"):
+    with raises(ColourError, "colour"):
         list(query_xyz(cube, [[0.05, np.nan, 0.1]]))
 
 

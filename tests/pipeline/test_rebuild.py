@@ -132,9 +132,9 @@ def test_options_of_earlier_versions_are_accepted(tiny_cube, repository):
 @pytest.mark.parametrize("provenance", [{}, {"options": {}}, {"options": {"dim": 8}}, {"atlases": []}])
 def test_a_cube_without_provenance_cannot_be_rebuilt(small_cube, provenance):
     cube = Cube(dataclasses.replace(small_cube.data, provenance=provenance))
-    rebuild_error("missing-provenance", cube, "cube.uplift")
+    rebuild_error("cube-file", cube, "cube.uplift")
 
 
 def test_another_recorded_dim_is_reported_before_the_build(tiny_cube, monkeypatch):
     monkeypatch.setattr("uplift.pipeline.entries.fit_entries", lambda *_, **__: pytest.fail("fitted"))
-    rebuild_error("lattice-mismatch", with_option(tiny_cube, dim=400), "cube.uplift")
+    rebuild_error("cube-file", with_option(tiny_cube, dim=400), "cube.uplift")

@@ -122,5 +122,5 @@ def test_impossible_orders_are_refused(setting_c):
             choose(setting_c, count=count, method="meyer")
     with raises(OptionError):
         choose_orders(setting_c, (3, 11, 1))
-    with raises(UnknownNameError, "unknown-channels"):
+    with raises(UnknownNameError, "unknown-name"):
         choose_orders(setting_c, (3, 2, 1), "rgb")

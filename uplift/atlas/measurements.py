@@ -100,7 +100,7 @@ def not_used_note(labels: Iterable[str]) -> tuple[str, ...]:
 def wrong_quantity(problem: str, location: SourceLocation) -> AtlasError:
     """Create the error for values that are not reflectances."""
     hint = "measure the reflectance, or correct the statement if it is wrong: a cube holds reflectances"
-    return location.error(problem, hint, code="wrong-quantity")
+    return location.error(problem, hint)
 
 
 def find_quantity(text: str, location: SourceLocation) -> AtlasError | None:

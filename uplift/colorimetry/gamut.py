@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Mask, Values
-from uplift.common.errors import ColourError, OptionError
+from uplift.common.errors import ColourError, OptionError, unknown_name
 
 BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
 """XYZ to the cone responses of Bradford adaptation (Lam 1985; the matrix of ICC.1:2022, annex E)."""
@@ -98,7 +98,7 @@ class Primaries:
             lengths = np.linalg.solve(matrix, white / white[1]) if regular else np.zeros(3)
             if not ((lengths > 0) & np.isfinite(lengths)).all():
                 problem = f"primaries must span a triangle with the white inside, got ({self})"
-                raise OptionError(problem, code="invalid-primaries", hint=PRIMARIES)
+                raise OptionError(problem, hint=PRIMARIES)
         object.__setattr__(self, "lengths", lengths)
         object.__setattr__(self, "rgb_to_xyz", matrix * lengths)
 
@@ -122,7 +122,7 @@ class Primaries:
         """
         if len(numbers) != 8:
             problem = f"primaries and white are eight numbers, got {len(numbers)}"
-            raise OptionError(problem, code="invalid-primaries", hint=PRIMARIES)
+            raise OptionError(problem, hint=PRIMARIES)
         pairs = [(float(x), float(y)) for x, y in zip(numbers[::2], numbers[1::2], strict=True)]
         return cls(*pairs)
 
@@ -282,7 +282,7 @@ def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMa
     ------
     ColourError
         A colour that needs mapping is not finite, or lies outside [0, 1] and ``method`` is ``"error"``.
-    OptionError
+    UnknownNameError
         The method is unknown.
 
     Examples
@@ -302,7 +302,7 @@ def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMa
         finite = np.isfinite(rows).all(axis=1)
         if not finite.all():
             problem = f"linear RGB {_format_rgb(rows[finite.argmin()])} is not finite"
-            raise ColourError(problem, code="rgb-not-finite", hint="fix its source")
+            raise ColourError(problem, hint="fix its source")
         if method != "clip":  # which leaves other channels as they are
             rows *= np.minimum(1, LARGEST / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1))
         blocks = (rows[first : first + BLOCK] for first in range(0, len(rows), BLOCK))
@@ -314,8 +314,7 @@ def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMa
 def check_method(method: str) -> None:
     """Validate the name of a gamut mapping method."""
     if method not in METHODS:
-        problem, hint = f"unknown gamut mapping '{method}'", f"use one of {', '.join(METHODS)}"
-        raise OptionError(problem, code="unknown-gamut-mapping", hint=hint)
+        raise unknown_name(method, METHODS, "gamut mapping")
 
 
 def as_rgb(rgb: ArrayLike) -> Values:
@@ -324,9 +323,9 @@ def as_rgb(rgb: ArrayLike) -> Values:
     try:
         array: Values = np.asarray(rgb) if is_single else np.asarray(rgb, dtype=float)
     except (TypeError, ValueError) as error:
-        raise ColourError("a colour is three numbers", code="invalid-colour") from error
+        raise ColourError("a colour is three numbers") from error
     if array.ndim == 0 or array.shape[-1] != 3:
-        raise ColourError(f"a colour is three numbers, got an array of shape {array.shape}", code="invalid-colour")
+        raise ColourError(f"a colour is three numbers, got an array of shape {array.shape}")
     return array
 
 

@@ -69,7 +69,7 @@ def sensor(
     UnknownNameError
         A name is unknown; the hint gives the nearest names.
     OptionError
-        A camera without its space (``camera-without-space``), or one that cannot be used; see `Camera`.
+        A camera without its space, or one that cannot be used; see `Camera`.
 
     Examples
     --------
@@ -85,7 +85,6 @@ def sensor(
     if isinstance(observer, Camera) or observer in tables.names("camera"):
         raise OptionError(
             "a camera in place of an observer has its own RGB space",
-            code="camera-without-space",
             hint=f'use space="{CAMERA}"',
         )
     rgb_space = look_up_space(space)

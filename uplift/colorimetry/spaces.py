@@ -121,7 +121,7 @@ def find_space(text: str) -> ImageSpace:
         except ValueError as error:
             problem = f"primaries must be the name of a space or eight numbers, got {format_value(text)}"
             hint = "give x,y of red, green, blue and white"
-            raise OptionError(problem, code="invalid-primaries", hint=hint) from error
+            raise OptionError(problem, hint=hint) from error
         return ImageSpace(text, Primaries.of(numbers))
     if (found := find_ocio_space(text, built_in=False)) is not None:
         return found.as_image_space()

@@ -95,7 +95,6 @@ def parse_colour(value: Any) -> WrittenColour:
             return WrittenColour(linear=tuple(map(float, numbers)))
     raise ColourError(
         f"must be '#rrggbb' or three linear numbers, got {format_value(value)}",
-        code="invalid-colour",
         hint="write '#cc3319' or [0.6, 0.03, 0.01]",
     )
 

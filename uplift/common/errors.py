@@ -152,15 +152,14 @@ def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError
 
     >>> error = unknown_name("srbg", ("sRGB", "P3-D65"), "RGB space")
     >>> print(error.code, "|", error)
-    unknown-rgb-space | unknown RGB space 'srbg'; did you mean 'sRGB'?
+    unknown-name | unknown RGB space 'srbg'; did you mean 'sRGB'?
     """
     import difflib
 
     by_folded = {entry.casefold(): entry for entry in known}
     near = difflib.get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.4) or list(by_folded)[:6]
     choices = ", ".join(f"'{by_folded[entry]}'" for entry in near)
-    code = "unknown-" + "-".join(kind.casefold().split())
-    return UnknownNameError(f"unknown {kind} '{name}'", code=code, hint=f"did you mean {choices}?" if near else "")
+    return UnknownNameError(f"unknown {kind} '{name}'", hint=f"did you mean {choices}?" if near else "")
 
 
 @contextlib.contextmanager

@@ -32,7 +32,7 @@ def check_regular(path: StrPath, error: type[UpliftError], *, hint: str) -> None
         mode = os.stat(path).st_mode
     if not stat.S_ISREG(mode):
         kind = "a folder" if stat.S_ISDIR(mode) else "a device or a pipe"
-        raise error(f"must be a file, got {kind}", code="not-a-regular-file", path=path, hint=hint)
+        raise error(f"must be a file, got {kind}", code="file-unreadable", path=path, hint=hint)
 
 
 def read_bytes(path: StrPath, error: type[UpliftError], *, limit: int, hint: str) -> bytes:
@@ -69,7 +69,7 @@ def check_outputs(
         place = check_output(path, inputs=inputs, force=force).resolve()
         if place in checked:
             problem = f"is the same file as {os.fspath(checked[place])}"
-            raise OutputError(problem, code="duplicate-output", path=path, hint="give each output its own name")
+            raise OutputError(problem, path=path, hint="give each output its own name")
         checked[place] = path
 
 
@@ -95,7 +95,7 @@ def check_output(path: StrPath, *, inputs: Iterable[StrPath | None] = (), force:
         if any(os.path.samestat(status, os.stat(each)) for each in existing):
             raise refused("is read as input and must not be replaced", code="output-is-input")
         if not stat.S_ISREG(status.st_mode):
-            raise refused("is not a regular file", code="not-a-regular-file")
+            raise refused("is not a regular file")
         if not force:
             hint = "pass force=True to replace it, or choose another name"
             raise refused("exists already", code="file-exists", hint=hint)

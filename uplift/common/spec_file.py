@@ -23,6 +23,8 @@ from uplift.common.text import TOO_DEEP, check_values, format_value, parse_json,
 MAX_BYTES = 16 << 20
 """Largest file that is read."""
 HINT = "check the format of the file"
+INVALID = "invalid-file"
+"""Code of errors in the text of a file: its syntax, its keys, or a value."""
 TAG = "~"
 """First character of the tags of discriminated unions, which are not keys of a file."""
 
@@ -38,7 +40,7 @@ class SpecModel(BaseModel):
     )
 
 
-def problem(code: str, text: str, hint: str = "") -> PydanticCustomError:
+def problem(text: str, hint: str = "", code: str = INVALID) -> PydanticCustomError:
     """Return the error that a validator of a `SpecModel` raises."""
     return PydanticCustomError("uplift", "{problem}", {"problem": text, "hint": hint, "code": code})
 
@@ -50,7 +52,7 @@ def resolves(look_up: Callable[[Any], Any]) -> AfterValidator:
         try:
             look_up(value)
         except UpliftError as error:
-            raise problem(error.code, error.problem, error.hint) from error
+            raise problem(error.problem, error.hint, error.code) from error
         return value
 
     return AfterValidator(check)
@@ -73,7 +75,7 @@ class SpecFile:
             unknown = (each for each in errors if each["type"] == "extra_forbidden")  # may misspell a missing one
             self._raise(next(unknown, errors[0]), hint)
 
-    def fail(self, keys: Iterable[Key], text: str, *, code: str, hint: str = "") -> NoReturn:
+    def fail(self, keys: Iterable[Key], text: str, *, code: str = INVALID, hint: str = "") -> NoReturn:
         """Raise the error for the value at a key path such as ``apart[2].light``, empty for the file."""
         # Left out of the path: what pydantic adds for unions, for keys of tables, and for values that are made lists
         place = ""
@@ -92,14 +94,14 @@ class SpecFile:
         if kind == "uplift":
             self.fail(keys, context["problem"], code=context["code"], hint=context["hint"] or hint)
         if kind == "missing":
-            self.fail(keys, "required key is missing", code="missing-key", hint=hint or "add it")
+            self.fail(keys, "required key is missing", hint=hint or "add it")
         if kind == "extra_forbidden":
-            self.fail(keys, "unknown key", code="unknown-key", hint=hint)
+            self.fail(keys, "unknown key", hint=hint)
         if kind in ("dict_type", "dataclass_type", "model_type"):
             constraint = "must be a table"
         else:
             constraint = re.sub(r"^\w+ should", "must", details["msg"])
-        self.fail(keys, f"{constraint}, got {format_value(details['input'])}", code="invalid-value", hint=hint)
+        self.fail(keys, f"{constraint}, got {format_value(details['input'])}", hint=hint)
 
 
 def read_toml(path: StrPath, error: type[UpliftError]) -> SpecFile:
@@ -111,7 +113,7 @@ def read_toml(path: StrPath, error: type[UpliftError]) -> SpecFile:
     except (RecursionError, ValueError) as cause:  # TOMLDecodeError, integers of too many digits, and limits
         reason = TOO_DEEP if isinstance(cause, RecursionError) else cause
         hint = 'write lines such as key = "value"'
-        raise error(f"not a valid TOML file: {reason}", code="invalid-toml", path=path, hint=hint) from cause
+        raise error(f"not a valid TOML file: {reason}", code=INVALID, path=path, hint=hint) from cause
     return SpecFile(Path(path), values, error)
 
 
@@ -121,9 +123,9 @@ def read_json(path: StrPath, error: type[UpliftError]) -> SpecFile:
     try:
         values = parse_json(text)
     except ValueError as cause:
-        raise error(f"not a valid JSON file: {cause}", code="invalid-json", path=path, hint=HINT) from cause
+        raise error(f"not a valid JSON file: {cause}", code=INVALID, path=path, hint=HINT) from cause
     if not isinstance(values, dict):
-        raise error(f"not a JSON object: {format_value(values)}", code="invalid-json", path=path, hint=HINT)
+        raise error(f"not a JSON object: {format_value(values)}", code=INVALID, path=path, hint=HINT)
     return SpecFile(Path(path), values, error)
 
 

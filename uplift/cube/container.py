@@ -80,7 +80,6 @@ def replace_file(
         except CubeFileError as error:
             raise OutputError(
                 f"the {kind.noun} would not be readable: {error.problem}",
-                code="cube-unreadable",
                 path=path,
                 hint="an existing file is unchanged",
             ) from error
@@ -94,13 +93,7 @@ def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Con
     from safetensors import SafetensorError, safe_open
 
     again = f"build the {kind.noun} again"
-    try:
-        check_regular(path, CubeFileError, hint=f"name a {kind.noun} file")
-    except CubeFileError as error:
-        if error.code != "file-not-found":
-            raise
-        hint = f"build the {kind.noun} first"
-        raise CubeFileError("no such file", code="cube-not-found", path=path, hint=hint) from error
+    check_regular(path, CubeFileError, hint=f"check the name, or build the {kind.noun} first")
     try:
         with safe_open(path, framework="numpy") as file:
             metadata = parse_json((file.metadata() or {}).get(KEY, "{}"))
@@ -124,14 +117,14 @@ def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Con
         )
     if metadata.pop("digest", None) != content_digest(tensors, metadata):
         problem = "is damaged: the content does not match its digest"
-        raise CubeFileError(problem, code="cube-damaged", path=path, hint=again)
+        raise CubeFileError(problem, path=path, hint=again)
     # What follows is for files whose digest was forged.
     try:
         return decode(tensors, metadata)
     except (AttributeError, KeyError, MemoryError, OverflowError, TypeError, ValueError, UpliftError) as error:
         reason = error.problem if isinstance(error, CubeFileError) else f"{type(error).__name__}: {str(error)[:200]}"
         problem = f"is not a valid {kind.noun}: {reason}"
-        raise CubeFileError(problem, code="cube-invalid", path=path, hint=again) from error
+        raise CubeFileError(problem, path=path, hint=again) from error
 
 
 def content_digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:
@@ -148,13 +141,13 @@ def _json(metadata: Mapping[str, Any]) -> str:
     try:
         return json.dumps(metadata, sort_keys=True, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     except (TypeError, ValueError, RecursionError) as error:
-        raise CubeFileError(f"the metadata are not JSON values ({error})", code="cube-invalid") from error
+        raise CubeFileError(f"the metadata are not JSON values ({error})") from error
 
 
 def require(condition: bool, problem: str) -> None:
     """Raise `CubeFileError` unless the condition is met."""
     if not condition:
-        raise CubeFileError(problem, code="cube-invalid")
+        raise CubeFileError(problem)
 
 
 def check_arrays(tensors: Tensors, schema: Mapping[str, Stored], sizes: Mapping[str, int]) -> None:
@@ -200,6 +193,6 @@ def check_metadata(value: Any, schema: Any, path: str = "metadata") -> None:
         expected = f"a table of {', '.join(schema)}"
         items = [(value[key], known[key], f"{path}.{key}") for key in known if key in value] if fits else []
     if not fits:
-        raise CubeFileError(f"{path} must be {expected}, got {format_value(value)}", code="cube-invalid")
+        raise CubeFileError(f"{path} must be {expected}, got {format_value(value)}")
     for each, item, place in items:
         check_metadata(each, item, place)

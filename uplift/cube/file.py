@@ -26,7 +26,7 @@ from uplift.models import from_description
 
 FORMAT = "uplift cube"
 VERSION = 4
-KIND = Kind(FORMAT, (3, VERSION), "cube", "not-a-cube")
+KIND = Kind(FORMAT, (3, VERSION), "cube", foreign="not-a-cube")
 """Versions that are read. The entries of version 3 have as many coefficients as the nodes."""
 FEATURES = ("debug", "errors", "left-out", "camera", "sparse", "outside")
 """Optional parts of a file, in the order in which the metadata list them."""

@@ -91,7 +91,6 @@ def write_slices(data: CubeData, path: str | os.PathLike[str], *, force: bool = 
     if Path(path).suffix.lower() != ".exr":
         raise OutputError(
             "the name of a file of slices must end in .exr",
-            code="unknown-suffix",
             path=path,
             hint="name the file .exr, or write a contact sheet",
         )

@@ -42,7 +42,6 @@ class Images:
         if not self.paths:
             raise OptionError(
                 "a scene must have at least one image, got none",
-                code="scene-without-colours",
                 hint="name an image, or build without a scene",
             )
 

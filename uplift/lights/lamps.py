@@ -33,7 +33,7 @@ def _read(document: Document) -> Atlas:
     stated = REFLECTANCES if isinstance(found, Atlas) else found.material
     if isinstance(found, Atlas) or stated:
         problem = f"the file states '{truncate(stated)}', not the power of a lamp"
-        raise document.location.error(problem, "give spectral powers, such as a CSV table", code="wrong-quantity")
+        raise document.location.error(problem, "give spectral powers, such as a CSV table")
     return to_atlas(document, _scaled(document, found), chosen.name, "fraction")
 
 
@@ -45,7 +45,7 @@ def _scaled(document: Document, measurements: Measurements) -> Measurements:
         highest = float(values[np.isfinite(values)].max(initial=0))
         if highest <= 0:
             raise document.location.at(spectrum.line, spectrum.name).error(
-                "a lamp must have power, got none above 0", "remove the lamp", code="lamp-without-power"
+                "a lamp must have power, got none above 0", "remove the lamp"
             )
         spectra.append(replace(spectrum, values=values / highest))
     return replace(measurements, spectra=tuple(spectra), scale=None)

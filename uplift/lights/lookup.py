@@ -341,7 +341,7 @@ def _checked(colours: NDArray[Any]) -> Array:
     """Convert to float64 (n, 3); `ColourError` if a value is not finite or too large to be squared."""
     array = colours.astype(float, copy=False)
     if not (np.abs(array) <= MAX_VALUE).all():
-        raise ColourError(f"colours of lights must be finite, and at most {MAX_VALUE:g}", code="rgb-not-finite")
+        raise ColourError(f"colours of lights must be finite, and at most {MAX_VALUE:g}")
     return array
 
 

@@ -28,7 +28,7 @@ from uplift.lights.discs import LampEntries
 from uplift.lights.lattice import ChromaticityLattice, chromaticity
 
 VERSION = 1
-KIND = Kind("uplift emission table", (VERSION,), "emission table", "not-an-emission-table")
+KIND = Kind("uplift emission table", (VERSION,), "emission table", foreign="not-an-emission-table")
 MAX_OFFSET = 1e-4
 """Largest distance in u′v′ between a stored spectrum and its place; single precision keeps 1e-6."""
 MAX_RADIUS = 0.1

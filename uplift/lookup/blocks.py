@@ -66,7 +66,7 @@ def as_wavelengths(wavelengths: ArrayLike | None, default: Array) -> Array:
         array = np.atleast_1d(np.asarray(wavelengths, dtype=float))
         if array.ndim == 1 and array.size and (np.isfinite(array) & (array > 0)).all():
             return array
-    raise OptionError("wavelengths must be a list of positive numbers in nm", code="invalid-wavelengths")
+    raise OptionError("wavelengths must be a list of positive numbers in nm")
 
 
 def as_float_type(dtype: DTypeLike) -> np.dtype[Any]:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array, Mask
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, unknown_name
 from uplift.cube import CubeData, read, write
 from uplift.lookup import blocks
 from uplift.lookup.interpolate import MODES, cells, coefficients, extended_coefficients, node_errors
@@ -180,7 +180,7 @@ class Cube:
         [[1.0, 1.0], [0.0, 0.0]]
         """
         if mode not in MODES:
-            raise OptionError(f"unknown mode '{mode}'", code="unknown-mode", hint=f"use one of {', '.join(MODES)}")
+            raise unknown_name(str(mode), MODES, "mode")
         at = blocks.as_wavelengths(wavelengths, self.data.sensor.wavelengths)
         kind, count = blocks.as_float_type(dtype), blocks.as_thread_count(threads)
         colours = blocks.as_colours(rgb, self.data.sensor)

@@ -37,7 +37,7 @@ def fill_missing(data: CubeData, points: Indices, other: CubeData, threads: int 
     if spaces[0] != spaces[1]:
         raise ColourError(
             f"a cube can only be filled from one of the same RGB space: {spaces[0]}, got {spaces[1]}",
-            code="rgb-space-mismatch",
+            code="cubes-of-different-spaces",
             hint="build the cube with all colours in its scene, or without a scene",
         )
     target, table = data.lattice.target(points), data.points

@@ -100,7 +100,7 @@ def _left_out(data: CubeData) -> LeftOut:
         raise OptionError(
             f"standard errors under other lights than {data.error_illuminant} need a cube with the left-out entries "
             "of its atlas",
-            code="no-left-out-entries",
+            code="too-few-entries",
             hint="build the cube again, with an atlas of at least 8 entries",
         )
     return data.atlas.left_out

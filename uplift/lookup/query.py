@@ -102,14 +102,13 @@ def query_xyz(
 
     The cube answers colours in its RGB space. The spectra of others are computed from the nearest one that it holds,
     and from an atlas entry outside the space close to it; only those of such entries have a standard error. Raises
-    `ColourError` if no reflectance has a colour (``colour-unrealisable``), or the model does not reach it
-    (``colour-not-reached``).
+    `ColourError` (``colour-unrealisable``) if no reflectance has a colour, or the model does not reach it.
     """
     sensor = cube.data.sensor
     sensor.require_xyz()
     values = as_rgb(xyz).astype(float)
     if not np.isfinite(values).all():
-        raise ColourError("XYZ must be finite", code="rgb-not-finite", hint="fix its source")
+        raise ColourError("XYZ must be finite", hint="fix its source")
     rgb = np.asarray(values @ sensor.xyz_to_rgb.T)
     mapped = map_to_gamut(rgb, sensor, MAPPING)
     requested = np.where(mapped.outside[:, None], rgb, mapped.rgb)
@@ -153,7 +152,7 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
     if (distance > data.threshold).any():
         raise ColourError(
             f"the model does not reach the colour of XYZ {_format_xyz(data, rgb[int(distance.argmax())])}",
-            code="colour-not-reached",
+            code="colour-unrealisable",
             hint="move it toward white, away from the limit of what reflectances can have",
         )
     return spectra(at)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Mask
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, unknown_name
 from uplift.common.text import format_value
 from uplift.models import duality
 from uplift.models.arithmetic import arctan, arctan_difference
@@ -61,7 +61,9 @@ class Moments(Model):
     Raises
     ------
     OptionError
-        The count is out of range, the range is empty, or the warp is unknown.
+        The count is out of range, or the range is empty.
+    UnknownNameError
+        The warp is unknown.
 
     References
     ----------
@@ -83,17 +85,15 @@ class Moments(Model):
 
     def __post_init__(self) -> None:
         if self.warp not in WARPS:
-            raise OptionError(f"unknown warp '{self.warp}'", code="unknown-warp", hint=f"use one of {', '.join(WARPS)}")
+            raise unknown_name(str(self.warp), WARPS, "warp")
         if not 0 < self.start < self.end < np.inf:
             raise OptionError(
                 f"a phase needs 0 < start < end < inf, got start {self.start} and end {self.end}",
-                code="invalid-range",
             )
         if not MIN_COUNT <= self.count <= MAX_COUNT:
             raise OptionError(
                 f"coefficients of the moments model must be in [{MIN_COUNT}, {MAX_COUNT}], "
                 f"got {format_value(self.count)}",
-                code="option-out-of-range",
                 hint="the count includes the zeroth moment",
             )
 

@@ -281,7 +281,7 @@ def _choose_lattice(
         spectra.warn(
             f"no dim up to {DIMS[-1]} keeps every entry within ΔE00 {options.auto_tolerance:g}: "
             f"{lost} of {len(constraints.names)} are too close to others; dim {dim} keeps the most",
-            "no-dim-keeps-all-entries",
+            code="no-dim-keeps-all-entries",
         )
     options = replace(options, axis=axis, dim=dim)
     check_memory(options)
@@ -344,7 +344,7 @@ def _build(
     points = store(grown, seeds, prior)
     if options.solver != SOLVERS[0] and (unfitted := points.counts()["unfitted"]):
         problem_text = f"{unfitted} nodes are over the threshold with the solver '{options.solver}'"
-        spectra.warn(problem_text, "nodes-unfitted", hint="use the default solver")
+        spectra.warn(problem_text, code="nodes-unfitted", hint="use the default solver")
     points = points if kept is None else points.restricted_to(kept)
 
     # Entries outside the RGB space constrain no node: their spectra answer XYZ and textures of other spaces.

@@ -112,9 +112,9 @@ def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, Measu
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
         warn(
             f"outside {sensor.space}, at linear RGB ({values}): kept for XYZ and wider spaces",
-            "entry-out-of-gamut",
-            atlas.names[row],
-            hint,
+            code="entry-out-of-gamut",
+            entry=atlas.names[row],
+            hint=hint,
         )
     names = np.array(atlas.names, dtype=object)
     return (
@@ -136,7 +136,7 @@ def warn_of_duplicates(names: Sequence[str], half_width: Array) -> None:
     duplicates = [names[row] for row in np.flatnonzero(half_width == 0).tolist()]
     if duplicates:
         problem = f"{_listed(duplicates)} left out: an earlier entry has the same colour, which has only one answer"
-        warn(problem, "entry-duplicate")
+        warn(problem, code="entry-duplicate")
 
 
 def warn_of_crowding(names: Sequence[str], boxes: EntryBoxes, seeds: Seeds) -> None:
@@ -146,7 +146,7 @@ def warn_of_crowding(names: Sequence[str], boxes: EntryBoxes, seeds: Seeds) -> N
         warn(
             f"{_listed(crowded)} crowded: closer entries own the nearest lattice point. Queries at the entries' own "
             "colours stay exact, queries near them are less accurate",
-            "entry-crowded",
+            code="entry-crowded",
             hint='use dim="auto" for a lattice that is large enough, or see the report of the cube',
         )
 
@@ -197,7 +197,6 @@ def families_of(options: Options, libraries: Sequence[Library], sensor: Sensor) 
     if libraries and not learnt:
         raise OptionError(
             "a library shapes only the learnt prior of models with more than three coefficients",
-            code="library-not-used",
             hint='use prior="learnt" and the moments model with 4 to 17 coefficients, or leave out the library',
         )
     shipped = shipped_library(options.leave_out)
@@ -214,14 +213,14 @@ def families_of(options: Options, libraries: Sequence[Library], sensor: Sensor) 
         outside = int((~sensor.contains(sensor.rgb(resampled.values))).sum())
         if resampled.clips:
             problem = f"clipped to [0, 1]: {len(resampled.clips)} spectra, first '{resampled.clips[0].name}'"
-            warn(f"library '{library.name}': {problem}", "library-clipped")
+            warn(f"library '{library.name}': {problem}", code="entry-clipped")
         if outside:
             problem = f"{outside} of {len(resampled.values)} spectra not used: their colours lie outside {sensor.space}"
-            warn(f"library '{library.name}': {problem}", "library-out-of-gamut")
+            warn(f"library '{library.name}': {problem}", code="entry-out-of-gamut")
         own.append(Family(library.name, resampled.values, SPREAD, RELATED))
     return (*shipped, *own)
 
 
-def warn(problem: str, code: str, entry: str | None = None, hint: str = "") -> None:
+def warn(problem: str, *, code: str, entry: str | None = None, hint: str = "") -> None:
     """Warn the caller of `uplift.build` from a function that `build` calls."""
     warnings.warn(UpliftWarning(problem, code=code, entry=entry, hint=hint), stacklevel=STACK_LEVEL)

@@ -140,11 +140,11 @@ def read_looks(path: StrPath) -> tuple[Look, ...]:
     tables = file.values.get(TABLE, [])
     is_list = isinstance(tables, list) and all(isinstance(each, dict) for each in tables)
     if set(file.values) != {TABLE} or not is_list or not 0 < len(tables) <= MAX_LOOKS:
-        file.fail((), f"must have 1 to {MAX_LOOKS} [[look]] tables and no other keys", code="no-looks", hint=EXAMPLE)
+        file.fail((), f"must have 1 to {MAX_LOOKS} [[look]] tables and no other keys", hint=EXAMPLE)
     looks = []
     for number, table in enumerate(tables):
         if "rgb" not in table:
-            file.fail((TABLE, number, "rgb"), "required key is missing", code="missing-key", hint=EXAMPLE)
+            file.fail((TABLE, number, "rgb"), "required key is missing", hint=EXAMPLE)
         options = {key: table.pop(key) for key in ("rgb", "weight", "name") if key in table}
         looks.append(Look(lights=table, **options, path=file.path))
     return tuple(looks)

@@ -112,7 +112,6 @@ def targets_of(
     if looks and model.count <= NO_FREEDOM:
         raise LookError(
             f"looks need spectra of more than three coefficients, got {model.name} with {model.count}",
-            code="looks-without-freedom",
             hint='use model="moments" with entry_coefficients of 4 to 17',
         )
     screens = tuple(_screens(look, sensor) for look in looks)

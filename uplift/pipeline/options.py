@@ -142,7 +142,7 @@ def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
 
 def _require(valid: bool, problem: str, hint: str = "") -> None:
     if not valid:
-        raise OptionError(problem, code="option-out-of-range", hint=hint)
+        raise OptionError(problem, hint=hint)
 
 
 def _plain(name: str, kind: Any, value: Any) -> Any:

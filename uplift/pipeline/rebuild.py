@@ -153,7 +153,6 @@ def _read_options(data: CubeData, path: StrPath) -> Options:
     if options.dim != data.lattice.dim:
         raise CubeFileError(
             f"records dim {options.dim}, but has {data.lattice.dim} nodes along each axis",
-            code="lattice-mismatch",
             path=path,
             hint=REBUILD,
         )
@@ -161,7 +160,7 @@ def _read_options(data: CubeData, path: StrPath) -> Options:
 
 
 def _missing_provenance(path: StrPath) -> CubeFileError:
-    return CubeFileError("does not record how it was built", code="missing-provenance", path=path, hint=REBUILD)
+    return CubeFileError("does not record how it was built", path=path, hint=REBUILD)
 
 
 def _unknown_options(error: Exception, path: StrPath) -> CubeFileError:

@@ -65,7 +65,6 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
     if not _same_lattice(stored, rebuilt):
         raise CubeFileError(
             "its lattice is not the one that its options give",
-            code="lattice-mismatch",
             path=path,
             hint="build the cube again",
         )

@@ -59,7 +59,7 @@ def check_sheet(path: StrPath, *, force: bool = False) -> None:
     """Check that `write_sheet` can write a file, before long work."""
     if Path(path).suffix.lower() not in (".exr", ".png"):
         problem, hint = "the name of a sheet must end in .exr or .png", "name the file .exr or .png"
-        raise OutputError(problem, code="unknown-suffix", path=path, hint=hint)
+        raise OutputError(problem, path=path, hint=hint)
     check_output(path, force=force)
 
 

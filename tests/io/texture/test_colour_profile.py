@@ -125,7 +125,7 @@ def test_colours_of_profiles_and_code_points_are_converted(suffix, statement, sp
 )
 def test_unusable_statements_trigger_a_warning(suffix, statement, spectral, tmp_path):
     path = save(tmp_path / f"a.{suffix}", statement)
-    assert convert(spectral, path)[1:] == ((), ("colour-space-unreadable",))
+    assert convert(spectral, path)[1:] == ((), ("colour-space-assumed",))
 
 
 def exr(path, rgb, **header):

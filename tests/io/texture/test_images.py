@@ -158,7 +158,7 @@ RGB = dict.fromkeys("RGB", ZERO)
     [
         ("none.png", None, "file-not-found"),
         (".", None, "file-not-found"),
-        ("text.png", "no image", "unreadable-image"),
+        ("text.png", "no image", "file-unreadable"),
         ("a.bmp", Image.new("RGB", (5, 4)), "texture"),
         ("depth.exr", {"Z": ZERO}, "texture"),
         ("layers.exr", {f"{layer}.{letter}": ZERO for layer in ("diffuse", "coat") for letter in "RGB"}, "texture"),

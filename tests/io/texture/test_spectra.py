@@ -13,7 +13,7 @@ from tests.helpers import raises, with_points
 from tests.io.texture.conftest import PHOTO, WAVELENGTHS, channels, planes, read_channels, write_exr, write_image
 from uplift import models
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.common.errors import OptionError
+from uplift.common.errors import UpliftError
 from uplift.cube import digest
 from uplift.io import texture
 from uplift.lights.lookup import EmissionTable, load_emission
@@ -102,17 +102,17 @@ def test_the_header_identifies_the_cube_and_the_settings(spectral, small_cube, c
 @pytest.mark.parametrize(
     ("cube", "encoding", "options", "code"),
     [
-        ("small_sigmoid_cube", texture.Moments(), {}, "no-moments"),
-        ("small_cube", texture.Multipliers(), {"depth": "half"}, "unsupported-depth"),
-        ("small_cube", None, {"encoding": "log"}, "option"),
-        ("small_cube", None, {"out_of_gamut": "squash"}, "unknown-gamut-mapping"),
+        ("small_sigmoid_cube", texture.Moments(), {}, "option"),
+        ("small_cube", texture.Multipliers(), {"depth": "half"}, "option"),
+        ("small_cube", None, {"encoding": "log"}, "unknown-name"),
+        ("small_cube", None, {"out_of_gamut": "squash"}, "unknown-name"),
         ("small_cube", texture.Spectrum((500.0, 400.0)), {}, "option"),
         ("small_cube", texture.Spectrum((500.0, 500.0 + 1e-8)), {}, "option"),
-        ("small_cube", texture.Spectrum((-5.0,)), {}, "invalid-wavelengths"),
+        ("small_cube", texture.Spectrum((-5.0,)), {}, "option"),
     ],
 )
 def test_impossible_settings_raise(cube, encoding, options, code, request):
-    with raises(OptionError, code):
+    with raises(UpliftError, code):
         texture.prepare(request.getfixturevalue(cube), encoding, **options)
 
 
@@ -234,15 +234,15 @@ def test_alpha_passes_through_and_divides_nothing(table, lights, tmp_path):
 @pytest.mark.parametrize(
     ("options", "code"),
     [
-        ({"depth": "uint"}, "unsupported-depth"),
-        ({"encoding": "log"}, "option"),
+        ({"depth": "uint"}, "option"),
+        ({"encoding": "log"}, "unknown-name"),
         ({"wavelengths": [500, 400]}, "option"),
-        ({"wavelengths": [np.nan]}, "invalid-wavelengths"),
+        ({"wavelengths": [np.nan]}, "option"),
         ({"encoding": "encoded"}, "option"),  # floats of lights are linear
     ],
 )
 def test_invalid_options_are_refused(table, sky, tmp_path, options, code):
     path = write_exr(tmp_path / "sky.exr", planes(sky))
-    with raises(OptionError, code):
+    with raises(UpliftError, code):
         texture.convert(texture.prepare_lights(table, **options), path, tmp_path / "out.exr")
     assert not (tmp_path / "out.exr").exists()

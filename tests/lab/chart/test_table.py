@@ -169,7 +169,7 @@ def test_limits_are_required_and_positive(limits):
 
 
 def test_light_must_be_in_the_chart():
-    with raises(UnknownNameError, "unknown-light") as caught:
+    with raises(UnknownNameError, "unknown-name") as caught:
         Requirement(delta_e=1, light="FL111")
     assert "'FL11'" in caught.value.hint
 

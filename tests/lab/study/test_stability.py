@@ -47,7 +47,7 @@ def test_study_runs_every_configuration_once_ordered_by_model(monkeypatch):
 
 def test_unknown_atlas_raises_before_any_build(monkeypatch):
     monkeypatch.setattr(stability, "run", lambda *args: pytest.fail("a build ran"))
-    with raises(UnknownNameError, "unknown-atlas"):
+    with raises(UnknownNameError, "unknown-name"):
         study_stability([RunConfig(), RunConfig(atlas="paint")], {})
 
 

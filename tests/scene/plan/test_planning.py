@@ -122,13 +122,13 @@ def test_changed_and_missing_sources_are_refused(plan_file):
 @pytest.mark.parametrize(
     ("spoil", "code", "start"),
     [
-        (lambda values: values.pop("build"), "missing-key", "build"),
-        (lambda values: values.update(format="uplift plan 2"), "invalid-value", "format"),
-        (lambda values: values["build"].update(dims=3), "unknown-option", "build: unknown option 'dims'"),
+        (lambda values: values.pop("build"), "invalid-file", "build"),
+        (lambda values: values.update(format="uplift plan 2"), "invalid-file", "format"),
+        (lambda values: values["build"].update(dims=3), "unknown-name", "build: unknown option 'dims'"),
         (lambda values: values["build"].update(dim="x"), "option", "build: dim "),
         (lambda values: values["build"].update(lights="D65"), "option", "build: lights "),
-        (lambda values: values["scene"].update(textures=[3]), "invalid-value", "scene.textures[0]"),
-        (lambda values: values["scene"]["textures"][0].pop("digest"), "missing-key", "scene.textures[0].digest"),
+        (lambda values: values["scene"].update(textures=[3]), "invalid-file", "scene.textures[0]"),
+        (lambda values: values["scene"]["textures"][0].pop("digest"), "invalid-file", "scene.textures[0].digest"),
     ],
 )
 def test_an_invalid_plan_is_refused_with_its_key(plan_file, spoil, code, start):

@@ -145,7 +145,7 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
         raise OptionError(f"a coat cannot be of kind '{kind}'", hint=f"use {' or '.join(COATS)}")
     if medium.thickness is not None and not 0 <= medium.thickness <= MAX_THICKNESS:
         problem = f"thickness must be in [0, {MAX_THICKNESS:g}], got {medium.thickness}"
-        raise OptionError(problem, code="invalid-thickness", hint="1 is the unit")
+        raise OptionError(problem, hint="1 is the unit")
     if medium.plate and kind != "dye":
         raise OptionError(f"a plate must be of kind 'dye', got '{kind}'", hint="what scatters has no free plate")
     thickness = 1.0 if medium.thickness is None else medium.thickness

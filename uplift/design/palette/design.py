@@ -227,7 +227,7 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
                 f"material '{material.name}' is left out of the atlas: reflectance must be in "
                 f"[{LOWEST:g}, {HIGHEST:g}], got {values.min():.3g} to {values.max():.3g}"
             )
-            warnings.warn(UpliftWarning(text, code="entry-left-out"), stacklevel=2)
+            warnings.warn(UpliftWarning(text, code="entry-skipped"), stacklevel=2)
             continue
         lights = [goal.light for goal in design.palette.goals if goal.material == material.name and goal.weight]
         description = f"designed for its colours under {', '.join(lights)}" if lights else "designed"

@@ -23,7 +23,6 @@ from uplift.design.palette.colours import MAX_KELVIN, MIN_KELVIN, illuminant, pl
 from uplift.design.palette.factor import COUNTS
 from uplift.design.palette.palette import ColourGoal, Fit, MinDifference, Palette, SpectrumSpec
 
-INVALID = "invalid-value"
 NAME = re.compile(r"[^\W_][\w .+-]*(?<! )")  # names appear in tables, plots and atlases
 
 
@@ -78,7 +77,7 @@ def _parse_colour(value: Any) -> WrittenColour:
     try:
         return parse_colour(value)
     except ColourError as error:
-        raise problem(error.code, error.problem, error.hint) from error
+        raise problem(error.problem, error.hint, error.code) from error
 
 
 def _parse_bounds(value: Any) -> tuple[float, float]:
@@ -86,16 +85,16 @@ def _parse_bounds(value: Any) -> tuple[float, float]:
         return -math.inf, math.inf
     is_pair = isinstance(value, list) and len(value) == 2
     if not is_pair or not all(is_number(each) or each in (-math.inf, math.inf) for each in value):
-        raise problem(INVALID, f"must be [low, high] or false, got {format_value(value)}")
+        raise problem(f"must be [low, high] or false, got {format_value(value)}")
     if not value[0] < value[1]:
-        raise problem(INVALID, f"must be ascending, got {format_value(value)}", "swap the numbers")
+        raise problem(f"must be ascending, got {format_value(value)}", "swap the numbers")
     return float(value[0]), float(value[1])
 
 
 def _check_name(name: str) -> str:
     if not NAME.fullmatch(name):
         text = f"must consist of letters, digits, spaces and .+-_, got {format_value(name)}"
-        raise problem(INVALID, text, "begin with a letter or digit, and do not end with a space")
+        raise problem(text, "begin with a letter or digit, and do not end with a space")
     return name
 
 
@@ -119,7 +118,7 @@ class _KnownLight(SpecModel):
     @model_validator(mode="after")
     def _scaled_once(self) -> Self:
         if self.luminance is not None and self.norm is not None:
-            raise problem(INVALID, "a light has a luminance or a norm, not both", "remove one of them")
+            raise problem("a light has a luminance or a norm, not both", "remove one of them")
         return self
 
     def power(self, sensor: Sensor) -> Array:
@@ -233,11 +232,11 @@ def _check_kind(*kinds: str) -> BeforeValidator:
 
     def check(value: Any) -> Any:
         if not isinstance(value, dict):
-            raise problem(INVALID, f"must be a table, got {format_value(value)}")
+            raise problem(f"must be a table, got {format_value(value)}")
         present = [kind for kind in kinds if kind in value]
         if len(present) != 1:
             text = f"must have exactly one of {', '.join(kinds)}, got {', '.join(present) or 'none'}"
-            raise problem(INVALID, text)
+            raise problem(text)
         return value
 
     return BeforeValidator(check)
@@ -303,7 +302,7 @@ def _free_range(file: SpecFile, name: str, colours: _FreeRange, sensor: Sensor) 
     low, high = colours.low.rgb(sensor), colours.high.rgb(sensor)
     if not (low < high).all():
         text = f"must have low < high in every channel, got {low.round(4).tolist()} and {high.round(4).tolist()}"
-        file.fail(("free", name), text, code=INVALID, hint="widen the range")
+        file.fail(("free", name), text, hint="widen the range")
     return low, high
 
 

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.errors import OptionError, UpliftWarning
+from uplift.common.errors import OptionError, UpliftWarning, unknown_name
 from uplift.common.files import atomic_write, check_output
 from uplift.common.version import VERSION
 from uplift.cube import CubeData, digest
@@ -77,9 +77,9 @@ def write_program(
     that was built for a scene is an `OptionError` of the code ``sparse-cube``.
     """
     if style not in LANGUAGES:
-        raise OptionError(f"unknown language '{style}'", hint=f"use one of {', '.join(LANGUAGES)}")
+        raise unknown_name(style, LANGUAGES, "language")
     if mode not in MODES:
-        raise OptionError(f"unknown mode '{mode}'", hint=f"use one of {', '.join(MODES)}")
+        raise unknown_name(mode, MODES, "mode")
     if data.complete_cells is not None:
         raise OptionError(
             "a program needs all nodes, but the cube was built for the colours of a scene",

@@ -11,7 +11,7 @@ import numpy as np
 from uplift.colorimetry.gamut import METHODS, check_method, map_to_gamut
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError, UpliftError, UpliftWarning, needs_extra
+from uplift.common.errors import ColourError, CubeFileError, OptionError, UpliftError, UpliftWarning, needs_extra
 from uplift.io.mitsuba.texels import Placement, Texels, light_texels, uplift_texels
 from uplift.io.mitsuba.texture import make_environment, make_texture
 from uplift.io.mitsuba.texture_file import read_colours, read_lights, read_texels
@@ -26,11 +26,10 @@ START, END = 360, 830
 IMAGES = ("filename", "bitmap")
 SOURCES = ("rgb", *IMAGES)
 HINTS = {
-    "cube-not-found": "set the property cube to the file of a cube, or add its folder to Mitsuba's file resolver",
-    "rgb-out-of-gamut": f"set the property out_of_gamut to {', '.join(METHODS[1:])}",
-    "unknown-gamut-mapping": f"set the property out_of_gamut to {', '.join(METHODS)}",
+    (CubeFileError, "file-not-found"): "set the property cube to a cube, or add its folder to Mitsuba's file resolver",
+    (ColourError, "rgb-out-of-gamut"): f"set the property out_of_gamut to {', '.join(METHODS[1:])}",
 }
-"""Hints in terms of Mitsuba's properties, by code; the library's own name parameters of Python."""
+"""Hints in terms of Mitsuba's properties, by class and code; the library's own name parameters of Python."""
 
 
 def register() -> None:
@@ -41,8 +40,8 @@ def register() -> None:
     Raises
     ------
     OptionError
-        Mitsuba is not installed (code ``extra-not-installed``), or the variant is not set, not spectral, or polarised
-        (``unsupported-variant``).
+        Mitsuba is not installed (code ``extra-not-installed``), or the variant is not set, not spectral, or
+        polarised.
     """
     with needs_extra("mitsuba", "plugins", OptionError):
         import mitsuba
@@ -50,7 +49,6 @@ def register() -> None:
     if variant is None or "spectral" not in variant or "polarized" in variant:
         raise OptionError(
             f"Mitsuba's variant must be spectral and unpolarised, got {variant}",
-            code="unsupported-variant",
             hint="set scalar_spectral or llvm_ad_spectral",
         )
     mitsuba.register_texture("uplift", partial(_make_plugin, _make))
@@ -62,9 +60,9 @@ def _make_plugin(make: Callable[[Any], Any], props: Any) -> Any:
     try:
         return make(props)
     except UpliftError as error:
-        if error.code not in HINTS:
+        if (key := (type(error), error.code)) not in HINTS:
             raise
-        raise RuntimeError(error.describe(HINTS[error.code])) from error
+        raise RuntimeError(error.describe(HINTS[key])) from error
 
 
 def _make(props: Any) -> Any:

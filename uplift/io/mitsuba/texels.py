@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError
+from uplift.common.errors import unknown_name
 from uplift.lights.lookup import EmissionTable
 from uplift.lookup import Cube
 from uplift.lookup.blocks import as_colours, blockwise
@@ -97,7 +97,7 @@ class Placement:
 
     @staticmethod
     def read(props: Any) -> "Placement":
-        """Read the properties ``filter_type``, ``wrap_mode`` and ``to_uv``. Raises `OptionError`."""
+        """Read the properties ``filter_type``, ``wrap_mode`` and ``to_uv``. Raises `UnknownNameError`."""
         return Placement(
             _choice(props, "filter_type", FILTERS),
             _choice(props, "wrap_mode", tuple(WRAPS)),
@@ -113,7 +113,7 @@ def _choice(props: Any, name: str, choices: tuple[str, ...]) -> str:
     """Return a property; the first choice is the default."""
     chosen = str(props.get(name, choices[0]))
     if chosen not in choices:
-        raise OptionError(f"unknown {name} '{chosen}'", hint=f"use one of {', '.join(choices)}")
+        raise unknown_name(chosen, choices, name)
     return chosen
 
 

@@ -15,7 +15,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError, TextureError, UpliftWarning
+from uplift.common.errors import OptionError, TextureError, UpliftWarning, unknown_name
 from uplift.io.texture.image import Image, Part, Values
 from uplift.lattice.entry_boxes import NO_ROWS, OutsideBoxes
 
@@ -229,7 +229,7 @@ def space_warnings(image: Image, sensor: Sensor, chosen: ImageSpace | None = Non
             code, problem = "colour-space-assumed", f"the image states no colour space; {read_as}"
         elif part.profile.space is None:
             name = f" ({part.profile.name})" if part.profile.name else ""
-            code = "colour-space-unreadable"
+            code = "colour-space-assumed"
             problem = f"the image states a colour space that cannot be used{name}; {read_as}"
         else:
             continue
@@ -304,9 +304,9 @@ def _all_inside(colours: Values) -> bool:
 
 
 def check_encoding(encoding: str) -> None:
-    """Raise `OptionError` unless ``encoding`` is one of `ENCODINGS`."""
+    """Raise `UnknownNameError` unless ``encoding`` is one of `ENCODINGS`."""
     if encoding not in ENCODINGS:
-        raise OptionError(f"unknown encoding '{encoding}'", hint=f"use one of {', '.join(ENCODINGS)}")
+        raise unknown_name(encoding, ENCODINGS, "encoding")
 
 
 def make_decoder(

@@ -125,4 +125,6 @@ def _read(file: BinaryIO, size: int) -> bytes:
 
 
 def _damaged() -> TextureError:
-    return TextureError("the OpenEXR file is damaged or incomplete", code="damaged-image", hint="write the file again")
+    return TextureError(
+        "the OpenEXR file is damaged or incomplete", code="file-unreadable", hint="write the file again"
+    )

@@ -152,7 +152,7 @@ class Image:
         if rows is None or problem:
             raise TextureError(
                 f"rows {first} to {end - 1} cannot be read: {problem or UNKNOWN_PROBLEM}",
-                code="damaged-image",
+                code="file-unreadable",
                 path=self.path,
                 hint="the file is damaged: write it again",
             )
@@ -181,7 +181,7 @@ def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
         handle = OpenImageIO.ImageInput.open(utf8_name(path, TextureError), config)
         if handle is None:
             problem = read_error(OpenImageIO) or UNKNOWN_PROBLEM
-            raise TextureError(problem, code="unreadable-image", hint=FORMAT_HINT)
+            raise TextureError(problem, code="file-unreadable", hint=FORMAT_HINT)
         parts = tuple(_parts(handle))
         for part in parts:
             for name in (part.name, *part.channels):
@@ -205,7 +205,7 @@ def _read_start(path: Path) -> bytes:
         with path.open("rb") as file:
             return file.read(PNG_INTERLACE + 1)
     except OSError as error:
-        raise TextureError(f"cannot be read: {error.strerror}", code="unreadable-image", hint=FORMAT_HINT) from error
+        raise TextureError(f"cannot be read: {error.strerror}", code="file-unreadable", hint=FORMAT_HINT) from error
 
 
 def _parts(handle: Any) -> Iterator[Part]:

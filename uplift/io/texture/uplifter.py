@@ -157,7 +157,6 @@ class Moments(PixelEncoding):
         if not isinstance(model, models.Moments):
             raise OptionError(
                 f"moments need a moments cube, got a {model.name} cube",
-                code="no-moments",
                 hint="write multipliers, or use a moments cube",
             )
         return tuple(f"moment.{index:02}" for index in range(model.count))
@@ -355,7 +354,6 @@ def resolve_depth(depth: str | None, depths: tuple[str, ...], name: str) -> str:
     if depth is not None and depth not in depths:
         raise OptionError(
             f"depth of {name} must be {' or '.join(depths)}, got '{depth}'",
-            code="unsupported-depth",
             hint="other types are not precise enough",
         )
     return depth or depths[0]

@@ -48,11 +48,8 @@ def select_methods(patterns: Sequence[str] = ()) -> list[Method]:
     """Select methods by name, by default all. Raises `OptionError`."""
     for pattern in patterns:
         if not any(fnmatchcase(method.method, pattern) for method in METHODS):
-            raise OptionError(
-                f"no method matches '{pattern}'",
-                code="unknown-method",
-                hint="names are 'mallett2019', 'moments9-32-spectra' and others; '*' matches any characters",
-            )
+            hint = "names are 'mallett2019', 'moments9-32-spectra' and others; '*' matches any characters"
+            raise OptionError(f"no method matches '{pattern}'", hint=hint)
     return [method for method in METHODS if any(fnmatchcase(method.method, pattern) for pattern in patterns or "*")]
 
 
@@ -65,7 +62,7 @@ def perturb_method(method: Method, light: Light, count: int = COLOURS) -> list[d
         try:
             uplift = method.prepare(task).uplift
         except NotInstalledError as error:
-            raise OptionError(f"{method.method} {error}", code="method-not-installed") from error
+            raise OptionError(f"{method.method} {error}", code="extra-not-installed") from error
         return perturb_answers(
             method.title, lambda rgb: uplift(rgb, grid), lambda codes: decode(codes / 255), lights, count
         )

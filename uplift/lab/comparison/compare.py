@@ -248,7 +248,6 @@ def error_statistics(representation: Representation, scene: Scene, light_set: Li
     if not np.isfinite(errors).all():
         raise UpliftError(
             f"{representation.name} returns values that are not finite under {light_set.title}",
-            code="result-not-finite",
         )
     return compute_statistics(errors)
 
@@ -273,7 +272,7 @@ def _repeat_light(representation: Representation, power: Array, rows: int) -> An
 def check_target(target: float) -> float:
     """Check the largest ΔE00 that a representation may have. Raises `OptionError`."""
     if not (math.isfinite(target) and target > 0):
-        raise OptionError(f"target must be a positive ΔE00, got {target:g}", code="target-not-positive")
+        raise OptionError(f"target must be a positive ΔE00, got {target:g}")
     return target
 
 

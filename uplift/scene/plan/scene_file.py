@@ -83,7 +83,7 @@ class SceneFile:
 def _check_path(name: str) -> str:
     if not name or len(name) > MAX_PATH or "\0" in name:
         text = f"must be a path of 1 to {MAX_PATH} characters without null bytes, got {format_value(name)}"
-        raise problem("invalid-path", text, "name a file, or a pattern")
+        raise problem(text, "name a file, or a pattern")
     return name
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.common.errors import UpliftError
+from uplift.common.errors import OptionError, UpliftError
 from uplift.models.arithmetic import blocked_matmul
 from uplift.scene.quadrature import UndefinedRule, gauss_rule, interpolatory_rule
 
@@ -74,12 +74,12 @@ class Representation(ABC):
         """XYZ (n, 3) of lights, in the units of `xyz_weights`."""
 
     def light_spectra(self, code: Any) -> Array:
-        """Return the spectral powers (n, 401) that a code of lights stands for. Raises `UpliftError` without any."""
+        """Return the spectral powers (n, 401) that a code of lights stands for. Raises `OptionError` without any."""
         problem = f"{self.name} does not determine a spectrum"
-        raise UpliftError(problem, code="no-spectrum", hint="use PS, PF, RS, TM or SG")
+        raise OptionError(problem, hint="use PS, PF, RS, TM or SG")
 
     def surface_spectra(self, code: Any) -> Array:
-        """Return the reflectances (n, 401) that a code of surfaces stands for. Raises `UpliftError` without any."""
+        """Return the reflectances (n, 401) that a code of surfaces stands for. Raises `OptionError` without any."""
         return self.light_spectra(code)
 
     def storage(self, code: Any) -> Array:

@@ -101,7 +101,6 @@ def choose(
     if target is not None and not target > 0:
         raise OptionError(
             f"target must be positive, got {target:g}",
-            code="target-not-positive",
             hint="give a tolerated ΔE00, such as 1",
         )
     for number in range(1, MAX_COUNT + 1) if count is None else (count,):

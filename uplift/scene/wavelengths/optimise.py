@@ -143,7 +143,6 @@ def fit_at(setup: RenderSetup, wavelengths: ArrayLike) -> Sampling:
     if nm.ndim != 1 or not len(nm) or np.any(np.diff(nm) <= 0) or not first <= nm[0] <= nm[-1] <= last:
         raise OptionError(
             f"wavelengths must be distinct and within [{first:g}, {last:g}] nm",
-            code="invalid-wavelengths",
             hint="give each wavelength once",
         )
     problem = FitProblem(_thinned(setup))
