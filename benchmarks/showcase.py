@@ -131,9 +131,9 @@ def draw_still_life() -> None:
     """Draw what ``uplift relight`` shows, as JPEG."""
     from uplift.io.texture.picture import read_picture
 
-    cubes = {"without atlas": uplift.load(), "with macbeth": uplift.build("macbeth", dim=DIM)}
+    cubes = {"spectral": uplift.load(), "spectral with macbeth": uplift.build("macbeth", dim=DIM)}
     path = sample_path("still-life.png")
-    picture = read_picture(path, cubes["with macbeth"].data.sensor, max_side=960)
+    picture = read_picture(path, cubes["spectral with macbeth"].data.sensor, max_side=960)
     relit = relight(path.name, picture.rgb, cubes)
     with tempfile.TemporaryDirectory() as folder:
         png = Path(folder) / "relit.png"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,7 +19,9 @@ if TYPE_CHECKING:
     from uplift.lookup import Cube
 
 SAMPLE, SAMPLE_ATLAS = "still-life.png", "macbeth"
-PAGE = ".html"
+PAGE, IMAGE = ".html", ".exr"
+SPECTRAL = "spectral"
+"""Method of the packaged cube, which knows no atlas."""
 DIM = 32
 """Lattice of the cubes that are built for --atlas."""
 MAX_SIDE = 960
@@ -34,7 +37,8 @@ MAX_SIDE = 960
 @options.input_space("the images")
 @options.out_of_gamut("clip", "pixels")
 @options.output(
-    "File to write: a picture if it ends in .png, .svg or .pdf, a page if it ends in .html.", default="relit.png"
+    "File to write: a figure if it ends in .png, .svg or .pdf, a page if in .html, the image itself if in .exr.",
+    default="relit.png",
 )
 @options.output_format("table", "json")
 @options.force
@@ -53,8 +57,13 @@ def command(
     """Show images under other lights: RGB multiplied by the light, next to spectra.
 
     Without IMAGE, a sample painted in colours of the ColorChecker is shown, with the ColorChecker as its atlas. Spectra
-    come from the packaged cube, which knows no atlas, and from --cube or --atlas. The page has a line to drag between
-    two of the methods, and maps of ΔE00. Images are shown with at most 960 pixels per side.
+    come from the packaged cube, which knows no atlas ('spectral'), and from --cube or --atlas. The page has a line to
+    drag between two of the methods or the original, and maps of ΔE00. Figures and pages show images with at most 960
+    pixels per side.
+
+    With -o relit.exr, one image is written at full size, linear and in its own RGB space, by the spectra of --cube or
+    --atlas if there is one. R, G and B are the colours under the first light; each further light is a layer of its
+    name, such as FL11.R, FL11.G and FL11.B. Alpha and other channels are copied.
 
     \b
     Examples:
@@ -62,14 +71,18 @@ def command(
       uplift relight wood.png -o wood.html
       uplift relight wood.png still-life.png --atlas paints.csv --light LED-B3 --light HP1 -o both.png
       uplift relight --cube macbeth-32.uplift --format json -o cube.html
+      uplift relight painting.exr --light 3200K --light led -o relit.exr
 
-    The white of each light is shown as the white of the screen. The table lists ΔE00 from the products of RGB.
+    The white of each light becomes the white of the screen or of the RGB space. The table lists ΔE00 from the products
+    of RGB.
     """
     enable_jit_cache()
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
     from uplift.common.errors import OutputError
     from uplift.common.files import check_output, write_text
+    from uplift.io import texture
     from uplift.io.texture.picture import read_picture
+    from uplift.lookup import load
     from uplift.report.measures import mean_p95_max
     from uplift.report.relight import RGB_PRODUCT, relight, relit_page, write_relit_sheet
     from uplift.samples import sample_path
@@ -78,28 +91,46 @@ def command(
     if cube_path is not None and files:
         raise click.UsageError("--cube and --atlas are alternatives: give one of the two.")
     suffix = Path(output).suffix.lower()
-    if suffix not in (*SUFFIXES, PAGE):
+    if suffix not in (*SUFFIXES, PAGE, IMAGE):
         raise OutputError(
-            f"the suffix of relit images must be one of {', '.join((*SUFFIXES, PAGE))}, got '{suffix}'",
+            f"the suffix of relit images must be one of {', '.join((*SUFFIXES, PAGE, IMAGE))}, got '{suffix}'",
             path=output,
-            hint="give a file name ending in .png for a picture, or .html for a page",
+            hint="give a file name ending in .png for a figure, .html for a page, or .exr for the image itself",
         )
     paths = expand_patterns(images) or [str(sample_path(SAMPLE))]
+    if suffix == IMAGE and len(paths) > 1:
+        raise click.UsageError("An .exr file holds one image: relight images one by one.")
     check_output(output, inputs=(*paths, cube_path, *files), force=force)
     if not images and cube_path is None:
         files = files or (SAMPLE_ATLAS,)
+    lights = lights or RELIGHT_LIGHTS
+    if suffix == IMAGE:
+        with progress_bar("computing spectra") as progress:
+            cube = _cube_of_user(cube_path, files) or load()
+            converter = texture.prepare_relighter(
+                cube, lights, encoding=encoding, out_of_gamut=method, space=input_space, threads=os.cpu_count() or 1
+            )
+            conversion = texture.convert(converter, paths[0], output, force=force, progress=progress)
+        for warning in conversion.warnings:
+            warnings.warn(warning, stacklevel=1)
+        names = converter.header["uplift.lights"]
+        if style == "json":
+            print_json({"output": output, "lights": names.split(", "), "pixels": conversion.counts.pixels})
+        else:
+            say(f"{output}: {Path(paths[0]).name} under {names}, {conversion.counts.pixels:,} pixels")
+        return
     with progress_bar("computing spectra"):
-        cubes = _cubes(cube_path, files)
-        sensor, space = cubes["without atlas"].data.sensor, find_input_space(input_space)
+        cubes = {SPECTRAL: load()}
+        if (own := _cube_of_user(cube_path, files)) is not None:
+            cubes[f"{SPECTRAL} with {', '.join(Path(each).stem for each in files or [cube_path or ''])}"] = own
+        sensor, space = cubes[SPECTRAL].data.sensor, find_input_space(input_space)
         relit = []
         for path in paths:
             picture = read_picture(path, sensor, max_side=MAX_SIDE, encoding=encoding, out_of_gamut=method, space=space)
             for warning in picture.warnings:
                 warnings.warn(warning, stacklevel=1)
             name, opacity, reduction = Path(path).name, picture.opacity, picture.reduction
-            relit.append(
-                relight(name, picture.rgb, cubes, lights or RELIGHT_LIGHTS, opacity=opacity, reduction=reduction)
-            )
+            relit.append(relight(name, picture.rgb, cubes, lights, opacity=opacity, reduction=reduction))
         if suffix == PAGE:
             write_text(relit_page(relit), output, force=force)
         else:
@@ -121,15 +152,12 @@ def command(
     say(f"{output}: {names} under {', '.join(each.light for each in relit[0].renderings)}")
 
 
-def _cubes(path: str | None, atlases: tuple[str, ...]) -> dict[str, Cube]:
-    """Return the packaged cube, and the one of the user, by the names of their methods."""
+def _cube_of_user(path: str | None, atlases: tuple[str, ...]) -> Cube | None:
+    """Load the cube of a file, or build that of atlases; None without either."""
     from uplift.lookup import load
 
-    cubes = {"without atlas": load()}
-    if path is not None:
-        cubes[Path(path).name] = load(path)
     if atlases:
         from uplift.pipeline.build import build
 
-        cubes[f"with {', '.join(Path(atlas).stem for atlas in atlases)}"] = build(atlases, dim=DIM)
-    return cubes
+        return build(atlases, dim=DIM)
+    return None if path is None else load(path)

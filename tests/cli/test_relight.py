@@ -1,6 +1,7 @@
 """``uplift relight`` and ``uplift samples``."""
 
 import numpy as np
+import OpenEXR
 import pytest
 from PIL import Image
 
@@ -17,17 +18,26 @@ def test_a_page_of_own_images_with_a_cube(ask, home, cubes, wood):
     cube = cubes / "moments-8-macbeth.uplift"
     found = ask("relight", wood, wood, "--cube", cube, "--light", "A", "-o", "relit.html")
     assert found["output"] == "relit.html"
-    assert [row["spectra"] for row in found["differences"][:2]] == ["without atlas", cube.name]
+    assert [row["spectra"] for row in found["differences"][:2]] == ["spectral", f"spectral with {cube.stem}"]
     assert all(0 < row["mean"] <= row["max"] + 1e-9 for row in found["differences"])
     assert (home / "relit.html").read_text(encoding="utf-8").count("<section") == 2
 
 
 def test_the_sample_is_relit_with_its_atlas(run, home):
     result = run("relight", "--light", "HP1")
-    assert "with macbeth" in result.stdout
+    assert "spectral with macbeth" in result.stdout
     assert result.stdout.rstrip().endswith("relit.png: still-life.png under HP1")
     with Image.open(home / "relit.png") as image:
         assert image.width > 1000
+
+
+def test_an_image_of_full_size_has_a_layer_for_each_further_light(ask, misuse, home, wood):
+    found = ask("relight", wood, "--light", "tungsten", "--light", "3200K", "-o", "relit.exr")
+    assert found == {"output": "relit.exr", "lights": ["A", "3200K"], "pixels": 240}
+    (part,) = OpenEXR.File(str(home / "relit.exr"), separate_channels=True).parts
+    assert set(part.channels) == {*"RGB", *(f"3200K.{letter}" for letter in "RGB")}
+    assert part.channels["R"].pixels.shape == (12, 20)
+    assert "one by one" in misuse("relight", wood, wood, "-o", "both.exr")
 
 
 def test_bad_input_is_refused(refuse, misuse, home, wood):

@@ -27,7 +27,7 @@ def page(relit, tmp_path_factory):
 def test_the_page_is_well_formed_and_holds_its_images(page):
     found = Page(page.read_text(encoding="utf-8"))
     sources = [value for name, value in found.attributes if name == "src"]
-    assert len(sources) == 2 * 3 * (3 + 3)  # images, lights, methods and pairs of them
+    assert len(sources) == 2 * (1 + 3 * (3 + 3))  # images, original, lights, methods and pairs of them
     assert all(source.startswith("data:image/") for source in sources)
     assert all(text for name, text in found.attributes if name == "alt")
     assert "a & b.png" in found.text
@@ -75,6 +75,8 @@ def test_the_page_opens_where_the_difference_is_largest_and_choices_change_the_l
     assert tab.evaluate('document.querySelector(".scale").hidden') is False
     choose(tab, 1, 1, 1, True)
     assert tab.evaluate(VISIBLE) == [["1", "1"]]
+    choose(tab, 1, 3, 2, True)  # the original has no light and no map
+    assert sorted(tab.evaluate(VISIBLE)) == [["", "3"], ["1", "2"]]
     assert tab.errors == []
 
 

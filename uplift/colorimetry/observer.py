@@ -135,13 +135,19 @@ def find_camera(camera: str | Camera) -> Camera:
 
 
 def display_sensors(
-    illuminants: Sequence[str], observer: str, start: float = START, end: float = END, step: float = STEP
+    illuminants: Sequence[str],
+    observer: str,
+    start: float = START,
+    end: float = END,
+    step: float = STEP,
+    *,
+    space: str = "sRGB",
 ) -> tuple[Sensor, ...]:
-    """Create an sRGB sensor for each illuminant, without duplicates.
+    """Create a sensor, by default of sRGB, for each illuminant, without duplicates.
 
     Their linear RGB can be displayed directly: the white of each illuminant becomes the white of the screen.
     """
-    sensors = (on_range(sensor("sRGB", name, observer), start, end, step) for name in illuminants)
+    sensors = (on_range(sensor(space, name, observer), start, end, step) for name in illuminants)
     return tuple({each.illuminant: each for each in sensors}.values())
 
 

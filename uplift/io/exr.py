@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.gamut import Gamut
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write
 from uplift.cube.data import CubeData
@@ -72,9 +72,9 @@ def _float32(channel: str, plane: NDArray[Any]) -> NDArray[np.float32]:
     return np.ascontiguousarray(np.clip(plane, -MAX_FLOAT32, MAX_FLOAT32), dtype=np.float32)
 
 
-def chromaticities(sensor: Sensor) -> tuple[float, ...]:
-    """Return x, y of red, green, blue and white under the build illuminant, in the order of OpenEXR."""
-    primaries = sensor.xyz(np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]]))
+def chromaticities(gamut: Gamut) -> tuple[float, ...]:
+    """Return x, y of red, green, blue and white, of a sensor under the build illuminant, in the order of OpenEXR."""
+    primaries = np.vstack([np.eye(3), np.ones(3)]) @ gamut.rgb_to_xyz.T
     return tuple(map(float, (primaries / primaries.sum(axis=1, keepdims=True))[:, :2].ravel()))
 
 

@@ -82,6 +82,7 @@ class Relit:
 
     name: str  # Name of the image
     reduction: int  # Pixels of the image per pixel of the colours, along each side
+    original: NDArray[np.uint8]  # 8-bit sRGB codes (height, width, 3) of the image itself
     renderings: tuple[Rendering, ...]  # One for each light
 
     @property
@@ -108,6 +109,7 @@ def relight(
     screens = display_sensors(lights, sensor.observer, *sensor.range)
     by_spectra = {method: _by_spectra(cube, rgb, screens, threads) for method, cube in cubes.items()}
     weight = np.float32(1) if opacity is None else opacity
+    original = to_display_codes(rgb * weight, sensor).astype(np.uint8)
     renderings = (
         Rendering(
             screen,
@@ -116,7 +118,7 @@ def relight(
         )
         for number, screen in enumerate(screens)
     )
-    return Relit(name, reduction, tuple(renderings))
+    return Relit(name, reduction, original, tuple(renderings))
 
 
 def _by_product(sensor: Sensor, rgb: Floats, screen: Sensor) -> Floats:
@@ -197,7 +199,7 @@ def relit_page(relit: Sequence[Relit]) -> str:
     return render(
         "report/templates/relight_page.html.j2",
         title="Images under other lights",
-        lead="The same RGB, lit by products of RGB and by spectra. Drag the line, or use the arrow keys.",
+        lead="Lights multiply the RGB of the image, or spectra of these colours. Drag the line, or use the arrow keys.",
         lights=lights,
         methods=methods,
         start=int(np.argmax(changes)),
@@ -211,9 +213,16 @@ def relit_page(relit: Sequence[Relit]) -> str:
 def _section(image: Relit, limits: Sequence[float]) -> dict[str, Any]:
     """One relit image: its layers, and a row of the table for each light and pair of methods.
 
-    A layer has the number of its ``light``, and ``shows`` the number of a method or 'first-second' of a map.
+    A layer has the number of its ``light``, and ``shows`` the number of a method or 'first-second' of a map. The
+    original, whose number follows those of the methods, has no light.
     """
-    layers, rows = [], []
+    own: dict[str, Any] = {
+        "light": "",
+        "shows": str(len(image.methods)),
+        "label": image.name,
+        "source": _jpeg(image.original),
+    }
+    layers, rows = [own], []
     for number, (rendering, limit) in enumerate(zip(image.renderings, limits, strict=True)):
         for method, name in enumerate(image.methods):
             label, source = f"{image.name} under {rendering.light}, {name}", _jpeg(rendering.screen_codes(name))

@@ -6,11 +6,12 @@ const [first, second, map] = ["first", "second", "map"].map(id => document.getEl
 function choose() {
   const light = form.elements.light.value;
   const pair = [first.value, second.value].sort().join("-");
-  const asMap = map.checked && first.value !== second.value;
+  const original = String(first.options.length - 1);
+  const asMap = map.checked && first.value !== second.value && ![first.value, second.value].includes(original);
   for (const view of document.querySelectorAll(".view")) {
     view.classList.toggle("map", asMap);
     for (const layer of view.querySelectorAll("img")) {
-      const here = layer.dataset.light === light, shows = layer.dataset.shows;
+      const here = !layer.dataset.light || layer.dataset.light === light, shows = layer.dataset.shows;
       layer.classList.toggle("first", here && !asMap && shows === first.value);
       layer.classList.toggle("second", here && !asMap && shows === second.value && shows !== first.value);
       layer.classList.toggle("shown", here && (asMap ? shows === pair : shows === first.value && shows === second.value));

@@ -15,6 +15,7 @@ from uplift.io.texture.colours import Counts
 from uplift.io.texture.conversion import Conversion, convert
 from uplift.io.texture.lights import prepare_lights
 from uplift.io.texture.mask import prepare_masked
+from uplift.io.texture.relighter import prepare_relighter
 from uplift.io.texture.sequence import Failure, Job, TextureSettings, convert_all, pending
 from uplift.io.texture.uplifter import PIXEL_ENCODINGS, Moments, Multipliers, Spectrum, prepare
 
@@ -34,4 +35,5 @@ __all__ = [
     "prepare",
     "prepare_lights",
     "prepare_masked",
+    "prepare_relighter",
 ]

@@ -132,7 +132,7 @@ def _layout(converter: Converter, image: Image, part: Part, found: ColourChannel
             )
         names, types = (*converted, *names), (*(converter.depth,) * len(converted), *types)
     modified = time.strftime("%Y:%m:%d %H:%M:%S", time.gmtime(image.path.stat().st_mtime))  # as EXIF writes it
-    header = {**part.metadata, **converter.header}
+    header = {**part.metadata, **converter.header, **converter.part_header(part)}
     output = OutputPart(part.name, part.window, names, types, header, part.date or modified)
     return _Layout(part, colours, others, converter.decoder(part), output)
 

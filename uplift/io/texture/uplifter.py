@@ -73,6 +73,10 @@ class Converter(ABC):
         """Conversion of the numbers of a part to linear RGB, by default in [0, 1]."""
         return make_decoder(self.sensor, part, self.encoding, self.out_of_gamut, self.space)
 
+    def part_header(self, part: Part) -> Mapping[str, Any]:
+        """Attributes of one part in addition to ``header``, by default none."""
+        return {}
+
     @contextlib.contextmanager
     def opened(self, image: Image) -> Iterator[ConvertRows]:
         """Yield the conversion of rows of an image: by default `convert`, wherever they are."""

@@ -1,0 +1,113 @@
+"""Images of full size under other lights, as OpenEXR in the RGB space of the image (docs/textures.md)."""
+
+import contextlib
+import json
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from uplift.colorimetry.observer import display_sensors
+from uplift.colorimetry.spaces import find_space
+from uplift.common.arrays import Array
+from uplift.io import exr
+from uplift.io.texture.colours import Counts, Floats, source_space
+from uplift.io.texture.image import Image, Part
+from uplift.io.texture.uplifter import Converted, Converter, ConvertRows, Sampler
+from uplift.lookup import Cube
+
+BLOCK = 1 << 18
+"""Pixels whose spectra are in memory at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class Relighter(Converter):
+    """A converter to colours under L lights, made by `prepare_relighter`; white is the white of each light.
+
+    ``sample`` maps linear RGB (…, 3) to reflectances (…, N), ``matrix`` (3 L, N) these to linear RGB of the sensor.
+    """
+
+    sample: Sampler
+    matrix: Array
+
+    def part_header(self, part: Part) -> dict[str, object]:
+        space = source_space(part, self.sensor, self.space)
+        return {"chromaticities": exr.chromaticities(self.sensor if space is None else space.gamut)}
+
+    @contextlib.contextmanager
+    def opened(self, image: Image) -> Iterator[ConvertRows]:
+        yield lambda part, first, rgb: self._relight(rgb, self._to_lights(part))
+
+    def convert(self, rgb: Floats) -> Converted:
+        return self._relight(rgb, self.matrix)
+
+    def _to_lights(self, part: Part) -> Array:
+        """The matrix (3 L, N) to the linear RGB of the space of a part."""
+        space = source_space(part, self.sensor, self.space)
+        to_sensor = None if space is None else space.matrix_to(self.sensor)
+        if to_sensor is None:
+            return self.matrix
+        lights = self.matrix.reshape(-1, 3, self.matrix.shape[1])
+        return np.asarray(np.linalg.inv(to_sensor) @ lights).reshape(self.matrix.shape)
+
+    def _relight(self, rgb: Floats, matrix: Array) -> Converted:
+        flat, to_rgb = rgb.reshape(-1, 3), matrix.astype(np.float32).T
+        rows = [self.sample(flat[first : first + BLOCK]) @ to_rgb for first in range(0, len(flat), BLOCK)]
+        return (np.concatenate(rows).reshape(*rgb.shape[:-1], -1),), Counts()
+
+
+def prepare_relighter(
+    cube: Cube,
+    lights: Sequence[str],
+    *,
+    encoding: str = "auto",
+    out_of_gamut: str = "clip",
+    space: str | None = None,
+    threads: int = 2,
+) -> Relighter:
+    """Prepare a cube for images under other lights.
+
+    R, G and B of the result are colours under the first light. Each further light is a layer of its name, such as
+    ``FL11.R``, ``FL11.G`` and ``FL11.B``.
+
+    Parameters
+    ----------
+    cube : Cube
+        The cube.
+    lights : sequence of str
+        At least one light, as for `uplift.colorimetry.observer.light`.
+    encoding, out_of_gamut, space, threads
+        As for `uplift.io.texture.prepare`.
+
+    Returns
+    -------
+    Relighter
+        The converter to pass to `convert`.
+
+    Raises
+    ------
+    OptionError
+        The encoding or gamut mapping is unknown.
+    UnknownNameError
+        A light or the RGB space is unknown.
+    """
+    from uplift.lookup import bulk
+
+    sensor = cube.data.sensor
+    screens = display_sensors(lights, sensor.observer, *sensor.range, space=sensor.space)
+    names = [screen.illuminant for screen in screens]
+    layers = [re.sub(r"[^\w-]", "_", name) for name in names[1:]]
+    settings = {"as": "relit", "lights": names, "encoding": encoding, "out_of_gamut": out_of_gamut}
+    header = {**exr.attributes(cube.data), "uplift.texture": json.dumps(settings), "uplift.lights": ", ".join(names)}
+    return Relighter(
+        sensor,
+        "half",
+        encoding,
+        out_of_gamut,
+        tuple(f"{layer}.{letter}" for layer in layers for letter in "RGB"),
+        header,
+        sample=bulk.spectra(cube, threads=threads),
+        matrix=np.concatenate([screen.matrix for screen in screens]),
+        space=None if space is None else find_space(space),
+    )
