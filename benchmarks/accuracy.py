@@ -13,8 +13,7 @@ import uplift
 from benchmarks import MACBETH, ROOT, record
 from benchmarks.materials import errors, materials
 from uplift.atlas import on_grid
-from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry import Sensor, delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.fit.growth_outward import shells
 from uplift.fit.problem import Problem

@@ -10,10 +10,8 @@ from scipy.optimize import least_squares
 from benchmarks import record
 from benchmarks.choices import ALONE, OURS, mark
 from uplift.atlas import Atlas, on_grid, read_atlas
-from uplift.colorimetry import observer, tables
+from uplift.colorimetry import Sensor, delta_e_2000, lab, observer, tables
 from uplift.colorimetry.camera import CAMERA
-from uplift.colorimetry.delta_e import delta_e_2000, lab
-from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import UpliftWarning

@@ -10,7 +10,7 @@ import colour
 import numpy as np
 
 from benchmarks import DOCS, record
-from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, conversion, map_to_gamut
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array

@@ -20,8 +20,8 @@ from uplift.lights.fit import nearest_lights
 from uplift.lights.lattice import chromaticity, unit_xyz
 from uplift.lights.lookup import EmissionTable
 from uplift.lights.prior import fit_lamp_prior, relit_delta_e
+from uplift.models import Sigmoid
 from uplift.models.minimum_norm import forward_map
-from uplift.models.sigmoid import Sigmoid
 
 FAMILIES = {
     "daylight": r"[BC]|I?D\d\d",

@@ -27,10 +27,8 @@ from benchmarks.materials import (
 )
 from tools.ship_library import FAMILIES, FILE, OTSU_SPREAD, SPREAD
 from uplift.atlas import Atlas, resample
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry import Light, delta_e_spectra, observer
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
-from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.cube import contents
 from uplift.fit.families import LENGTH, NUGGET, shipped_library

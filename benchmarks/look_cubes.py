@@ -11,7 +11,7 @@ import numpy as np
 import uplift
 from benchmarks import DOCS, record
 from benchmarks.checker import constant_light, start_mitsuba, xyz_film
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry import delta_e_rgb
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.observer import display_sensors, sensor
 from uplift.colorimetry.srgb import hex_codes, to_display_codes

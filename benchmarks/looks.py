@@ -16,7 +16,7 @@ from benchmarks import CUBES, DOCS, MACBETH, record
 from benchmarks.browser import SETTLE, SHIFT, browser
 from benchmarks.materials import LARGE, SPLITS, other_halves
 from uplift.atlas import read_atlas, resample
-from uplift.colorimetry.delta_e import lab
+from uplift.colorimetry import lab
 from uplift.colorimetry.expected_error import mahalanobis
 from uplift.colorimetry.observer import light
 from uplift.common.arrays import Array

@@ -11,8 +11,8 @@ import numpy as np
 
 import uplift
 from benchmarks import CUBES, DOCS, REFERENCE, record
+from uplift.colorimetry import Sensor
 from uplift.colorimetry.delta_e import delta_e_rgb, rgb_to_lab
-from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.design.mixing import dispersive

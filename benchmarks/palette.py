@@ -10,9 +10,7 @@ import numpy as np
 import uplift
 from benchmarks import ATLASES, DOCS, record
 from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry import Sensor, delta_e_rgb, observer
 from uplift.common.arrays import Array
 from uplift.design.palette import design, illuminant, matrix, read_palette, standard_model
 from uplift.design.palette.colours import exposure, screen_matrix

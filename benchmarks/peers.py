@@ -19,8 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from benchmarks import ROOT
-from uplift.colorimetry import observer
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry import Sensor, observer
 from uplift.common.arrays import Array
 from uplift.common.processes import ChildError, call_in_child
 from uplift.lab.chart.method import stopwatch

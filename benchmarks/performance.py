@@ -197,7 +197,7 @@ def _timing(query: Callable[[], object], rgb: Any, error: float, limit: float) -
 
 def time_header(cube: Any, mode: str, colours: Any) -> Row:
     """Compile the C header, check its reflectances, and return its rates on one core, in million colours per second."""
-    from uplift.colorimetry.delta_e import delta_e_rgb
+    from uplift.colorimetry import delta_e_rgb
     from uplift.io.export import write_program
 
     source, data = ROOT / "benchmarks" / "rates.c", cube.data

@@ -23,7 +23,7 @@ from benchmarks.checker import (
     start_mitsuba,
 )
 from benchmarks.checker import render as render_chart
-from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.observer import light, sensor
 from uplift.common.arrays import Array
 

@@ -10,7 +10,7 @@ import numpy as np
 import uplift
 from benchmarks import MACBETH, record
 from benchmarks.pictures import Picture, pictures
-from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry import delta_e_spectra
 from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.io.scene_colours import Images

@@ -16,10 +16,9 @@ import uplift
 from benchmarks import DOCS, record
 from benchmarks.checker import BACKGROUND, Layout, chart, draw
 from tests.examples import build_wheel, run_lines, unpack
-from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry import Light, delta_e_2000, lab
 from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.colorimetry.observer import light, sensor
-from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.files import atomic_write
 from uplift.lab.chart import mitsuba3

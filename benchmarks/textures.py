@@ -13,7 +13,7 @@ import uplift
 from benchmarks import CUBES, MACBETH, record
 from benchmarks.performance import UPLIFT
 from benchmarks.pictures import Picture, colour, pictures
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.io import texture
 from uplift.io.mitsuba.texture_file import multipliers_of_rounded

@@ -10,7 +10,7 @@ import numpy as np
 import uplift
 from benchmarks import ATLASES, DOCS, MACBETH, read_reference, record
 from uplift.atlas import on_grid
-from uplift.colorimetry.delta_e import delta_e_1976, lab
+from uplift.colorimetry import delta_e_1976, lab
 from uplift.common.arrays import Array
 from uplift.scene.quadrature import QuadratureRule, UndefinedRule
 from uplift.scene.wavelengths import METHODS, ColourErrors, choose, grid, make_setup

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas import Atlas
+from uplift.colorimetry import Sensor
 from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.colorimetry.observer import display_sensors
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lookup import Cube

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from uplift.colorimetry import Light, Sensor
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.lights import DESCRIPTIONS
 from uplift.colorimetry.observer import display_sensors
-from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.lookup import Bounds, Cube

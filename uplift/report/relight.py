@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.colorimetry import Sensor
 from uplift.colorimetry.delta_e import delta_e_2000, rgb_to_lab
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.colorimetry.observer import display_sensors
-from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array, StrPath
 from uplift.io.texture.colours import Floats

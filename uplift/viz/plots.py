@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from uplift.colorimetry import Sensor
 from uplift.colorimetry.delta_e import lab_to_xyz
 from uplift.colorimetry.gamut import SRGB, Gamut
 from uplift.colorimetry.observer import display_sensors
-from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array, StrPath
 from uplift.lookup import Bounds, Cube, QueryResult

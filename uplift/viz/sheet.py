@@ -20,7 +20,7 @@ from uplift.colorimetry.srgb import decode, encode
 from uplift.common.arrays import Array, Mask, StrPath
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write, check_output
-from uplift.cube.data import CubeData
+from uplift.cube import CubeData
 from uplift.io import exr
 from uplift.io.exr import blue_slices
 from uplift.viz.figure import figure_text

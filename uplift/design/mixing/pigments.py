@@ -38,7 +38,7 @@ from numpy.typing import ArrayLike
 from uplift.atlas import Atlas
 from uplift.atlas.document import read_document
 from uplift.atlas.formats import recognise
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError
 from uplift.design.mixing.optics import TINY, DirectedLayer, Layer, as_shares, weighted_sum

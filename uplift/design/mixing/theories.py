@@ -19,9 +19,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry import observer
+from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
-from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.tables import samples
 from uplift.common.arrays import Array
 from uplift.design.mixing.coats import dye_absorption, dye_transmittance

@@ -3,9 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry import observer
+from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.delta_e import lab_jacobian
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 

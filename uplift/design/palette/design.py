@@ -13,7 +13,7 @@ import numpy as np
 
 from uplift.atlas import Atlas, Entry, Header, write_atlas
 from uplift.atlas.atlas import HIGHEST, LOWEST
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import PaletteError, UpliftWarning
 from uplift.design.palette.colours import screen_matrix

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift import lookup
+from uplift.colorimetry import Sensor
 from uplift.colorimetry.lights import PALETTE_LIGHTS
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.design.palette.colours import illuminant, lab_per_rgb, screen_matrix

@@ -12,8 +12,7 @@ from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Plai
 from uplift import lookup
 from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.atlas.sources import find_atlas_file
-from uplift.colorimetry import observer
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.srgb import MAX_NUMBER, WrittenColour, is_number, parse_colour
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError, PaletteError, unknown_name

@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas import read_atlas
-from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry import Light, delta_e_rgb
 from uplift.colorimetry.lights import CHART_LIGHTS
-from uplift.colorimetry.sensor import Light
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Values
 from uplift.common.errors import OptionError

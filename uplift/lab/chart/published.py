@@ -20,8 +20,8 @@ from typing import Any, cast
 
 import numpy as np
 
+from uplift.colorimetry import Sensor
 from uplift.colorimetry.observer import END, START, STEP, aligned
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
 from uplift.lab.chart import mitsuba3

@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, Entry, merge, on_grid
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry import delta_e_2000, lab, observer
 from uplift.colorimetry.lights import KMENT_LIGHTS
 from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array

@@ -10,10 +10,9 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from uplift.atlas import Atlas, resample
-from uplift.colorimetry import observer
+from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS, SCENE_LIGHTS
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, merge, on_grid
-from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_1976, delta_e_2000, lab
+from uplift.colorimetry import delta_e_1976, delta_e_2000, lab, observer
 from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.common.arrays import Array, Complex, Indices
 from uplift.common.errors import AtlasError, OptionError

@@ -11,10 +11,9 @@ from scipy.spatial.distance import cdist
 
 from uplift.atlas import Atlas, Entry
 from uplift.atlas.atlas import HIGHEST, LOWEST
-from uplift.colorimetry import observer
+from uplift.colorimetry import Light, observer
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
-from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas import Atlas, read_atlas, resample
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry import Sensor
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import PlanFileError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.scene_colours import Images, cells_touched
 from uplift.io.texture.colours import coloured_parts
 from uplift.io.texture.image import open_image
-from uplift.lattice.entry_boxes import EntryBoxes
+from uplift.lattice import EntryBoxes
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
 from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ColourGroup, ErrorSummary, EvaluationSet

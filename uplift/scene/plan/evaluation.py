@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_2000, lab
-from uplift.colorimetry.sensor import Light
+from uplift.colorimetry import Light, delta_e_2000, lab
 from uplift.common.arrays import Array
 
 TEXTURES, MATERIALS = "textures", "materials"

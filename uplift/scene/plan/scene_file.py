@@ -8,9 +8,8 @@ from typing import Annotated
 
 from pydantic import AfterValidator, BeforeValidator, Field
 
-from uplift.colorimetry import observer
+from uplift.colorimetry import Light, Sensor, observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
-from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PlanFileError
 from uplift.common.spec_file import SpecFile, SpecModel, problem, read_toml, resolves
