@@ -193,7 +193,3 @@ def steps_per_node(build: Callable[[], Cube]) -> float:
 def node_spectra(cube: Cube) -> Array:
     """Return the reflectances (n, N) of the nodes."""
     return reflectance(cube.data.model, cube.data.points.coefficients, cube.data.sensor.wavelengths)
-
-
-if __name__ == "__main__":
-    main()

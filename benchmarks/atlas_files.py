@@ -40,8 +40,7 @@ def largest_difference(vendor: Vendor, atlas: Atlas) -> float:
 def main() -> None:
     """Measure all layouts."""
     atlas = sample(read_atlas("macbeth"))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UpliftWarning)
+    with warnings.catch_warnings(action="ignore", category=UpliftWarning):
         found = {vendor.name: largest_difference(vendor, atlas) for vendor in VENDORS}
     rows = []
     for each in FORMATS:
@@ -51,7 +50,3 @@ def main() -> None:
         layouts = ", ".join(names) or "the shipped atlases"
         rows.append(Row(each.name, suffixes, each.written, library, each.extra, layouts, largest))
     record("atlas-files", layouts=len(found), largest=max(found.values()), formats=rows)
-
-
-if __name__ == "__main__":
-    main()

@@ -126,7 +126,3 @@ def main() -> None:
         marks={method: mark([ATLAS], CHOSEN_AS[method]) if method in CHOSEN_AS else "" for method in rows[0]["errors"]},
         rows=rows,
     )
-
-
-if __name__ == "__main__":
-    main()

@@ -149,7 +149,3 @@ def cost(method: str) -> Spread:
     map_to_gamut(rgb, SRGB, method)
     _, cpu = time_calls(lambda: map_to_gamut(rgb, SRGB, method), RUNS)
     return cpu.scaled(1e9 / TIMED)
-
-
-if __name__ == "__main__":
-    main()

@@ -221,7 +221,3 @@ def lookups(count: int, runs: int) -> Iterator[Row]:
         light, reflectance = times
         row = {"type": dtype, "wavelengths": len(at), "colours": count, "light": light, "reflectance": reflectance}
         yield row | {"ratio": light.median / reflectance.median}
-
-
-if __name__ == "__main__":
-    main()

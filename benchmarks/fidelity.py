@@ -34,16 +34,8 @@ from uplift.cube import contents
 from uplift.fit.families import LENGTH, NUGGET, shipped_library
 from uplift.lab.chart.measure import select_methods
 from uplift.lab.chart.method import make_task
-from uplift.lab.study.held_out import (
-    HALF,
-    LOCAL_LINEAR,
-    NO_ATLAS,
-    SIGMOID,
-    HoldoutSplit,
-    holdout,
-    random_halves,
-    spectrum_errors,
-)
+from uplift.lab.study import held_out
+from uplift.lab.study.held_out import HoldoutSplit
 from uplift.lookup import Cube
 from uplift.report.measures import check_calibration
 
@@ -64,7 +56,9 @@ def main() -> None:
     """Measure and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     splits = {
-        (name, count): holdout(spectra(name), SPLITS, dim=DIM, coefficients=count, leave_out=shipped_families(name))
+        (name, count): held_out.holdout(
+            spectra(name), SPLITS, dim=DIM, coefficients=count, leave_out=shipped_families(name)
+        )
         for name in LARGE
         for count in COUNTS
     }
@@ -128,7 +122,7 @@ def at_entries(name: str) -> Iterator[Row]:
 
 def halves(name: str, count: int, splits: Splits) -> Iterator[Row]:
     """Yield the errors of every cube at the held-out half, with their standard deviation over the splits."""
-    for method in (HALF, NO_ATLAS, SIGMOID):
+    for method in (held_out.HALF, held_out.NO_ATLAS, held_out.SIGMOID):
         found = np.array([split.errors[method].means() for split in splits])
         pairs = zip(found.mean(axis=0).tolist(), found.std(axis=0).tolist(), strict=True)
         rms, *delta_e = [{"mean": mean, "std": std} for mean, std in pairs]
@@ -178,19 +172,19 @@ def covered(pairs: Pairs) -> dict[str, Array]:
 
 def compare_methods(name: str) -> Row:
     """Return the errors of all methods on the held-out halves of a set, and how they compare."""
-    learnt = holdout(spectra(name), SPLITS)
-    smooth = holdout(spectra(name), SPLITS, prior="smooth", leave_out=())
+    learnt = held_out.holdout(spectra(name), SPLITS)
+    smooth = held_out.holdout(spectra(name), SPLITS, prior="smooth", leave_out=())
     found = {
-        OURS: pooled(learnt, HALF),
-        OURS_SMOOTH: pooled(smooth, HALF),
-        LOCAL_LINEAR: pooled(learnt, LOCAL_LINEAR),
-        ALONE: pooled(learnt, NO_ATLAS),
-        ALONE_SMOOTH: pooled(smooth, NO_ATLAS),
-        SIGMOID: pooled(learnt, SIGMOID),
+        OURS: pooled(learnt, held_out.HALF),
+        OURS_SMOOTH: pooled(smooth, held_out.HALF),
+        held_out.LOCAL_LINEAR: pooled(learnt, held_out.LOCAL_LINEAR),
+        ALONE: pooled(learnt, held_out.NO_ATLAS),
+        ALONE_SMOOTH: pooled(smooth, held_out.NO_ATLAS),
+        held_out.SIGMOID: pooled(learnt, held_out.SIGMOID),
     }
     some = materials(name)
     for method, answers in published(some).items():
-        found[method] = spectrum_errors(answers, some.measured).means()
+        found[method] = held_out.spectrum_errors(answers, some.measured).means()
     means = {method: float(np.mean(values[1:])) for method, values in found.items()}
     rows = [
         {
@@ -232,7 +226,7 @@ def smooth_cube(count: int) -> Cube:
 def means(answers: Cube | Array, some: Materials) -> Array:
     """Mean ΔE00 (L,) under each light."""
     spectra = answers.reflectance(some.rgb) if isinstance(answers, Cube) else answers
-    return spectrum_errors(spectra, some.measured).means()[1:]
+    return held_out.spectrum_errors(spectra, some.measured).means()[1:]
 
 
 def unseen(name: str, count: int) -> Row:
@@ -267,7 +261,7 @@ def with_atlas(name: str) -> Row:
 def with_library(name: str) -> Iterator[Row]:
     """Yield the errors at one half of a set, relative to smooth spectra, with the other half as a library."""
     entries = spectra(name).entries
-    atlas = Atlas(tuple(entries[row] for row in sorted(random_halves(len(entries), 0)[0])))
+    atlas = Atlas(tuple(entries[row] for row in sorted(held_out.random_halves(len(entries), 0)[0])))
     known = {entry.values.tobytes() for entry in atlas}
     others = Atlas(tuple(entry for entry in entries if entry.values.tobytes() not in known))
     measured = resample(others, SENSOR.wavelengths).values

@@ -113,7 +113,3 @@ def balls(cubes: Sequence[str], rgb: Sequence[float], lamp: str) -> Array:
         "camera": {"type": "perspective", "fov": 28, "fov_axis": "x", "to_world": view, "film": film},
     }
     return np.array(mi.render(mi.load_dict(scene), spp=SPP, seed=0), dtype=float)
-
-
-if __name__ == "__main__":
-    main()

@@ -128,7 +128,3 @@ def screenshot(cube: Cube, found: list[Bounds]) -> None:
                 tab.key(key, SHIFT)
         tab.evaluate(f"document.activeElement.blur(), {SETTLE}")
         SCREENSHOT.write_bytes(tab.screenshot(scale=SCALE))
-
-
-if __name__ == "__main__":
-    main()

@@ -42,8 +42,7 @@ class Materials:
 @cache
 def spectra(name: str) -> Atlas:
     """Read a set of measured spectra."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
+    with warnings.catch_warnings(action="ignore", category=uplift.UpliftWarning):
         return read_atlas(MUNSELL if name == "munsell" else ATLASES / f"{name}.txt")
 
 
@@ -68,8 +67,7 @@ def build(some: str | Materials | None, **options: Any) -> Cube:
     if isinstance(some, Materials):
         grid = tuple(SENSOR.wavelengths)
         atlas = Atlas(tuple(Entry(str(row), grid, tuple(values)) for row, values in enumerate(some.measured)))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
+    with warnings.catch_warnings(action="ignore", category=uplift.UpliftWarning):
         return uplift.build(atlas, **options)
 
 

@@ -335,7 +335,3 @@ def main() -> None:
         mixtures=MIXTURES,
         mixture_times=list(mixture_times(cube)),
     )
-
-
-if __name__ == "__main__":
-    main()

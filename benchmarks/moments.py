@@ -84,7 +84,3 @@ def under_lights(study: MomentsStudy, floats: int, technique: Technique) -> dict
     _, *delta_e, rms = pairs(study, technique, max_moments(technique, floats))
     errors = dict(zip(REPORT_LIGHTS, delta_e, strict=True))
     return {"floats": floats, "technique": technique.short, "errors": errors, "rms": rms}
-
-
-if __name__ == "__main__":
-    main()

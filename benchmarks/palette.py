@@ -140,7 +140,3 @@ def by_light(paths: LightPaths, light: str, models: dict[int, FactorModel]) -> d
     }
     gains = {"gain": means["rgb"] / means["factor"], "gain_8": means["rgb"] / means["factor_8"]}
     return {"light": light, **means, **gains}
-
-
-if __name__ == "__main__":
-    main()

@@ -74,8 +74,7 @@ def main() -> None:
 def _build(**options: Any) -> Any:
     import uplift
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
+    with warnings.catch_warnings(action="ignore", category=uplift.UpliftWarning):
         return uplift.build(MACBETH, **options)
 
 
@@ -225,7 +224,3 @@ def time_header(cube: Any, mode: str, colours: Any) -> Row:
         "mean_delta_e": float(errors.mean()),
         "max_delta_e": float(errors.max()),
     }
-
-
-if __name__ == "__main__":
-    main()

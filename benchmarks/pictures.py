@@ -12,8 +12,7 @@ import numpy as np
 from benchmarks import ROOT
 from uplift.common.arrays import Array
 
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")  # of its optional parts
+with warnings.catch_warnings(action="ignore"):  # of its optional parts
     import colour
 
 INSTALLED = ROOT / "out" / "pictures"

@@ -25,8 +25,7 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.scene.plan.context import ColourSet, SearchGrid
 
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")  # about optional dependencies
+with warnings.catch_warnings(action="ignore"):  # about optional dependencies
     import colour
 
 BIN = Path(sys.executable).parent
@@ -121,8 +120,7 @@ def _materials(folder: Path, case: Case, plan: dict[str, Any]) -> tuple[Array, A
     measured = resample(read_atlas(folder / case.atlas), sensor.wavelengths).values
     measured = measured[sensor.contains(sensor.rgb(measured))]
     rgb = np.clip(sensor.rgb(measured), 0, 1)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
+    with warnings.catch_warnings(action="ignore", category=uplift.UpliftWarning):
         options = {**plan["build"], "lights": tuple(plan["build"]["lights"])}
         cube = uplift.build(folder / case.atlas, scene=ColourSet(rgb), **options)
     return measured, cube.reflectance(rgb, plan["rendering"]["wavelengths"])
@@ -238,7 +236,3 @@ def _screenshot(page: Path) -> None:
         PICTURE.parent.mkdir(exist_ok=True)
         words = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", f"--screenshot={PICTURE}"]
         subprocess.run([browser, *words, "--window-size=1180,1500", page.as_uri()], check=True, capture_output=True)
-
-
-if __name__ == "__main__":
-    main()

@@ -9,19 +9,8 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import DOCS, MACBETH, record
-from benchmarks.checker import (
-    VARIANT,
-    Chart,
-    Layout,
-    Reflectances,
-    caption,
-    chart,
-    constant_light,
-    draw,
-    measured_spectra,
-    start_mitsuba,
-)
+from benchmarks import DOCS, MACBETH, checker, record
+from benchmarks.checker import Chart, Layout, Reflectances
 from benchmarks.checker import render as render_chart
 from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.observer import light, sensor
@@ -51,18 +40,18 @@ class Renders:
 def main() -> None:
     """Render, draw and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
-    version, painted = start_mitsuba(), chart()
+    version, painted = checker.start_mitsuba(), checker.chart()
     with tempfile.TemporaryDirectory() as folder:
         renders = render(methods(painted, Path(folder), DIM), LAYOUT, SPP)
-    captions = {key: "" if key[1] == REFERENCE else caption(errors) for key, errors in renders.delta_e.items()}
+    captions = {key: "" if key[1] == REFERENCE else checker.caption(errors) for key, errors in renders.delta_e.items()}
     to_screen = {name: sensor(illuminant=name).xyz_to_rgb for name in LIGHTS}
     picture = DOCS / "render" / "charts.png"
-    draw(renders.images, captions, to_screen, (REFERENCE, MITSUBA, ATLAS), LAYOUT, picture, (10.5, 7.6))
+    checker.draw(renders.images, captions, to_screen, (REFERENCE, MITSUBA, ATLAS), LAYOUT, picture, (10.5, 7.6))
     record(
         "render",
         precision="full",
         mitsuba=version,
-        variant=VARIANT,
+        variant=checker.VARIANT,
         dim=DIM,
         samples=LAYOUT.patch**2 * SPP,
         **figures(painted, renders),
@@ -79,7 +68,7 @@ def methods(painted: Chart, folder: Path, dim: int) -> dict[str, Reflectances]:
         return [{"type": "uplift", "cube": str(path), "rgb": rgb} for rgb in colours]
 
     return {
-        REFERENCE: measured_spectra(painted),
+        REFERENCE: checker.measured_spectra(painted),
         MITSUBA: [{"type": "rgb", "value": rgb} for rgb in colours],
         PLAIN: cube("plain"),
         ATLAS: cube("atlas", MACBETH),
@@ -91,7 +80,7 @@ def render(methods: dict[str, Reflectances], layout: Layout, spp: int) -> Render
     """Render all methods under all lights with one seed, and the reference with another seed too."""
     images, delta_e = {}, {}
     for name in LIGHTS:
-        emitter, white = constant_light(name), light(name).white
+        emitter, white = checker.constant_light(name), light(name).white
         for method, reflectances in methods.items():
             images[name, method] = render_chart(emitter, reflectances, layout, spp, seed=0)
         images[name, OTHER_SEED] = render_chart(emitter, methods[REFERENCE], layout, spp, seed=1)
@@ -119,7 +108,3 @@ def figures(painted: Chart, renders: Renders) -> dict[str, Any]:
         ],
         "patches": [{"patch": patch, **of_patch(row)} for row, patch in enumerate(painted.names)],
     }
-
-
-if __name__ == "__main__":
-    main()

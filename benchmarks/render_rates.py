@@ -144,7 +144,3 @@ def _scene(texture: Any, size: int, depth: int) -> dict[str, Any]:
         "plane": {"type": "rectangle", "to_world": mi.ScalarTransform4f().scale(2), "bsdf": paint},
         "ball": {"type": "sphere", "radius": 0.4, "center": [0, 0, 0.4], "bsdf": paint},
     }
-
-
-if __name__ == "__main__":
-    main()

@@ -12,27 +12,12 @@ import uplift
 from benchmarks import ATLASES, DOCS, read_reference, record
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.lab.comparison.compare import (
-    NONE,
-    Comparison,
-    Scene,
-    TunedFilter,
-    cheapest,
-    compare,
-    error_statistics,
-    make_scene,
-    tune_filters,
-)
+from uplift.lab.comparison import compare
+from uplift.lab.comparison.compare import Comparison, Scene, TunedFilter
 from uplift.lab.comparison.pictures import write_boxes, write_costs
-from uplift.scene.representations import all_representations
+from uplift.scene.representations import all_representations, samples
 from uplift.scene.representations.composite import ENHANCED_THRESHOLD, Composite, enhanced_riemann
-from uplift.scene.representations.samples import (
-    TABLE_STRIDE,
-    SampleRepresentation,
-    riemann_sums,
-    wavelengths,
-    xyz_weights,
-)
+from uplift.scene.representations.samples import SampleRepresentation
 from uplift.viz.format import capitalise
 
 OTHER_LIGHTS = ("LED-B3", "LED-RGB1", "HP1")
@@ -56,8 +41,8 @@ def main() -> None:
     """Measure, draw and store."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     atlases = {path.stem: uplift.read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))}
-    default = make_scene(atlases)
-    ours, others = (_compare(scene) for scene in (default, make_scene(atlases, OTHER_LIGHTS)))
+    default = compare.make_scene(atlases)
+    ours, others = (_compare(scene) for scene in (default, compare.make_scene(atlases, OTHER_LIGHTS)))
     write_boxes(ours, DOCS / "representations" / "boxes.png", force=True)
     write_costs(ours, DOCS / "representations" / "cost.png", force=True)
     record(
@@ -67,12 +52,12 @@ def main() -> None:
         advice=[row for one in (ours, others) for row in advice(one)],
         ranking=[*ranking(ours, printed_tables()), *ranking(others, {})],
         riemann=riemann_rows(default, printed_tables()),
-        filters=filter_rows(tune_filters(default), printed_filters()),
+        filters=filter_rows(compare.tune_filters(default), printed_filters()),
     )
 
 
 def _compare(scene: Scene) -> Comparison:
-    return compare(scene, all_representations(scene.powers, scene.surfaces))
+    return compare.compare(scene, all_representations(scene.powers, scene.surfaces))
 
 
 def printed_tables() -> dict[tuple[str, str], Printed]:
@@ -96,7 +81,7 @@ def advice(comparison: Comparison) -> Iterator[Row]:
     without = tuple(row for row in comparison.results if row.light_floats < TABLE)
     kinds = {"cheapest": comparison, "without_light_table": replace(comparison, results=without)}
     for (name, title), target in product(comparison.sets.items(), TARGETS):
-        best = {key: cheapest(each, name, target) for key, each in kinds.items()}
+        best = {key: compare.cheapest(each, name, target) for key, each in kinds.items()}
         named = {
             key: row and {"name": row.name, "floats": row.floats, "light_floats": row.light_floats}
             for key, row in best.items()
@@ -123,13 +108,13 @@ def ranking(comparison: Comparison, thesis: Mapping[tuple[str, str], Printed]) -
 
 def filter_rows(tuned: Sequence[TunedFilter], thesis: Mapping[tuple[str, int, str], Printed]) -> list[Row]:
     """Return the best filter of each kind; ``change`` is relative to no filter, None for that row."""
-    unfiltered = {(one.lights, one.count): one.statistics.mean for one in tuned if one.kind == NONE}
+    unfiltered = {(one.lights, one.count): one.statistics.mean for one in tuned if one.kind == compare.NONE}
     rows = []
     for one in tuned:
-        printed, bare = thesis[one.lights, one.count, one.kind], thesis[one.lights, one.count, NONE]
+        printed, bare = thesis[one.lights, one.count, one.kind], thesis[one.lights, one.count, compare.NONE]
         mean = one.statistics.mean
         changes = (mean / unfiltered[one.lights, one.count] - 1, printed.mean / bare.mean - 1)
-        ours, theirs = (None, None) if one.kind == NONE else changes
+        ours, theirs = (None, None) if one.kind == compare.NONE else changes
         rows.append(
             {
                 "lights": one.lights,
@@ -150,14 +135,14 @@ def riemann_rows(scene: Scene, thesis: Mapping[tuple[str, str], Printed]) -> lis
 
     Closed cells are the literal reading of eq. 5.3: samples on a border count twice.
     """
-    pairs: list[tuple[Any, Any]] = [(riemann_sums(count), closed(count)) for count in RIEMANN_COUNTS]
+    pairs: list[tuple[Any, Any]] = [(samples.riemann_sums(count), closed(count)) for count in RIEMANN_COUNTS]
     pairs += [(enhanced_riemann(count), enhanced(count)) for count in RIEMANN_COUNTS]
     return [
         {
             "lights": lights.name,
             "name": one.name,
-            "disjoint": error_statistics(one, scene, lights).mean,
-            "closed": error_statistics(other, scene, lights).mean,
+            "disjoint": compare.error_statistics(one, scene, lights).mean,
+            "closed": compare.error_statistics(other, scene, lights).mean,
             "thesis": thesis[lights.name, one.name].mean,
         }
         for lights in scene.sets
@@ -168,9 +153,9 @@ def riemann_rows(scene: Scene, thesis: Mapping[tuple[str, str], Printed]) -> lis
 def closed(count: int) -> SampleRepresentation:
     """Return means over closed cells; XYZ by the colour-matching functions at 5 nm, shared between cells."""
     inside = _cells(count)
-    encoder = np.zeros((len(wavelengths()), count))
-    encoder[::TABLE_STRIDE] = (inside / inside.sum(axis=1, keepdims=True)).T
-    weights = (inside / inside.sum(axis=0)) @ (xyz_weights()[::TABLE_STRIDE] * TABLE_STRIDE)
+    encoder = np.zeros((len(samples.wavelengths()), count))
+    encoder[:: samples.TABLE_STRIDE] = (inside / inside.sum(axis=1, keepdims=True)).T
+    weights = (inside / inside.sum(axis=0)) @ (samples.xyz_weights()[:: samples.TABLE_STRIDE] * samples.TABLE_STRIDE)
     return SampleRepresentation(f"RS{count}", "Riemann sums, closed cells", encoder, weights)
 
 
@@ -185,7 +170,3 @@ def _cells(count: int) -> Array:
     edges = np.linspace(observer.START, observer.END, count + 1)
     low, high = edges[:-1, None] - 1e-9, edges[1:, None] + 1e-9
     return ((observer.grid() >= low) & (observer.grid() <= high)).astype(float)
-
-
-if __name__ == "__main__":
-    main()

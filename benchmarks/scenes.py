@@ -89,7 +89,3 @@ def differences(sparse: Cube, complete: Cube, picture: Picture) -> dict[str, Any
     errors = np.max([delta_e_spectra(light, ours, theirs) for light in lights], axis=0)
     change = np.abs(ours - theirs).max()
     return {"reflectance": change, "mean_delta_e": errors.mean(), "largest_delta_e": errors.max()}
-
-
-if __name__ == "__main__":
-    main()

@@ -144,7 +144,3 @@ def draw_still_life() -> None:
     small.save(buffer, "JPEG", quality=JPEG_QUALITY, subsampling=0)
     with atomic_write(FOLDER / "relit.jpg", force=True) as temporary:
         temporary.write_bytes(buffer.getvalue())
-
-
-if __name__ == "__main__":
-    main()

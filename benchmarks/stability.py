@@ -95,7 +95,3 @@ def summary(title: str, part: str, changes: list[dict[str, Any]]) -> dict[str, A
         "delta_e": max(one["delta_e_most"] for one in kind),
         "rms": max(one["rms_mean"] for one in kind),
     }
-
-
-if __name__ == "__main__":
-    main()

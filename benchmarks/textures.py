@@ -78,8 +78,7 @@ def _rgb(cube: Cube, form: PixelEncoding, names: tuple[str, ...], path: Path) ->
 def _rgb_by_colour_science(path: Path) -> Array:
     """Return linear sRGB, read and converted by colour-science alone."""
     io = colour.io.fichet2021
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with warnings.catch_warnings(action="ignore"):
         at, values = io.read_spectral_image_Fichet2021(path)["T"]
         blocks = [values[first : first + ROWS].astype(float) for first in range(0, len(values), ROWS)]
         return np.concatenate([io.components_to_sRGB_Fichet2021({"T": (at, rows)})[0] for rows in blocks])
@@ -166,7 +165,3 @@ def main() -> None:
         found = list(round_trips(cube, images, target))
         fewer = [fewer_wavelengths(cube, images, target, *grid) for grid in GRIDS]
     record("textures", round_trips=found, wavelengths=fewer, speed=speed)
-
-
-if __name__ == "__main__":
-    main()

@@ -290,7 +290,3 @@ def main() -> None:
         errors=[row for _, rows in found for row in rows],
         **compare_meyer(checker, opponent),
     )
-
-
-if __name__ == "__main__":
-    main()

@@ -47,12 +47,12 @@ def test_a_page_that_fails_does_not_stop_the_others(monkeypatch):
     commands = []
 
     def run(command, **options):
-        commands.append(command[2])
-        return subprocess.CompletedProcess(command, int(command[2] == "benchmarks.chart"))
+        commands.append(command[2].removesuffix(" import main; main()"))
+        return subprocess.CompletedProcess(command, int("chart" in command[2]))
 
     monkeypatch.setattr("benchmarks.__main__.subprocess.run", run)
     assert main(["chart", "atlas-files"]) == 1
-    assert commands == ["benchmarks.chart", "benchmarks.atlas_files", "tools.render_docs"]
+    assert commands == ["from benchmarks.chart", "from benchmarks.atlas_files", "tools.render_docs"]
 
 
 @pytest.mark.parametrize("name", RENDERED)

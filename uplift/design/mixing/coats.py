@@ -26,25 +26,9 @@ from uplift.colorimetry.sensor import SLACK
 from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftWarning
-from uplift.design.mixing.optics import (
-    NO_SURFACE,
-    Layer,
-    Surface,
-    add_lights,
-    as_amounts,
-    as_shares,
-    plate,
-    stack_filters,
-    weighted_sum,
-)
-from uplift.design.mixing.pigments import (
-    Flux,
-    Pigment,
-    Scattering,
-    duntley_layer,
-    from_black_and_white,
-    from_opaque,
-)
+from uplift.design.mixing import optics, pigments
+from uplift.design.mixing.optics import Layer, Surface
+from uplift.design.mixing.pigments import Flux, Pigment, Scattering
 from uplift.io import exr
 from uplift.io.texture.colours import Counts, Floats, check_encoding
 from uplift.io.texture.uplifter import Converter
@@ -62,7 +46,7 @@ class Coat:
     """A layer of paint or dye beneath the surface of its vehicle."""
 
     layer: Layer
-    surface: Surface = NO_SURFACE
+    surface: Surface = optics.NO_SURFACE
 
     def over(self, ground: ArrayLike) -> Array:
         """Return the reflectance (..., N) on a ground (..., N), both surface included."""
@@ -109,7 +93,7 @@ class Medium:
     """
 
     thickness: float | None = None
-    surface: Surface = NO_SURFACE
+    surface: Surface = optics.NO_SURFACE
     scattering: Scattering | None = None
     plate: bool = False
 
@@ -151,9 +135,9 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
     thickness = 1.0 if medium.thickness is None else medium.thickness
     if kind == "duntley":
         constants = ingredients.spectra
-        mixed = weighted_sum(constants.reshape(len(constants), -1), as_shares(parts))
+        mixed = optics.weighted_sum(constants.reshape(len(constants), -1), optics.as_shares(parts))
         fluxes = np.moveaxis(mixed.reshape(*mixed.shape[:-1], 6, -1), -2, 0)
-        return Coat(duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness), medium.surface)
+        return Coat(pigments.duntley_layer(Flux(*fluxes[:3]), Flux(*fluxes[3:]), thickness), medium.surface)
     surface, spectra = medium.surface, [*ingredients.spectra, *ingredients.measured_on_black]
     dark = sum(bool((surface.remove(one) < -SLACK).any()) for one in spectra)
     if dark:
@@ -164,10 +148,10 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
     if kind == "dye":
         if ingredients.measured_on_black:
             raise OptionError("dyes must not have a colour on black", hint="pass their colour on white only")
-        absorption = weighted_sum(dye_absorption(ingredients.spectra, surface), as_shares(parts))
+        absorption = optics.weighted_sum(dye_absorption(ingredients.spectra, surface), optics.as_shares(parts))
         transmittance = dye_transmittance(absorption, thickness)
         if medium.plate:
-            return Coat(plate(transmittance, surface.outside))
+            return Coat(optics.plate(transmittance, surface.outside))
         return Coat(Layer(np.zeros_like(transmittance), transmittance), surface)
     on_black = ingredients.on_black or (None,) * len(ingredients.spectra)
     paints = [_pigment(*pair, medium) for pair in zip(ingredients.spectra, on_black, strict=True)]
@@ -209,10 +193,11 @@ def mix(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Medium, g
         return make_coat(kind, ingredients, parts, medium).over(ground)
     if kind not in KINDS:
         raise OptionError(f"unknown kind of mixture '{kind}'", hint=f"use one of {', '.join(KINDS)}")
-    if (medium.thickness, medium.surface, medium.plate) != (None, NO_SURFACE, False) or ingredients.measured_on_black:
+    usual = (None, optics.NO_SURFACE, False)
+    if (medium.thickness, medium.surface, medium.plate) != usual or ingredients.measured_on_black:
         problem = f"{kind}s must not have a thickness, a surface, a plate or a colour on black"
         raise OptionError(problem, hint="leave them out; parts of filters are their thickness")
-    return (stack_filters if kind == "filter" else add_lights)(ingredients.spectra, parts)
+    return (optics.stack_filters if kind == "filter" else optics.add_lights)(ingredients.spectra, parts)
 
 
 def ramp(parts: ArrayLike, steps: int) -> Array:
@@ -225,7 +210,7 @@ def ramp(parts: ArrayLike, steps: int) -> Array:
     """
     if steps < 2:
         raise OptionError(f"a ramp must have at least 2 steps, got {steps}", hint="use 2 or more")
-    ends = np.diag(as_amounts(parts))
+    ends = np.diag(optics.as_amounts(parts))
     if len(ends) < 2:
         return np.empty((0, len(ends)))
     positions, stops = np.linspace(0, len(ends) - 1, steps), np.arange(len(ends))
@@ -237,7 +222,7 @@ def dye_transmittance(absorption: ArrayLike, thickness: float) -> Array:
     return np.exp(-thickness * np.asarray(absorption, dtype=float))
 
 
-def dye_absorption(reflectance: ArrayLike, surface: Surface = NO_SURFACE) -> Array:
+def dye_absorption(reflectance: ArrayLike, surface: Surface = optics.NO_SURFACE) -> Array:
     """Return the absorption (..., N) of a dye, one unit thick, from its reflectance on perfect white (eq. 9.7, 9.5)."""
     transmittance = np.sqrt(_beneath(surface, reflectance))
     return -np.log(np.clip(transmittance, DARKEST, 1))
@@ -246,11 +231,11 @@ def dye_absorption(reflectance: ArrayLike, surface: Surface = NO_SURFACE) -> Arr
 def _pigment(spectrum: Array, on_black: Array | None, medium: Medium) -> Pigment:
     internal = _beneath(medium.surface, spectrum)
     if on_black is not None:
-        return from_black_and_white(_beneath(medium.surface, on_black), internal)
+        return pigments.from_black_and_white(_beneath(medium.surface, on_black), internal)
     if medium.scattering is None:
         problem = "one colour does not determine the scattering of a pigment"
         raise OptionError(problem, hint="set the scattering of the medium, or give a colour on black")
-    return from_opaque(internal, medium.scattering)
+    return pigments.from_opaque(internal, medium.scattering)
 
 
 def _beneath(surface: Surface, reflectance: ArrayLike) -> Array:

@@ -23,18 +23,10 @@ from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.colorimetry.tables import samples
 from uplift.common.arrays import Array
+from uplift.design.mixing import pigments
 from uplift.design.mixing.coats import dye_absorption, dye_transmittance
 from uplift.design.mixing.optics import Surface, as_shares, average_areas, stack_filters, weighted_sum
-from uplift.design.mixing.pigments import (
-    CONSTANT,
-    SQUARE_ROOT,
-    Pigment,
-    Scattering,
-    beam_to_diffuse,
-    diffuse_to_beam,
-    dispersive,
-    from_opaque,
-)
+from uplift.design.mixing.pigments import Pigment, Scattering
 from uplift.lookup import Cube
 
 Mix = Callable[[Array, Array], Array]  # from components (..., n, K) and parts (..., n) to the mixture (..., K)
@@ -75,19 +67,19 @@ def mixers(cube: Cube) -> tuple[Mixer, ...]:
 
 def spectral_models(sensor: Sensor) -> dict[str, tuple[str, Mix]]:
     """Return the models of spectra (title, function) at the wavelengths of a sensor, by name."""
-    paints = _paints(dispersive(sensor))
+    paints = _paints(pigments.dispersive(sensor))
     return {
         "pigments": ("Kubelka–Munk", paints),
         "pigments in oil": (
             "Kubelka–Munk, in oil (index 1.5)",
             lambda spectra, parts: OIL.apply(paints(np.clip(OIL.remove(spectra), 0, 1), parts)),
         ),
-        "pigments, S = √R": ("Kubelka–Munk, S = √R", _paints(SQUARE_ROOT)),
-        "pigments, S = 1": ("Kubelka–Munk, S = 1", _paints(CONSTANT)),
-        "pigments, Amy": ("Amy's approximation", _paints(dispersive(sensor), Pigment.amy_opaque_reflectance)),
+        "pigments, S = √R": ("Kubelka–Munk, S = √R", _paints(pigments.SQUARE_ROOT)),
+        "pigments, S = 1": ("Kubelka–Munk, S = 1", _paints(pigments.CONSTANT)),
+        "pigments, Amy": ("Amy's approximation", _paints(pigments.dispersive(sensor), Pigment.amy_opaque_reflectance)),
         "pigments, Duntley": (
             "Duntley, in directed light",
-            lambda spectra, parts: diffuse_to_beam(paints(beam_to_diffuse(spectra), parts)),
+            lambda spectra, parts: pigments.diffuse_to_beam(paints(pigments.beam_to_diffuse(spectra), parts)),
         ),
         "dyes": (
             "dyes on white",
@@ -98,7 +90,7 @@ def spectral_models(sensor: Sensor) -> dict[str, tuple[str, Mix]]:
 
 
 def _paints(scattering: Scattering, reflectance: Callable[[Pigment], Array] = Pigment.opaque_reflectance) -> Mix:
-    return lambda spectra, parts: reflectance(from_opaque(spectra, scattering).mix(parts))
+    return lambda spectra, parts: reflectance(pigments.from_opaque(spectra, scattering).mix(parts))
 
 
 def hsl_to_rgb(hsl: ArrayLike) -> Array:

@@ -56,8 +56,7 @@ def perturb_method(method: Method, light: Light, count: int = COLOURS) -> list[d
     """Perturb queries of a method, in sRGB under D65, as `uplift.lab.study.sensitivity`. Raises `OptionError`."""
     task = make_task({"macbeth": read_atlas("macbeth")})
     grid, lights = task.sensor.wavelengths, (light, task.sensor.light)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # colour-science reports how it aligns wavelengths
+    with warnings.catch_warnings(action="ignore"):  # colour-science reports how it aligns wavelengths
         try:
             uplift = method.prepare(task).uplift
         except NotInstalledError as error:
@@ -150,9 +149,8 @@ def measure_method(method: Method, task: Task) -> MethodResult:
     """Measure one method."""
     state, why, numbers = State.MEASURED, "", {}
     try:
-        with warnings.catch_warnings():
-            # Other packages warn, and so do cubes about the entries that all of them leave out.
-            warnings.simplefilter("ignore")
+        # Other packages warn, and so do cubes about the entries that all of them leave out.
+        with warnings.catch_warnings(action="ignore"):
             if method.needs:
                 numbers = call_in_child(_numbers, method, task, seconds=task.effort.limit)
             else:

@@ -25,15 +25,7 @@ from uplift.colorimetry.observer import END, START, STEP, aligned
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
 from uplift.lab.chart import mitsuba3
-from uplift.lab.chart.method import (
-    Method,
-    PreparedMethod,
-    Task,
-    nbytes,
-    published_srgb,
-    stated_sensor,
-    stopwatch,
-)
+from uplift.lab.chart.method import Method, PreparedMethod, Task, nbytes, published_srgb, stated_sensor, stopwatch
 from uplift.models.sigmoid import evaluate_unscaled
 
 MENG_STEP = 10.0

@@ -23,22 +23,9 @@ from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError, UpliftError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.timing import Spread, environment, time_laps
-from uplift.scene.representations.filters import (
-    FINE_STRIDE,
-    KINDS,
-    Filter,
-    candidates,
-    filtered_point_samples,
-    resampling_matrix,
-)
-from uplift.scene.representations.samples import (
-    STEP,
-    TABLE_STRIDE,
-    Representation,
-    point_samples,
-    wavelengths,
-    xyz_weights,
-)
+from uplift.scene.representations import filters, samples
+from uplift.scene.representations.filters import Filter
+from uplift.scene.representations.samples import Representation
 
 NAMED_SET = "given"
 """Name of the set of lights that a user lists."""
@@ -69,7 +56,7 @@ class LightSet:
     @cached_property
     def whites(self) -> Array:
         """Return XYZ of the lights, (K, 3)."""
-        return self.powers @ xyz_weights()
+        return self.powers @ samples.xyz_weights()
 
     def lab(self, xyz: Array) -> Array:
         """Convert XYZ to L*a*b*, relative to the white of each light. Shapes: ``xyz`` (K, E, 3); result (K, E, 3)."""
@@ -94,7 +81,7 @@ class Scene:
 
     def reference(self, light_set: LightSet) -> Array:
         """Compute the colours of all surfaces from densely sampled products. The result has shape (K, E, 3)."""
-        return light_set.lab((light_set.powers[:, None] * self.surfaces) @ xyz_weights())
+        return light_set.lab((light_set.powers[:, None] * self.surfaces) @ samples.xyz_weights())
 
     def thinned(self, count: int = QUICK_SURFACES) -> "Scene":
         """Select at most ``count`` surfaces, evenly spaced."""
@@ -109,12 +96,12 @@ def make_scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scen
         raise AtlasError("the atlases have no entries", hint="give an atlas of reflectances")
     named = {NAMED_SET: tuple(dict.fromkeys(lights))} if lights else KMENT_LIGHTS
     sets = tuple(LightSet(name, members, _powers(members)) for name, members in named.items())
-    return Scene(on_grid(merged, wavelengths()), sets)
+    return Scene(on_grid(merged, samples.wavelengths()), sets)
 
 
 def _powers(names: Sequence[str]) -> Array:
-    powers = np.stack([observer.illuminant_spd(name, step=STEP) for name in names])
-    return np.asarray(powers / (powers @ xyz_weights()[:, 1:2]))
+    powers = np.stack([observer.illuminant_spd(name, step=samples.STEP) for name in names])
+    return np.asarray(powers / (powers @ samples.xyz_weights()[:, 1:2]))
 
 
 HEADINGS = ("mean", "σ", "median", "2.5 %", "25 %", "75 %", "97.5 %")
@@ -233,7 +220,9 @@ def represent(representation: Representation, scene: Scene, names: Sequence[str]
         if outside:
             problem = f"{outside} of {len(names)} spectra leave [0, 1] as {representation.name} and are clipped"
             warnings.warn(UpliftWarning(problem, code="entry-clipped"), stacklevel=3)
-        return Atlas(tuple(Entry(name, wavelengths(), values) for name, values in zip(names, clipped, strict=True)))
+        return Atlas(
+            tuple(Entry(name, samples.wavelengths(), values) for name, values in zip(names, clipped, strict=True))
+        )
 
     return atlas(names, surfaces), atlas(lights, powers / powers.max(axis=1, keepdims=True))
 
@@ -336,30 +325,30 @@ class TunedFilter:
         """Return the filter's parameters as text."""
         if self.low_pass is None:
             return ""
-        named = zip(KINDS[self.kind].choices, self.low_pass.parameters, strict=True)
+        named = zip(filters.KINDS[self.kind].choices, self.low_pass.parameters, strict=True)
         return ", ".join([f"extent {self.low_pass.extent}", *(f"{key} {value:g}" for key, value in named)])
 
 
 def tune_filters(
     scene: Scene,
-    stride: int = FINE_STRIDE,
-    kinds: Sequence[str] = tuple(KINDS),
+    stride: int = filters.FINE_STRIDE,
+    kinds: Sequence[str] = tuple(filters.KINDS),
     counts: Sequence[int] = COUNTS,
     progress: ProgressCallback = ignore_progress,
 ) -> tuple[TunedFilter, ...]:
     """Search the best filter of each kind, for each number of samples and each set of lights."""
     results = [
-        TunedFilter(NONE, count, light_set.name, None, error_statistics(point_samples(count), scene, light_set))
+        TunedFilter(NONE, count, light_set.name, None, error_statistics(samples.point_samples(count), scene, light_set))
         for count in counts
         for light_set in scene.sets
     ]
     tasks = list(product(kinds, counts))
     for done, (kind, count) in enumerate(tasks, 1):
-        filters = list(candidates(kind, stride))
-        encoders = [resampling_matrix(low_pass, count).T for low_pass in filters]
+        tried = list(filters.candidates(kind, stride))
+        encoders = [filters.resampling_matrix(low_pass, count).T for low_pass in tried]
         for light_set in scene.sets:
-            best = filters[int(_mean_errors(scene, light_set, count, encoders).argmin())]
-            errors = error_statistics(filtered_point_samples(count, best), scene, light_set)
+            best = tried[int(_mean_errors(scene, light_set, count, encoders).argmin())]
+            errors = error_statistics(filters.filtered_point_samples(count, best), scene, light_set)
             results.append(TunedFilter(kind, count, light_set.name, best, errors))
         progress(Progress("filters", done, len(tasks)))
     return tuple(results)
@@ -367,8 +356,8 @@ def tune_filters(
 
 def _mean_errors(scene: Scene, light_set: LightSet, count: int, encoders: Iterable[Array]) -> Array:
     """Mean ΔE00 of encoders (81, count) of the 5 nm table, faster than `error_statistics`."""
-    surfaces, lights = scene.surfaces[:, ::TABLE_STRIDE], light_set.powers[:, ::TABLE_STRIDE]
-    reference, weights = scene.reference(light_set), point_samples(count).weights
+    surfaces, lights = scene.surfaces[:, :: samples.TABLE_STRIDE], light_set.powers[:, :: samples.TABLE_STRIDE]
+    reference, weights = scene.reference(light_set), samples.point_samples(count).weights
     products = ((lights @ encoder)[:, None] * (surfaces @ encoder) for encoder in encoders)
     return np.array([delta_e_2000(light_set.lab(each @ weights), reference).mean() for each in products])
 

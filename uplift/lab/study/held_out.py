@@ -70,8 +70,7 @@ def holdout(
     """
     total = 2 + splits
     options = {"leave_out": families_with(resample(atlas, observer.grid()).values), **options}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UpliftWarning)
+    with warnings.catch_warnings(action="ignore", category=UpliftWarning):
         others = {NO_ATLAS: build(**options), SIGMOID: build(**{**options, "model": "sigmoid"})}
         progress(Progress("builds", 2, total))
         sensor = others[SIGMOID].data.sensor

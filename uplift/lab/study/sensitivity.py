@@ -187,8 +187,7 @@ def compare(before: CubeData, after: CubeData, light: Light, description: str, n
 
 def rebuild(entries: Sequence[Entry], options: Record) -> CubeData:
     """Build a cube from entries without warnings, as those of changed entries are expected."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UpliftWarning)
+    with warnings.catch_warnings(action="ignore", category=UpliftWarning):
         return build(Atlas(tuple(entries)), **options).data
 
 

@@ -124,8 +124,7 @@ def run(config: RunConfig, atlases: Mapping[str, Atlas]) -> Record:
     options = asdict(config)
     atlas = atlases.get(options.pop("atlas"))
     start = time.perf_counter()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UpliftWarning)
+    with warnings.catch_warnings(action="ignore", category=UpliftWarning):
         data = build(atlas, progress=lambda progress: steps.append(progress.step), **options).data
     seconds = time.perf_counter() - start
     realisable = solid(data.sensor.matrix).contains(data.lattice.points)

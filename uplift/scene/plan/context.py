@@ -1,8 +1,6 @@
 """Inputs that all decisions of a plan share: the scene's colours and materials, and cubes to evaluate."""
 
-import contextlib
 import warnings
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -126,14 +124,6 @@ class SearchGrid:
     confirming: int = 8000
 
 
-@contextlib.contextmanager
-def quiet_warnings() -> Iterator[None]:
-    """Suppress warnings of trial builds; the final build repeats them."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UpliftWarning)
-        yield
-
-
 @dataclass(frozen=True, eq=False)
 class PlanContext:
     """A scene with its files read: pixels of the textures, and the atlas entries within the RGB space of the sensor.
@@ -166,7 +156,8 @@ class PlanContext:
 
     def cube(self, rgb: Array, **options: Any) -> Cube:
         """Build a sparse cube for linear RGB (n, 3)."""
-        with quiet_warnings():
+        # The final build repeats the warnings of trial builds.
+        with warnings.catch_warnings(action="ignore", category=UpliftWarning):
             return build(self.atlas, scene=ColourSet(rgb), **{**self.options, **options})
 
     def evaluation_set(self, sample: PixelSample) -> tuple[EvaluationSet, ErrorSummary]:
@@ -192,7 +183,7 @@ def prepare_context(scene: SceneFile, grid: SearchGrid, progress: ProgressCallba
     reflectances = resample(atlas or Atlas(), sensor.wavelengths).values
     rgb = sensor.rgb(reflectances)
     inside = sensor.contains(rgb)
-    with quiet_warnings():
+    with warnings.catch_warnings(action="ignore", category=UpliftWarning):
         sizes = grid.predicting, grid.confirming
         colours = sample_colours(scene.textures, sensor, scene.encoding, sizes, progress)
     materials = np.clip(rgb[inside], 0, 1)

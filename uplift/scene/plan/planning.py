@@ -2,6 +2,7 @@
 
 import tempfile
 import time
+import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,19 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from uplift.common.errors import PlanFileError
+from uplift.common.errors import PlanFileError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.scene_colours import Images
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
-from uplift.scene.plan.context import PlanContext, SearchGrid, prepare_context, quiet_warnings
-from uplift.scene.plan.decisions import (
-    Storage,
-    coefficient_trials,
-    lattice_trials,
-    storage_trials,
-    wavelength_trials,
-)
+from uplift.scene.plan import decisions
+from uplift.scene.plan.context import PlanContext, SearchGrid, prepare_context
+from uplift.scene.plan.decisions import Storage
 from uplift.scene.plan.evaluation import Decision, ErrorSummary, Trial, decide
 from uplift.scene.plan.scene_file import SceneFile
 from uplift.scene.wavelengths import Sampling
@@ -149,14 +145,14 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         title, unit, share = DECISIONS[key]
         return decide(key, title, unit, share * scene.tolerance, trials)
 
-    coefficients = decided("coefficients", coefficient_trials(context, tests))
+    coefficients = decided("coefficients", decisions.coefficient_trials(context, tests))
     count = int(coefficients.trial.choice["coefficients"])
-    lattice = decided("lattice", lattice_trials(context, tests, count))
+    lattice = decided("lattice", decisions.lattice_trials(context, tests, count))
     options = {**context.options, **coefficients.trial.choice, **lattice.trial.choice}
     cube = context.cube(tests.rgb, **options)
-    wavelengths = decided("wavelengths", wavelength_trials(context, tests, cube))
+    wavelengths = decided("wavelengths", decisions.wavelength_trials(context, tests, cube))
     sampling: Sampling = wavelengths.trial.result
-    pixel = decided("storage", storage_trials(context, tests, cube, sampling))
+    pixel = decided("storage", decisions.storage_trials(context, tests, cube, sampling))
     storage: Storage = pixel.trial.result
 
     progress(Progress("final build", 0, 1))
@@ -192,7 +188,7 @@ def build_final(context: PlanContext, options: Mapping[str, Any]) -> FinalBuild:
     full_size = sparse_size * cube.data.lattice.size / int(cube.data.points.present.sum())
     if full_size - sparse_size >= MIN_SAVING:
         return FinalBuild(cube, sparse_size, seconds, full_size, sparse_size)
-    with quiet_warnings():  # the sparse build has issued all of them
+    with warnings.catch_warnings(action="ignore", category=UpliftWarning):  # the sparse build has issued all of them
         cube, seconds, size = _build(context, options)
     return FinalBuild(cube, size, seconds, size, sparse_size)
 

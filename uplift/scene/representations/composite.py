@@ -16,15 +16,8 @@ import numpy as np
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError
-from uplift.scene.representations.samples import (
-    TABLE_STRIDE,
-    Representation,
-    cell_overlaps,
-    hat_functions,
-    riemann_sums,
-    wavelengths,
-    xyz_weights,
-)
+from uplift.scene.representations import samples
+from uplift.scene.representations.samples import Representation
 
 NOISE = 1e-9
 """Heights below this fraction of the highest sample are rounding."""
@@ -53,7 +46,7 @@ def split_spikes(spectra: Array, threshold: float) -> tuple[Array, Spikes]:
     highest sample of the spectrum. The smooth part is the largest spectrum below the given one that is nowhere steeper
     than the threshold. The spikes are the difference.
     """
-    table = spectra[:, ::TABLE_STRIDE]
+    table = spectra[:, :: samples.TABLE_STRIDE]
     highest = table.max(axis=1)
     step = threshold * highest
     smooth = table.copy()
@@ -65,7 +58,7 @@ def split_spikes(spectra: Array, threshold: float) -> tuple[Array, Spikes]:
     heights = table - smooth
     heights[heights < NOISE * highest[:, None]] = 0
     positions = np.flatnonzero(heights.any(axis=0))
-    return (table - heights) @ hat_functions(observer.grid()), Spikes(positions, heights[:, positions])
+    return (table - heights) @ samples.hat_functions(observer.grid()), Spikes(positions, heights[:, positions])
 
 
 def heights_at(spikes: Spikes, positions: Indices) -> Array:
@@ -78,7 +71,7 @@ def heights_at(spikes: Spikes, positions: Indices) -> Array:
 @functools.cache
 def spike_xyz() -> Array:
     """XYZ (81, 3) of a spike of height 1 at each position: a triangle as wide as linear interpolation makes it."""
-    return hat_functions(observer.grid()) @ xyz_weights()
+    return samples.hat_functions(observer.grid()) @ samples.xyz_weights()
 
 
 class CompositeCode(NamedTuple):
@@ -135,15 +128,15 @@ class FourierCoefficients(Representation):
     """Basis functions (C, 2C) at the points of a product."""
 
     def encode_light(self, power: Array) -> Array:
-        periodic = power[:, :-1:TABLE_STRIDE].copy()
+        periodic = power[:, : -1 : samples.TABLE_STRIDE].copy()
         periodic[:, 0] = (power[:, 0] + power[:, -1]) / 2
-        return _analyse(periodic, self.waves[:, :-1:TABLE_STRIDE])
+        return _analyse(periodic, self.waves[:, : -1 : samples.TABLE_STRIDE])
 
     def multiply(self, light: Array, surface: Array) -> Array:
         return _analyse((light @ self.product_waves) * (surface @ self.product_waves), self.product_waves)
 
     def xyz(self, light: Array) -> Array:
-        return light @ (self.waves @ xyz_weights())
+        return light @ (self.waves @ samples.xyz_weights())
 
 
 def fourier_coefficients(count: int) -> FourierCoefficients:
@@ -153,7 +146,7 @@ def fourier_coefficients(count: int) -> FourierCoefficients:
             f"number of Fourier coefficients must be odd and positive, got {count}",
             hint="a mean and pairs of cosine and sine are an odd number",
         )
-    dense = 2 * np.pi * (wavelengths() - observer.START) / (observer.END - observer.START)
+    dense = 2 * np.pi * (samples.wavelengths() - observer.START) / (observer.END - observer.START)
     product = np.pi * np.arange(2 * count) / count
     return FourierCoefficients(f"F{count}", "Fourier coefficients", _waves(dense, count), _waves(product, count))
 
@@ -173,10 +166,10 @@ def _analyse(values: Array, waves: Array) -> Array:
 def sun_composite(count: int) -> Composite:
     """Sun's composite model (CS): spikes, and ``count`` Fourier coefficients of the smooth part."""
     smooth = fourier_coefficients(count)
-    return Composite(f"CS{count}", "Sun's composite", smooth, smooth.waves[:, ::TABLE_STRIDE], SUN_THRESHOLD)
+    return Composite(f"CS{count}", "Sun's composite", smooth, smooth.waves[:, :: samples.TABLE_STRIDE], SUN_THRESHOLD)
 
 
 def enhanced_riemann(count: int) -> Composite:
     """Enhanced Riemann sums (RE): spikes, which meet the mean of their cell, and Riemann sums of the smooth part."""
-    decoder = cell_overlaps(count)[:, ::TABLE_STRIDE]
-    return Composite(f"RE{count}", "enhanced Riemann sums", riemann_sums(count), decoder, ENHANCED_THRESHOLD)
+    decoder = samples.cell_overlaps(count)[:, :: samples.TABLE_STRIDE]
+    return Composite(f"RE{count}", "enhanced Riemann sums", samples.riemann_sums(count), decoder, ENHANCED_THRESHOLD)

@@ -20,14 +20,8 @@ from scipy.signal import resample_poly, windows
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.scene.representations.samples import (
-    TABLE_STRIDE,
-    SampleRepresentation,
-    hat_functions,
-    sample_points,
-    wavelengths,
-    xyz_weights,
-)
+from uplift.scene.representations import samples
+from uplift.scene.representations.samples import SampleRepresentation
 
 MITCHELL_B, MITCHELL_C = -0.4, 1.0
 """Parameters of the best Mitchell filter in table A.2."""
@@ -130,11 +124,11 @@ KINDS: dict[str, FilterKind] = {
 
 def filtered_point_samples(count: int, low_pass: Filter) -> SampleRepresentation:
     """Representation by ``count`` samples of spectra that pass through a filter."""
-    encoder = np.zeros((len(wavelengths()), count))
-    encoder[::TABLE_STRIDE] = resampling_matrix(low_pass, count).T
-    hats = hat_functions(sample_points(count))
+    encoder = np.zeros((len(samples.wavelengths()), count))
+    encoder[:: samples.TABLE_STRIDE] = resampling_matrix(low_pass, count).T
+    hats = samples.hat_functions(samples.sample_points(count))
     name = f"PS{count} {low_pass.name}"
-    return SampleRepresentation(name, "point sampling, filtered", encoder, hats @ xyz_weights(), hats)
+    return SampleRepresentation(name, "point sampling, filtered", encoder, hats @ samples.xyz_weights(), hats)
 
 
 def mitchell_point_samples(count: int) -> SampleRepresentation:

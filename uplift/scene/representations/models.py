@@ -13,15 +13,9 @@ from uplift.models import Moments, Sigmoid
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import cosine_basis
 from uplift.models.model import Model, evaluate, reflectance
+from uplift.scene.representations import samples
 from uplift.scene.representations.composite import spike_xyz
-from uplift.scene.representations.samples import (
-    STEP,
-    TABLE_STRIDE,
-    Representation,
-    hat_functions,
-    wavelengths,
-    xyz_weights,
-)
+from uplift.scene.representations.samples import Representation
 
 SHAPE_WEIGHT = 1e-4
 """Weight of the residual of a sigmoid at one wavelength relative to that of the colour."""
@@ -45,7 +39,7 @@ class TabulatedProducts(Representation):
     model: Model
 
     def encode_light(self, power: Array) -> Array:
-        return power[:, ::TABLE_STRIDE]
+        return power[:, :: samples.TABLE_STRIDE]
 
     def multiply(self, light: Array, surface: Array) -> Array:
         return light * reflectance(self.model, surface, observer.grid())
@@ -54,7 +48,7 @@ class TabulatedProducts(Representation):
         return light @ spike_xyz()
 
     def light_spectra(self, code: Array) -> Array:
-        return code @ hat_functions(observer.grid())
+        return code @ samples.hat_functions(observer.grid())
 
     def surface_spectra(self, code: Array) -> Array:
         return self.light_spectra(reflectance(self.model, code, observer.grid()))
@@ -70,7 +64,7 @@ class TrigonometricMoments(TabulatedProducts):
     model: Moments
 
     def encode_surface(self, reflectance: Array) -> Array:
-        phase = self.model.phase(wavelengths())
+        phase = self.model.phase(samples.wavelengths())
         analysis = cosine_basis(phase, self.model.count) * np.gradient(phase)[:, None] / np.pi
         analysis[:, 1:] /= 2
         analysis[[0, -1]] /= 2
@@ -88,7 +82,7 @@ class SigmoidCoefficients(TabulatedProducts):
     model: Sigmoid
 
     def encode_surface(self, reflectance: Array) -> Array:
-        return fit_sigmoids(self.model, reflectance[:, ::TABLE_STRIDE])
+        return fit_sigmoids(self.model, reflectance[:, :: samples.TABLE_STRIDE])
 
 
 def sigmoid_coefficients(count: int = 3) -> SigmoidCoefficients:
@@ -143,7 +137,7 @@ class LinearModel(Representation):
         return np.asarray((surface @ light[:, :, None])[:, :, 0])
 
     def xyz(self, light: Array) -> Array:
-        return light @ (self.basis.T @ xyz_weights())
+        return light @ (self.basis.T @ samples.xyz_weights())
 
 
 def linear_model(count: int, lights: Array, surfaces: Array) -> LinearModel:
@@ -153,7 +147,7 @@ def linear_model(count: int, lights: Array, surfaces: Array) -> LinearModel:
     the lights.
     """
     scatter = np.zeros((lights.shape[1],) * 2)
-    for power in lights / (lights @ xyz_weights()[:, 1:2]):
+    for power in lights / (lights @ samples.xyz_weights()[:, 1:2]):
         radiance = np.concatenate([surfaces * power, power[None]])
         scatter += radiance.T @ radiance
     _, vectors = np.linalg.eigh(scatter)
@@ -190,7 +184,7 @@ class HeroWavelengths(Representation):
         low, high = _cumulative(np.array([START, END]))
         density = STEEPNESS / np.cosh(STEEPNESS * (light.wavelengths - CENTRE)) ** 2 / (high - low)
         estimate = light.values / density
-        rows = np.broadcast_to(xyz_weights().T[:, None], (3, len(estimate), len(xyz_weights())))
+        rows = np.broadcast_to(samples.xyz_weights().T[:, None], (3, len(estimate), len(samples.xyz_weights())))
         weights = [interp_rows(row, light.wavelengths) for row in rows]
         return np.stack([(estimate * weight).mean(axis=1) for weight in weights], axis=1)
 
@@ -214,7 +208,7 @@ def hero_wavelengths(paths: int) -> HeroWavelengths:
 
 def interp_rows(spectra: Array, points: Array) -> Array:
     """Values (n, K) of dense spectra (n, 401), each at its own ``points`` (n, K) nm, linear between samples."""
-    position = (points - observer.START) / STEP
+    position = (points - observer.START) / samples.STEP
     left = np.clip(position.astype(np.intp), 0, spectra.shape[1] - 2)
     before, after = (np.take_along_axis(spectra, index, axis=1) for index in (left, left + 1))
     return np.asarray(before + (position - left) * (after - before))
