@@ -17,7 +17,15 @@ if TYPE_CHECKING:
 
 PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl"}
 LUTS = {"cube": ".cube", "clf": ".clf"}
-SUFFIXES = {"coeff": ".coeff", **PROGRAMS, **LUTS, "npz": ".npz", "csv": ".csv", "html": ".html"}
+SUFFIXES = {"coeff": ".coeff", **PROGRAMS, **LUTS, "film": ".npy", "npz": ".npz", "csv": ".csv", "html": ".html"}
+APPLIES = {
+    "res": ("coeff", *LUTS, "film"),
+    "light": (*LUTS, "film"),
+    "adapt": tuple(LUTS),
+    "mode": tuple(PROGRAMS),
+    "table": tuple(PROGRAMS),
+}
+"""Formats by the options that apply to them alone."""
 
 
 @click.command("export")
@@ -29,8 +37,12 @@ SUFFIXES = {"coeff": ".coeff", **PROGRAMS, **LUTS, "npz": ".npz", "csv": ".csv",
     type=click.Choice(tuple(SUFFIXES)),
     help="Format to write. [default: by the suffix of --output]",
 )
-@click.option("--res", type=options.Whole(), help="Nodes of a table along each axis. [default: coeff 64, cube, clf 33]")
-@click.option("--light", metavar="NAME", help="Illuminant of the colours that a cube or clf table shows.")
+@click.option(
+    "--res",
+    type=options.Whole(),
+    help="Nodes of a table along each axis. [default: coeff 64, cube and clf 33, film 192]",
+)
+@click.option("--light", metavar="NAME", help="Illuminant of a cube, clf or film table.")
 @click.option(
     "--adapt/--no-adapt", default=None, help="Show the white of the light as white, or tinted. [default: adapt]"
 )
@@ -66,6 +78,7 @@ def command(
     coeff  table of rgb2spec, for Mitsuba and colour-science
     cube, clf
            table of the colours under --light, for grading and compositing
+    film   table of a spectrum per chromaticity, for film simulation; with --light, as light that reaches the film
     html   page that relights images in a browser
     npz    all arrays of the cube, for numpy
     csv    one line per node
@@ -82,28 +95,24 @@ def command(
       uplift export macbeth-32.uplift -o filed.h --table file
       uplift export macbeth-32.uplift -o moments.glsl --mode moments
       uplift export macbeth-32.uplift -o sodium.cube --light HP1
+      uplift export macbeth-32.uplift -o film.npy
       uplift export macbeth-32.uplift --format csv
     """
     suffix = "" if output is None else Path(output).suffix.lower()
     style = style or next((name for name in SUFFIXES if SUFFIXES[name] == suffix), None)
     if style is None:
         raise click.UsageError(f"Give --format, or --output ending in {', '.join(SUFFIXES.values())}.")
-    if res is not None and style not in ("coeff", *LUTS):
-        raise click.UsageError("--res applies to coeff, cube and clf only: other formats keep the nodes of the cube.")
+    given = {"res": res, "light": light, "adapt": adapt, "mode": mode, "table": table}
+    settings = {name: value for name, value in given.items() if value is not None}
+    for name in settings:
+        if style not in APPLIES[name]:
+            raise click.UsageError(f"--{name} applies to {', '.join(APPLIES[name])} only.")
     if style in LUTS and light is None:
         raise click.UsageError("A cube or clf table shows the colours under a light: give --light, such as HP1.")
-    if style not in LUTS and (light, adapt) != (None, None):
-        raise click.UsageError("--light and --adapt apply to cube and clf only.")
-    if mode is not None and style not in PROGRAMS:
-        raise click.UsageError("--mode applies to programs only: other formats do not interpolate.")
-    if table is not None and style not in PROGRAMS:
-        raise click.UsageError("--table applies to programs only.")
     from uplift.common.files import check_output
     from uplift.lookup import load
 
     path = check_output(output or Path(cube).stem + SUFFIXES[style], inputs=[cube], force=force)
-    given = {"res": res, "mode": mode, "form": table, "light": light, "adapt": adapt}
-    settings = {key: value for key, value in given.items() if value is not None}
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
     say(f"{path}: {_write(loaded, path, style, force=force, **settings)}")
 
@@ -111,7 +120,7 @@ def command(
 def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     """Write a cube, and return a description of the file."""
     from uplift.common.files import write_text
-    from uplift.io.export import write_coeff, write_csv, write_lut, write_npz, write_program
+    from uplift.io.export import write_coeff, write_csv, write_film, write_lut, write_npz, write_program
     from uplift.report.live_page import page
 
     data = cube.data
@@ -119,6 +128,9 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
         error = write_lut(cube, path=path, **settings)
         shown = f"mean {error.mean:.2g}, largest {error.largest:.2g}"
         return f"colours under {settings['light']}, ΔE00 from the cube's: {shown}"
+    if style == "film":
+        film = write_film(cube, path, **settings)
+        return f"{film.inside:.0%} of the chromaticities from the cube, mean error of exposure {film.stops:.2g} stops"
     if style == "coeff":
         enable_jit_cache()
         with progress_bar("fitting sigmoids"):
@@ -130,7 +142,8 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     if style == "html":
         write_text(page(data), path, **settings)
         return f"page, {path.stat().st_size / 1e6:.1f} MB"
-    written = write_program(data, path, style=style, **settings)
+    form = settings.pop("table", None)
+    written = write_program(data, path, style=style, form=form, **settings)
     size = sum(each.stat().st_size for each in written) / 1e6
     tables = "".join(f", table in {each}" for each in written[1:])
     return f"{data.lattice.size} nodes, {len(data.atlas.names)} atlas entries, {size:.1f} MB{tables}"

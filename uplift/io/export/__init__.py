@@ -2,8 +2,18 @@
 
 from uplift.io.export.arrays import write_csv, write_npz
 from uplift.io.export.coeff import write_coeff
+from uplift.io.export.film import write_film
 from uplift.io.export.lights import write_light_program
 from uplift.io.export.lut import write_lut
 from uplift.io.export.program import LANGUAGES, write_program
 
-__all__ = ["LANGUAGES", "write_coeff", "write_csv", "write_light_program", "write_lut", "write_npz", "write_program"]
+__all__ = [
+    "LANGUAGES",
+    "write_coeff",
+    "write_csv",
+    "write_film",
+    "write_light_program",
+    "write_lut",
+    "write_npz",
+    "write_program",
+]

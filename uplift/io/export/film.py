@@ -1,0 +1,223 @@
+"""A cube as the table that film simulations read: a spectrum for every chromaticity.
+
+spektrafilm, and programs after it, turn RGB into the exposure of the layers of a film by a float16 array of shape
+(size, size, 81): spectra from 380 to 780 nm at 5 nm of lights with X + Y + Z = 1 under the CIE 1931 observer, where the
+equal-energy light of power 1 has Y = 1. Row i and column j, as fractions of size − 1, are the square coordinates
+((1 − x)², y / (1 − x)) of the chromaticity (x, y). A pixel has the spectrum of its chromaticity times its X + Y + Z.
+The table has kind ``irradiance``, light that reaches the film, or ``reflectance``, which readers multiply by a light of
+their own. A TOML file next to it has the kind, the sizes and the illuminant of the chromaticities.
+
+A chromaticity has reflectances from black to the brightest that is possible; the table keeps one of them. Beyond the
+gamut of the cube, light at its edge is mixed with light of a narrow band, and beyond such bands there is light of the
+band alone.
+
+References
+----------
+spektrafilm, `spectral_upsampling.py`: the layout of the table, and how RGB become a chromaticity and a factor.
+Li et al. 2002, "CMCCAT2000 and CAT02": the adaptation of spektrafilm's RGB to the light.
+"""
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, grid, illuminant_spd, matching_functions
+from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.solid import solid
+from uplift.colorimetry.srgb import decode
+from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import OptionError
+from uplift.common.files import atomic_write, write_text
+from uplift.lookup import Cube
+
+SIZE, MIN_SIZE, MAX_SIZE = 192, 2, 1024
+SHARE = 0.5
+"""Luminance of a stored reflectance, as a fraction of the largest of its chromaticity. Of .1 to .9 in steps of .2, this
+one has the smallest `FilmTable.stops`."""
+MIDGRAY = 0.184
+"""Reflectance that readers expose as medium grey."""
+MARGIN = 1e-3
+"""Smallest component of RGB inside the gamut of the cube, relative to that of white."""
+LAYERS, LAYER_WIDTH = np.array([450.0, 550.0, 640.0]), 30.0
+"""Peaks and standard deviation in nm of the sensitivity of layers, for the stated error."""
+SAMPLES, SEED = 4096, 7
+"""Random colours of the stated error, even in codes."""
+REACH = 10.0
+"""Factor that takes RGB of a unit sum of XYZ out of the solid of reflectances."""
+SLACK, TINY = 1e-9, 1e-12
+BAND = 10.0
+"""Standard deviation of the narrow bands in nm."""
+WEAKEST = 0.05
+"""Bands at the ends of the spectrum are left out where the eye has less than this fraction of its largest response."""
+CAT02 = np.array([[0.7328, 0.4296, -0.1624], [-0.7036, 1.6975, 0.0061], [0.0030, 0.0136, 0.9834]])
+
+
+@dataclass(frozen=True)
+class FilmTable:
+    """How well a written table stands for the cube."""
+
+    inside: float
+    """Fraction of its points, of those that lights have, within the gamut of the cube."""
+    stops: float
+    """Mean error of exposure of random colours, from the table instead of the cube, in powers of 2."""
+
+
+def write_film(
+    cube: Cube, path: StrPath, *, light: str | None = None, res: int = SIZE, share: float = SHARE, force: bool = False
+) -> FilmTable:
+    """Write a cube as a film table of chromaticities and the TOML file that describes it.
+
+    Parameters
+    ----------
+    cube : Cube
+        Cube of an RGB space and the CIE 1931 observer. One of a wide gamut has more of the chromaticities.
+    path : path-like
+        The ``.npy`` file. The other one has its name and the suffix ``.toml``.
+    light : str, optional
+        Illuminant of a table of kind ``irradiance``: that of the cube. Without it, the kind is ``reflectance``.
+    res : int, default 192
+        Rows and columns, 2 to 1024.
+    share : float, default 0.5
+        Luminance of the stored reflectances as a fraction of the largest possible one, in (0, 1).
+    force : bool, default False
+        Replace existing files.
+
+    Returns
+    -------
+    FilmTable
+
+    Raises
+    ------
+    OptionError
+        A size or share outside its range, or a cube of another observer.
+    ColourError
+        The cube of a camera.
+    """
+    sensor = cube.data.sensor
+    sensor.require_xyz()
+    if sensor.observer != DEFAULT_OBSERVER:
+        raise OptionError(f"a film table needs the {DEFAULT_OBSERVER}, got a cube of {sensor.observer}")
+    if not MIN_SIZE <= res <= MAX_SIZE or not 0 < share < 1:
+        raise OptionError(
+            f"res must be from {MIN_SIZE} to {MAX_SIZE} and share in (0, 1), got {res} and {share:g}",
+            hint=f"readers expect {SIZE} rows, and a share of {SHARE} loses least",
+        )
+    scene = Scene(sensor, light)
+    unit = _chromaticities(res)
+    spectra, inside = _spectra(cube, scene, unit, share)
+    table = (spectra if light else spectra / scene.power).reshape(res, res, -1).astype("<f2")
+    content = io.BytesIO()
+    np.save(content, table, allow_pickle=False)
+    described = _description(Path(path), scene.name, "irradiance" if light else "reflectance", res)
+    with atomic_write(path, force=force) as temporary:
+        temporary.write_bytes(content.getvalue())
+        write_text(described, Path(path).with_suffix(".toml"), force=force)
+    return FilmTable(inside, _stops(cube, scene, spectra.reshape(res, res, -1)))
+
+
+class Scene:
+    """Light that reaches the film: its power, and the RGB of chromaticities under it in the cube's space."""
+
+    def __init__(self, sensor: Sensor, light: str | None) -> None:
+        self.name = light or sensor.illuminant
+        cmfs = matching_functions(DEFAULT_OBSERVER)
+        self.xyz = cmfs / cmfs[:, 1].sum()  # XYZ of a power (N,) is power @ xyz
+        power = illuminant_spd(self.name)
+        self.power = power / (power @ self.xyz[:, 1])
+        self.white = self.power @ self.xyz
+        # The reader's RGB are adapted to the light by CAT02; the cube's have the white of its illuminant.
+        cones = CAT02 @ np.stack([self.white, sensor.light.white], axis=1)
+        adapt = np.linalg.solve(CAT02, (cones[:, 1] / cones[:, 0])[:, None] * CAT02)
+        self.xyz_to_rgb = sensor.xyz_to_rgb @ adapt
+
+
+def _chromaticities(size: int) -> Array:
+    """Return XYZ (size², 3) with X + Y + Z = 1 of the table's points, row by row."""
+    first, second = np.meshgrid(*[np.linspace(0, 1, size)] * 2, indexing="ij")
+    x, y = 1 - np.sqrt(first), second * np.sqrt(first)  # the inverse of ((1 − x)², y / (1 − x))
+    return np.stack([x, y, 1 - x - y], axis=-1).reshape(-1, 3)
+
+
+def _spectra(cube: Cube, scene: Scene, unit: Array, share: float) -> tuple[Array, float]:
+    """Return spectra (n, N) of lights with the unit XYZ (n, 3), and the fraction of real ones that the cube answers."""
+    white = scene.white / scene.white.sum()
+    # white + f (c − white) leaves the gamut of the cube at f = inside, and that of lights of narrow bands at f = real.
+    start, change = scene.xyz_to_rgb @ white, (unit - white) @ scene.xyz_to_rgb.T
+    room = np.divide((1 - MARGIN) * start, -change, out=np.full_like(change, np.inf), where=change < 0)
+    inside, (real, outer) = room.min(axis=1), _outer_lights(scene.xyz, white, unit - white)
+    edge = np.minimum(np.minimum(inside, real), 1)
+    rgb = start + edge[:, None] * change
+    # The brightest reflectance of a direction r is t r, on the surface of the solid; steps of 15 nm are enough for t.
+    coarse = np.add.reduceat(cube.data.sensor.matrix, range(0, len(cube.data.sensor.wavelengths), 3), axis=1)
+    brightest = REACH * solid(coarse).ray_fraction(np.zeros_like(rgb), REACH * rgb)
+    rgb *= np.minimum(share * brightest, 1 / rgb.max(axis=1))[:, None]
+    lights = _unit_sum(cube.reflectance(rgb, grid()) * scene.power, scene.xyz)
+    beyond = np.flatnonzero(edge < 1)
+    far = np.maximum(real[beyond], edge[beyond] + TINY)
+    mixed = ((np.minimum(1, far) - edge[beyond]) / (far - edge[beyond]))[:, None]
+    lights[beyond] += mixed * (outer[beyond] - lights[beyond])
+    return lights, float((inside >= 1)[real >= 1].mean())
+
+
+def _outer_lights(xyz: Array, white: Array, change: Array) -> tuple[Array, Array]:
+    """Return where rays from white in unit XYZ (n, 3) reach lights of narrow bands, as a fraction, and those lights.
+
+    Shapes: ``xyz`` (N, 3) → (n,), (n, N). The lights are mixtures of two neighbouring bands, or of both ends: purples.
+    """
+    bands = np.exp(-0.5 * ((grid()[:, None] - grid()) / BAND) ** 2)
+    sums = (bands @ xyz).sum(axis=1)
+    bands = _unit_sum(bands[sums >= WEAKEST * sums.max()], xyz)
+    points = bands @ xyz - white
+    edges = np.roll(points, -1, axis=0) - points
+    # t · change = start + f · edge, in x and y, solved by Cramer's rule for every ray and edge
+    (x, y, _), (u, v, _), (a, b, _) = points.T, edges.T, change.T[..., None]
+    determinant = a * v - b * u
+    safe = np.where(determinant == 0, 1, determinant)
+    reach, fraction = (x * v - y * u) / safe, (x * b - y * a) / safe
+    met = (determinant != 0) & (reach > 0) & (fraction >= -SLACK) & (fraction <= 1 + SLACK)
+    edge = np.where(met, reach, -1).argmax(axis=1)
+    rows = np.arange(len(change))
+    share = np.clip(fraction[rows, edge], 0, 1)[:, None]
+    lights = (1 - share) * bands[edge] + share * np.roll(bands, -1, axis=0)[edge]
+    return np.where(met[rows, edge], reach[rows, edge], np.inf), lights
+
+
+def _unit_sum(power: Array, xyz: Array) -> Array:
+    """Scale powers (n, N) to X + Y + Z = 1."""
+    return power / (power @ xyz).sum(axis=1, keepdims=True)
+
+
+def _stops(cube: Cube, scene: Scene, table: Array) -> float:
+    """Mean |log₂| of the ratio of exposures by the table, as readers interpolate it, and by the cube."""
+    from scipy.interpolate import RegularGridInterpolator
+
+    rgb = decode(np.random.default_rng(SEED).random((SAMPLES, 3)))
+    rgb = rgb[solid(cube.data.sensor.matrix).contains(rgb)]
+    power = cube.reflectance(rgb, grid()) * scene.power
+    xyz = np.linalg.solve(scene.xyz_to_rgb, rgb.T).T
+    x, y, _ = (xyz / xyz.sum(axis=1, keepdims=True)).T
+    layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS) / LAYER_WIDTH) ** 2)
+    axis = np.linspace(0, 1, len(table))
+    read = RegularGridInterpolator((axis, axis), table @ layers)(np.clip([(1 - x) ** 2, y / (1 - x)], 0, 1).T)
+    return float(np.abs(np.log2(xyz.sum(axis=1, keepdims=True) * read / (power @ layers))).mean())
+
+
+def _description(path: Path, light: str, kind: str, size: int) -> str:
+    scene = f'[reflectance]\nscene_illuminant = "{light}"\nmidgray = {MIDGRAY}' if kind == "reflectance" else ""
+    return (
+        f"""identifier = "{path.stem}"
+file = "{path.name}"
+kind = "{kind}"
+title = "uplift: {path.stem} under {light}"
+
+[array]
+lut_size = {size}
+bands = {len(grid())}
+spectral_shape = [{START}, {END}, {STEP}]
+
+{scene}
+""".rstrip()
+        + "\n"
+    )
