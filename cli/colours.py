@@ -7,7 +7,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING
 
@@ -47,14 +47,6 @@ class ColourReader:
     bounded: bool = False
     space: ImageSpace | None = None
 
-    def read(self, words: Sequence[str], path: str | None) -> Iterable[Array]:
-        """Return blocks of linear RGB (n, 3) from arguments, a file, or standard input ('-')."""
-        if tuple(words) == ("-",):
-            words, path = (), path or "-"
-        if bool(words) == (path is not None):
-            raise click.UsageError("Give one colour, or --input FILE, or '-'. See 'uplift query --help'.")
-        return [self.parse(words)] if path is None else self._read_file(path)
-
     def parse(self, words: Sequence[str]) -> Array:
         """Parse one colour, 'R G B', 'R,G,B' or '#rrggbb', into linear RGB (1, 3)."""
         parts = [part for word in words for part in re.split(r"[,\s]+", word) if part]
@@ -63,7 +55,8 @@ class ColourReader:
             raise _not_a_colour(parts)
         return self._linear([colour])
 
-    def _read_file(self, path: str) -> Iterator[Array]:
+    def read(self, path: str) -> Iterator[Array]:
+        """Read blocks of linear RGB (n, 3) from a file, or from standard input, ``-``."""
         name = "standard input" if path == "-" else path
         try:
             with click.open_file(path, "rb") as file:
@@ -112,32 +105,34 @@ class ColourReader:
         """Decode codes, and convert colours of another space to the sensor's."""
         import numpy as np
 
-        from uplift.lookup.blocks import decode_codes
-
         space = self.space
         values = np.array([numbers for numbers, _ in colours], dtype=float)
         mask = np.array([self.encoded or encoded for _, encoded in colours])
-        if space is None or space.decode is None:
-            values[mask] = decode_codes(self.sensor, values[mask])
-        else:
+        if space is not None and space.decode is not None:
             values[mask] = space.decode(values[mask] / 255)
             if space.floats_are_codes:
                 values[~mask] = space.decode(values[~mask])
+        elif mask.any():
+            from uplift.lookup.blocks import decode_codes
+
+            values[mask] = decode_codes(self.sensor, values[mask])
         matrix = None if space is None else space.matrix_to(self.sensor)
         return values if matrix is None else np.asarray(values @ matrix.T)
 
 
-def find_point(
+def find_source(
     colour: tuple[str, ...],
     input_path: str | None,
     xyz: tuple[float, float, float] | None,
     xy: tuple[float, float] | None,
     luminance: float | None,
-) -> tuple[tuple[float, float, float] | None, bool]:
-    """Return XYZ of --xyz, or of --xy and --luminance, None without them; and whether there is a single colour.
+) -> tuple[tuple[float, float, float] | None, str | None]:
+    """Return the only source of colours: XYZ of --xyz or --xy, or a file, '-' for standard input; both None for words.
 
-    Raises click's error if there is not exactly one source of colours.
+    Raises click's error if there is not exactly one source.
     """
+    if colour == ("-",):
+        colour, input_path = (), input_path or "-"
     if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
         raise click.UsageError("--xy X Y and --luminance Y require each other, and --xyz is an alternative.")
     if xy is not None and luminance is not None:
@@ -145,9 +140,9 @@ def find_point(
         if not y > 0:
             raise ColourError(f"y of a chromaticity must be positive, got {y:g}", hint="give CIE x and y")
         xyz = x * luminance / y, luminance, (1 - x - y) * luminance / y
-    if xyz is not None and (colour or input_path is not None):
+    if (xyz is not None) + bool(colour) + (input_path is not None) != 1:
         raise click.UsageError("Give one colour, --input FILE, '-', --xyz or --xy. See 'uplift query --help'.")
-    return xyz, xyz is not None or (bool(colour) and colour != ("-",))
+    return xyz, input_path
 
 
 def _row_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, list[str]]]]:

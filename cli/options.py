@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import reduce
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -23,9 +24,6 @@ if TYPE_CHECKING:
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
-SPACE_NAMES = "colorimetry.tables:names:RGB space"
-OBSERVER_NAMES = ("colorimetry.tables:names:observer", "colorimetry.tables:names:camera")
-ILLUMINANT_NAMES = "colorimetry.lights:COMMON_NAMES", "colorimetry.tables:names:illuminant"
 
 
 class Number(click.ParamType):  # type: ignore[type-arg]
@@ -59,6 +57,29 @@ class Whole(click.IntRange):
         return "" if (self.min, self.max) == (None, None) else super()._describe_range()
 
 
+class Wavelengths(click.ParamType):  # type: ignore[type-arg]
+    """Wavelengths in nm, by `parse_wavelengths`."""
+
+    name = "text"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Array:
+        """Return wavelengths, shape (N,)."""
+        return parse_wavelengths(value)
+
+
+class Plot(click.ParamType):  # type: ignore[type-arg]
+    """The name of a plot. A suffix of another format is an error at once."""
+
+    name = "text"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """Return the name."""
+        from uplift.viz.figure import check_suffix
+
+        check_suffix(value)
+        return str(value)
+
+
 NUMBER = Number()
 
 
@@ -82,17 +103,14 @@ def completion(*sources: str, files: bool = False) -> Callable[..., list[Complet
 
 complete_atlas = completion("atlas:shipped_atlases", files=True)
 complete_cube = completion("lookup.cube:PACKAGED", files=True)
+complete_light = completion("colorimetry.lights:COMMON_NAMES", "colorimetry.tables:names:illuminant")
+complete_observer = completion("colorimetry.tables:names:observer", "colorimetry.tables:names:camera")
+complete_space = completion("colorimetry.tables:names:RGB space")
 
 
 def stacked(*decorators: Decorator) -> Decorator:
     """Combine decorators, the first one outermost."""
-
-    def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
-        for each in reversed(decorators):
-            function = each(function)
-        return function
-
-    return decorate
+    return lambda function: reduce(lambda inner, each: each(inner), reversed(decorators), function)
 
 
 def _repeatable(option: str, name: str, help: str, default: str = "", **settings: Any) -> Decorator:
@@ -107,18 +125,8 @@ def atlas(help: str, default: str = "") -> Decorator:
 
 def light(help: str, default: str) -> Decorator:
     """``--light`` as ``lights``."""
-    complete, help = completion(*ILLUMINANT_NAMES), f"{help}, such as led, 3200K or FL11"
-    return _repeatable("--light", "lights", help, default, metavar="NAME", shell_complete=complete)
-
-
-def xyz(help: str) -> Decorator:
-    """``--xyz``, and ``--xy`` with ``--luminance``."""
-    xy_help = "Colour by chromaticity, with --luminance, as for --xyz."
-    return stacked(
-        click.option("--xyz", type=NUMBER, nargs=3, metavar="X Y Z", help=help),
-        click.option("--xy", type=NUMBER, nargs=2, metavar="X Y", help=xy_help),
-        click.option("--luminance", type=NUMBER, metavar="Y", help="Luminance of --xy, where white has 1."),
-    )
+    help = f"{help}, such as led, 3200K or FL11"
+    return _repeatable("--light", "lights", help, default, metavar="NAME", shell_complete=complete_light)
 
 
 def choice(option: str, *choices: str, help: str, name: str | None = None, default: str | None = None) -> Decorator:
@@ -138,7 +146,7 @@ def input_space(subject: str, default: str = "as the file states") -> Decorator:
     return click.option(
         "--input-space",
         metavar="NAME",
-        shell_complete=completion(SPACE_NAMES),
+        shell_complete=complete_space,
         help=f"RGB space of {subject}: a name of OpenColorIO or colour-science such as ACEScg or lin_rec2020, or x,y "
         f"of red, green, blue and white. [default: {default}]",
     )
@@ -175,24 +183,12 @@ def _remember_format(ctx: click.Context, param: click.Parameter, value: str) -> 
 
 def plot(help: str, option: str = "--plot", name: str = "plot_path") -> Decorator:
     """An option for the file of a plot, as ``name``. A suffix other than .png, .svg and .pdf is an error at once."""
-    return click.option(option, name, metavar="FILE", callback=_check_suffix, help=f"{help}, as .png, .svg or .pdf.")
-
-
-def _check_suffix(ctx: click.Context, param: click.Parameter, value: str | None) -> str | None:
-    if value is not None:
-        from uplift.viz.figure import check_suffix
-
-        check_suffix(value)
-    return value
-
-
-def _wavelengths(ctx: click.Context, param: click.Parameter, value: str | None) -> Array | None:
-    return None if value is None else parse_wavelengths(value)
+    return click.option(option, name, metavar="FILE", type=Plot(), help=f"{help}, as .png, .svg or .pdf.")
 
 
 def wavelengths(help: str) -> Decorator:
     """``--wavelengths`` as an array in nm, or None."""
-    return click.option("--wavelengths", metavar="NM", callback=_wavelengths, help=help)
+    return click.option("--wavelengths", metavar="NM", type=Wavelengths(), help=help)
 
 
 cube = click.option(
@@ -214,6 +210,10 @@ coefficients = click.option(
 output_wavelengths = wavelengths(
     "Wavelengths as START:END:STEP or a list such as 450,550,650. [default: those of the cube]"
 )
+xy = click.option(
+    "--xy", type=NUMBER, nargs=2, metavar="X Y", help="Colour by chromaticity, with --luminance, as for --xyz."
+)
+luminance = click.option("--luminance", type=NUMBER, metavar="Y", help="Luminance of --xy, where white has 1.")
 input_file = click.option(
     "--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input."
 )
@@ -238,18 +238,18 @@ sensor = stacked(
         "--space",
         default="sRGB",
         help="RGB space by its name in colour-science or OpenColorIO, such as ACEScg; or camera: raw values.",
-        shell_complete=completion(SPACE_NAMES),
+        shell_complete=complete_space,
     ),
     click.option(
         "--illuminant",
         default="D65",
         help="Illuminant under which RGB are defined.",
-        shell_complete=completion(*ILLUMINANT_NAMES),
+        shell_complete=complete_light,
     ),
     click.option(
         "--observer",
         default="CIE 1931 2 Degree Standard Observer",
         help="Standard observer, or with --space camera a camera: name or CSV file of sensitivities.",
-        shell_complete=completion(*OBSERVER_NAMES),
+        shell_complete=complete_observer,
     ),
 )

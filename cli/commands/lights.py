@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import options
-from ..colours import ColourReader, find_point
+from ..colours import ColourReader, find_source
 from ..inputs import find_input_space
 from ..output.answers import format_rgb, print_columns, sparkline
 from ..output.console import csv_writer, emit, print_fields, print_json_answers, say
@@ -62,7 +62,7 @@ def command() -> None:
     "--space",
     default="sRGB",
     help="RGB space of queries by its name in colour-science or OpenColorIO, such as ACEScg.",
-    shell_complete=options.completion(options.SPACE_NAMES),
+    shell_complete=options.complete_space,
 )
 @click.option("--observer", help="Standard observer. [default: CIE 1931 2 Degree Standard Observer]")
 @options.force
@@ -209,7 +209,15 @@ def texture(
 @click.argument("colour", nargs=-1)
 @table_option
 @options.input_file
-@options.xyz("Colour by XYZ, where white of the table's space has Y = 1.")
+@click.option(
+    "--xyz",
+    type=options.NUMBER,
+    nargs=3,
+    metavar="X Y Z",
+    help="Colour by XYZ, where white of the table's space has Y = 1.",
+)
+@options.xy
+@options.luminance
 @options.encoded
 @options.output_wavelengths
 @options.input_space("the colours", default="that of the table")
@@ -256,14 +264,14 @@ def query(
 
     check_outputs((plot_path,), inputs=(table_path, input_path), force=force)
     space = find_input_space(input_space)
-    point, single = find_point(colour, input_path, xyz, xy, luminance)
+    point, path = find_source(colour, input_path, xyz, xy, luminance)
     table = load_emission(table_path)
     blocks: Iterable[Array]
     if point is not None:
         blocks = [np.array([point])]
     else:
         reader = ColourReader(sensor(table.space), encoded=encoded, space=space)
-        blocks = map(table.xyz, reader.read(colour, input_path))
+        blocks = map(table.xyz, [reader.parse(colour)] if path is None else reader.read(path))
     results = _answers(table, blocks, table.wavelengths if wavelengths is None else wavelengths, outside)
     if plot_path is not None:
         from uplift.viz.plots import plot_lights
@@ -272,10 +280,10 @@ def query(
         plot_lights([(each.rgb, each.wavelengths, each.power) for each in found], table, plot_path, force=force)
         results = iter(found)
     if style == "json":
-        print_json_answers((result.to_json() for result in results), single=single)
+        print_json_answers((result.to_json() for result in results), single=path is None)
     elif style == "csv":
         _print_csv(results)
-    elif single:
+    elif path is None:
         _print_details(table, next(results))
     else:
         _print_lines(results)

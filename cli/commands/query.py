@@ -18,8 +18,7 @@ from uplift.common.errors import UpliftWarning
 from uplift.common.text import printable
 
 from .. import options
-from ..colours import ColourReader, find_point
-from ..inputs import find_input_space
+from ..colours import ColourReader, find_source
 from ..output.answers import (
     coordinates,
     describe_coordinates,
@@ -56,7 +55,15 @@ colour_options = options.stacked(
     click.argument("colour", nargs=-1),
     options.cube,
     options.input_file,
-    options.xyz("Colour by XYZ under the cube's illuminant, where white has Y = 1; also outside the cube's space."),
+    click.option(
+        "--xyz",
+        type=options.NUMBER,
+        nargs=3,
+        metavar="X Y Z",
+        help="Colour by XYZ under the cube's illuminant, where white has Y = 1; also outside the cube's space.",
+    ),
+    options.xy,
+    options.luminance,
     options.encoded,
     options.output_wavelengths,
     options.choice(
@@ -87,10 +94,14 @@ def ask(
     lights: tuple[str, ...],
 ) -> tuple[QueryStream, Iterable[Sequence[QueryResult]], bool]:
     """Return answers, their blocks, and whether there is a single colour, from the values of `colour_options`."""
-    from uplift.lookup import load, query_xyz
+    from uplift.lookup import load
 
-    space = find_input_space(input_space)
-    point, single = find_point(colour, input_path, xyz, xy, luminance)
+    space = None
+    if input_space is not None:
+        from uplift.colorimetry.spaces import find_space
+
+        space = find_space(input_space)
+    point, path = find_source(colour, input_path, xyz, xy, luminance)
     cube = load(cube_path)
     found: list[Light] = []
     if lights:
@@ -98,12 +109,17 @@ def ask(
 
         lit = (light(name, cube.observer, *cube.data.sensor.range) for name in lights)
         found = list({each.name: each for each in lit}.values())
-    stream = QueryStream(cube, cube_path, method, wavelengths, mode, found, fill_missing=fill_missing)
+    atlases = [source["name"] for source in cube.data.provenance.get("atlases", ())]
+    source = {"file": cube_path or PACKAGED, "dim": cube.data.lattice.dim, "atlases": atlases}
+    stream = QueryStream(cube, source, method, wavelengths, mode, found, fill_missing=fill_missing)
     if point is not None:
-        return stream, [list(query_xyz(cube, [point], wavelengths, mode, found))], single
+        from uplift.lookup import query_xyz
+
+        return stream, [list(query_xyz(cube, [point], wavelengths, mode, found))], True
     bounded = method == "error" and input_space is None
     reader = ColourReader(cube.data.sensor, encoded=encoded, bounded=bounded, space=space)
-    return stream, stream.results(reader.read(colour, input_path)), single
+    blocks = [reader.parse(colour)] if path is None else reader.read(path)
+    return stream, stream.results(blocks), path is None
 
 
 @click.command("query", cls=ColourCommand)
@@ -154,14 +170,15 @@ def command(
     Lines of files and of standard input are answered in blocks as they come. An error in a later block follows the
     answers to earlier ones.
     """
-    from uplift.common.files import check_outputs
-
     if answers is not None:
         if colours["colour"] or any(colours[name] is not None for name in ("input_path", "xyz", "xy")):
             raise click.UsageError("--check takes the colours from its FILE: give no others.")
         _check(answers, colours["cube_path"], colours["mode"], tolerance, style)
         return
-    check_outputs((plot_path,), inputs=(colours["cube_path"], colours["input_path"]), force=force)
+    if plot_path is not None:
+        from uplift.common.files import check_output
+
+        check_output(plot_path, inputs=(colours["cube_path"], colours["input_path"]), force=force)
     stream, results, single = ask(lights=lights, **colours)
     if plot_path is not None:
         from uplift.viz.plots import plot_spectra
@@ -176,13 +193,14 @@ def command(
         _print_csv(stream.cube, chain.from_iterable(results))
     elif single:
         (result,) = chain.from_iterable(results)
-        print_fields(_fields(stream, result), {"linear RGB": patch(stream.cube, result.rgb)})
+        patches = {"linear RGB": patch(stream.cube, result.rgb)} if has_colours() else {}
+        print_fields(_fields(stream, result), patches)
         emit("")
         print_columns(result.wavelengths, result.reflectance)
     else:
         _print_lines(stream, chain.from_iterable(results))
     stream.warn()
-    cubes = list(Path().glob("*.uplift")) if style == "table" and stream.path is None else []
+    cubes = list(Path().glob("*.uplift")) if style == "table" and colours["cube_path"] is None else []
     if len(cubes) == 1:
         say(f"hint: the cube of this folder answers with --cube {cubes[0]}", err=True)
 
@@ -219,10 +237,13 @@ def _check(path: str, cube_path: str | None, mode: str, tolerance: float, style:
 
 @dataclass
 class QueryStream:
-    """Answers to blocks of linear RGB (n, 3), and the numbers of colours that were mapped or filled."""
+    """Answers to blocks of linear RGB (n, 3), and the numbers of colours that were mapped or filled.
+
+    ``source`` is the cube for JSON: its file, dim and atlases.
+    """
 
     cube: Cube
-    path: str | None
+    source: dict[str, Any]
     method: str
     wavelengths: Array | None
     mode: str
@@ -233,33 +254,31 @@ class QueryStream:
     filled: int = 0
     max_change: float = 0.0
 
-    def source(self) -> dict[str, Any]:
-        """Return which cube answers: its file, dim and atlases."""
-        data = self.cube.data
-        atlases = [source["name"] for source in data.provenance.get("atlases", ())]
-        return {"file": self.path or PACKAGED, "dim": data.lattice.dim, "atlases": atlases}
-
     def describe(self) -> str:
         """Return which cube answers on one line."""
-        source = self.source()
-        atlases = ", ".join(source["atlases"]) or "no atlas"
-        return f"{Path(source['file']).name}: {source['dim']}³ nodes, {atlases}"
+        atlases = ", ".join(self.source["atlases"]) or "no atlas"
+        return f"{Path(self.source['file']).name}: {self.source['dim']}³ nodes, {atlases}"
 
     def results(self, blocks: Iterable[Array]) -> Iterator[list[QueryResult]]:
         """Answer block by block, each before the next one is read."""
-        from uplift.colorimetry.gamut import map_to_gamut
         from uplift.lookup import query
 
-        for block in blocks:
-            mapped = map_to_gamut(block, self.cube.data.sensor, self.method)
-            self.count += len(block)
-            self.mapped += mapped.count
-            self.max_change = max(self.max_change, mapped.max_change)
+        for requested in blocks:
+            rgb = requested if self.method == "error" else self._map(requested)  # the query refuses colours outside
+            self.count += len(rgb)
             if self.fill_missing:
-                self.filled += int((~self.cube.covers(mapped.rgb)).sum())
-                self.cube = self.cube.fill_missing(mapped.rgb)
-            yield list(query(self.cube, mapped.rgb, self.wavelengths, self.mode, mapped.requested, self.lights))
+                self.filled += int((~self.cube.covers(rgb)).sum())
+                self.cube = self.cube.fill_missing(rgb)
+            yield list(query(self.cube, rgb, self.wavelengths, self.mode, requested, self.lights))
             sys.stdout.flush()
+
+    def _map(self, rgb: Array) -> Array:
+        from uplift.colorimetry.gamut import map_to_gamut
+
+        mapped = map_to_gamut(rgb, self.cube.data.sensor, self.method)
+        self.mapped += mapped.count
+        self.max_change = max(self.max_change, mapped.max_change)
+        return mapped.rgb
 
     def warn(self) -> None:
         """Warn of colours that were mapped or filled."""
@@ -279,7 +298,7 @@ def result_object(stream: QueryStream, result: QueryResult) -> dict[str, Any]:
     """Return an answer as JSON values."""
     cube = stream.cube
     return {
-        "cube": stream.source(),
+        "cube": stream.source,
         "rgb": result.rgb.tolist(),
         "requested_rgb": result.requested_rgb.tolist(),
         "wavelengths": result.wavelengths.tolist(),
@@ -324,8 +343,9 @@ def _fields(stream: QueryStream, result: QueryResult) -> dict[str, str]:
         fields["XYZ"] = format_rgb(result.xyz)
     if not result.realisable:
         fields["realisable"] = "no: the spectrum has less chroma, because no reflectance has this colour"
-    if relit := _light_colours(cube, result):
-        fields["sRGB under"] = ", ".join(f"{code} {name} ({format_rgb(lit)})" for name, (lit, code) in relit.items())
+    if result.light_xyz:
+        relit = _light_colours(cube, result).items()
+        fields["sRGB under"] = ", ".join(f"{code} {name} ({format_rgb(lit)})" for name, (lit, code) in relit)
     if result.entry in atlas.names[atlas.measured_count :]:
         fields["look"] = str(result.entry)
     else:

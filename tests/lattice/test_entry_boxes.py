@@ -100,7 +100,7 @@ def test_boxes_outside_overlap_neither_each_other_nor_the_space(rgb):
     assert ((corners <= 1e-12).all(axis=1) | (corners >= 1 - 1e-12).all(axis=1)).any(axis=1).all()
     hits = found.find(rgb)
     assert hits.rows[hits.rows == hits.entry].tolist() == np.flatnonzero(widths).tolist()
-    assert not hits.other_weight[hits.rows == hits.entry].any()
+    assert not hits.lattice_weight[hits.rows == hits.entry].any()
 
 
 def test_the_weight_of_an_entry_outside_is_1_in_its_core_and_0_on_the_faces():
@@ -108,4 +108,4 @@ def test_the_weight_of_an_entry_outside_is_1_in_its_core_and_0_on_the_faces():
     shares = np.array([0, 0.05, 0.1, 0.55, 1 - 1e-9, 1.01])
     hits = found.find(found.rgb + 0.1 * shares[:, None] * [0, -1, 0])
     assert hits.rows.tolist() == [0, 1, 2, 3, 4]
-    np.testing.assert_allclose(hits.other_weight, [0, 0, 0, 0.5, 1], rtol=0, atol=1e-8)
+    np.testing.assert_allclose(hits.lattice_weight, [0, 0, 0, 0.5, 1], rtol=0, atol=1e-8)

@@ -69,7 +69,7 @@ def lab_jacobian(xyz: ArrayLike, white: ArrayLike) -> Array:
 
 def rgb_to_lab(sensor: Sensor, rgb: ArrayLike) -> Array:
     """Convert linear RGB to CIE L*a*b* under the build illuminant. Shapes: ``rgb`` (…, 3) → (…, 3)."""
-    return lab(sensor.xyz(rgb), sensor.light.white)
+    return np.asarray(lab_of(sensor.xyz(rgb), sensor.light.white))
 
 
 def delta_e_1976(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:

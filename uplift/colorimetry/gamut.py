@@ -9,12 +9,12 @@ In Oklab (Ottosson 2020, "A perceptual color space for image processing") lines 
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import NoReturn, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry.sensor import in_unit_cube
+from uplift.colorimetry.sensor import as_rgb, format_rgb, in_unit_cube, raise_out_of_gamut
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError, OptionError, unknown_name
 
@@ -301,7 +301,7 @@ def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMa
             raise_out_of_gamut(rows)
         finite = np.isfinite(rows).all(axis=1)
         if not finite.all():
-            problem = f"linear RGB {_format_rgb(rows[finite.argmin()])} is not finite"
+            problem = f"linear RGB {format_rgb(rows[finite.argmin()])} is not finite"
             raise ColourError(problem, hint="fix its source")
         if method != "clip":  # which leaves other channels as they are
             rows *= np.minimum(1, LARGEST / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1))
@@ -315,28 +315,3 @@ def check_method(method: str) -> None:
     """Validate the name of a gamut mapping method."""
     if method not in METHODS:
         raise unknown_name(method, METHODS, "gamut mapping")
-
-
-def as_rgb(rgb: ArrayLike) -> Values:
-    """Convert to an array of RGB triples. Shapes: ``rgb`` (…, 3) → (…, 3)."""
-    is_single = isinstance(rgb, np.ndarray) and rgb.dtype == np.float32
-    try:
-        array: Values = np.asarray(rgb) if is_single else np.asarray(rgb, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise ColourError("a colour is three numbers") from error
-    if array.ndim == 0 or array.shape[-1] != 3:
-        raise ColourError(f"a colour is three numbers, got an array of shape {array.shape}")
-    return array
-
-
-def raise_out_of_gamut(outside: Array) -> NoReturn:
-    """Raise the error for colours outside [0, 1]. Shapes: ``outside`` (n, 3)."""
-    raise ColourError(
-        f"linear RGB {_format_rgb(outside[0])} lies outside [0, 1]",
-        code="rgb-out-of-gamut",
-        hint="map it with uplift.colorimetry.gamut.map_to_gamut, or convert 8-bit codes with Cube.decode",
-    )
-
-
-def _format_rgb(rgb: Array) -> str:
-    return "(" + ", ".join(f"{value:g}" for value in rgb) + ")"

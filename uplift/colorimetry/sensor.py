@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +17,32 @@ SLACK = 1e-9
 def in_unit_cube(rgb: Values) -> Mask:
     """Whether (…) RGB (…, 3) lies in [0, 1], up to `SLACK`; False for NaN."""
     return np.asarray(((rgb >= -SLACK) & (rgb <= 1 + SLACK)).all(axis=-1))
+
+
+def as_rgb(rgb: ArrayLike) -> Values:
+    """Convert to an array of RGB triples. Shapes: ``rgb`` (…, 3) → (…, 3)."""
+    is_single = isinstance(rgb, np.ndarray) and rgb.dtype == np.float32
+    try:
+        array: Values = np.asarray(rgb) if is_single else np.asarray(rgb, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ColourError("a colour is three numbers") from error
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise ColourError(f"a colour is three numbers, got an array of shape {array.shape}")
+    return array
+
+
+def raise_out_of_gamut(outside: Array) -> NoReturn:
+    """Raise the error for colours outside [0, 1]. Shapes: ``outside`` (n, 3)."""
+    raise ColourError(
+        f"linear RGB {format_rgb(outside[0])} lies outside [0, 1]",
+        code="rgb-out-of-gamut",
+        hint="map it with uplift.colorimetry.gamut.map_to_gamut, or convert 8-bit codes with Cube.decode",
+    )
+
+
+def format_rgb(rgb: Array) -> str:
+    """Format a colour (3,) for a message."""
+    return "(" + ", ".join(f"{value:g}" for value in rgb) + ")"
 
 
 @dataclass(frozen=True, eq=False)

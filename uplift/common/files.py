@@ -90,6 +90,7 @@ def check_output(path: StrPath, *, inputs: Iterable[StrPath | None] = (), force:
         status = None
     except (OSError, ValueError) as error:  # no permission, too long, with NUL, or a loop of links
         raise refused(f"cannot be written: {getattr(error, 'strerror', None) or error}") from error
+    # Compared by inode: links and other spellings of an input are the input.
     if status is not None:
         existing = (each for each in inputs if each is not None and os.path.exists(each))
         if any(os.path.samestat(status, os.stat(each)) for each in existing):
@@ -148,6 +149,7 @@ def atomic_write(path: StrPath, *, force: bool = False) -> Iterator[Path]:
         remove_stale(target)
         temporary.touch(exist_ok=False)
         yield temporary
+        # On disk before it gets its name: after a power cut the name stands for the old content or for all of the new.
         with temporary.open("rb+") as file:
             os.fsync(file.fileno())
         if target.exists():

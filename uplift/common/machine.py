@@ -46,6 +46,7 @@ def total_memory() -> int | None:
     limits = []
     with contextlib.suppress(AttributeError, ValueError, OSError):  # not on Windows
         limits.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    # A container has the memory of the machine in sysconf, and its limit in a file.
     for path in CGROUP_LIMITS:
         with contextlib.suppress(OSError, ValueError):  # "max" without a limit
             limits.append(int(Path(path).read_text()))

@@ -57,6 +57,7 @@ def _answer(pipe: Connection, function: Callable[..., object], arguments: tuple[
     """Send the result of a function, or its exception. Output and warnings of the child are dropped."""
     _tie(pipe)
     warnings.simplefilter("ignore")
+    # Libraries of other languages write to the descriptors, not to sys.stdout.
     silence = os.open(os.devnull, os.O_WRONLY)
     for stream in (1, 2):
         os.dup2(silence, stream)

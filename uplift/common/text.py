@@ -84,6 +84,7 @@ def parse_json(text: str) -> Any:
 
 def check_values(value: object) -> None:
     """Raise `ValueError` if parsed values nest too deeply for recursive code or have lone surrogates."""
+    # Level by level: recursion would end in the error that this prevents.
     level = [value]
     for _ in range(MAX_DEPTH + 1):
         children: list[Any] = []

@@ -131,6 +131,7 @@ def content_digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:
     """Compute the SHA-256 of arrays and metadata, in hexadecimal."""
     content = hashlib.sha256(_json(metadata).encode())
     for name in sorted(tensors):
+        # The same bytes under another name, type or shape are another content.
         array = np.ascontiguousarray(tensors[name])
         content.update(f"{name} {array.dtype.str} {array.shape}".encode())
         content.update(array.data)
@@ -161,7 +162,8 @@ def check_arrays(tensors: Tensors, schema: Mapping[str, Stored], sizes: Mapping[
         shape = tuple(sizes[axis] if axis in sizes else int(axis) for axis in stored.shape.split())
         fits = array.shape == shape and array.dtype.name in stored.types
         require(fits, f"{name} must be {' or '.join(stored.types)} of shape {shape}")
-        in_range = bool(((array >= low) & (array <= high)).all())  # False for NaN
+        # NaN fails both comparisons.
+        in_range = bool(((array >= low) & (array <= high)).all())
         require(in_range, f"{name} must have numbers in [{low:g}, {high:g}]")
 
 

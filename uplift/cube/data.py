@@ -169,6 +169,7 @@ class CubeData:
         outside = self.atlas.outside
         if outside is None:
             return OutsideBoxes(np.zeros((0, 3)), np.zeros(0))
+        # The lattice has no steps outside [0, 1]: half widths are in those of a linear axis.
         return OutsideBoxes(outside.rgb, outside.half_width / (self.lattice.dim - 1))
 
     @cached_property
@@ -182,5 +183,6 @@ class CubeData:
 
         Corners are unrealisable in wide gamuts, or were not fitted.
         """
+        # Mixtures Σ w g_i have the colour x = Σ w x_i only if every corner has r_i = x_i.
         exact = self.points.distance <= self.threshold
         return None if exact.all() else ~self.lattice.complete_cells(exact)

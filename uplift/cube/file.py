@@ -160,6 +160,7 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
             types = ARRAYS[name].types
             tensors[name] = np.ascontiguousarray(array, array.dtype if array.dtype.name in types else types[-1])
     if data.complete_cells is not None:
+        # A sparse file has the rows of the present points, and their numbers.
         present = data.points.present
         tensors |= {name: np.ascontiguousarray(tensors[name][present]) for name in POINTS if name in tensors}
         tensors["points"] = np.flatnonzero(present).astype(np.uint32)
@@ -190,10 +191,13 @@ def _table_arrays(table: AtlasTable, prefix: str) -> dict[str, Any]:
 
 def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
     """Make the cube of a file after a check of types and ranges, of metadata first, then of arrays."""
+    # In version 3 nodes and entries share one model.
     if metadata["version"] < VERSION:
         metadata["entry_model"] = metadata.get("model")
     check_metadata(metadata, METADATA)
     model, entry_model = (from_description(metadata[key]) for key in ("model", "entry_model"))
+    alike = metadata["model"] | {"count": None} == metadata["entry_model"] | {"count": None}
+    require(alike and entry_model.count >= model.count, "the model of the entries must extend that of the nodes")
     names, looks = tuple(metadata["entries"]), len(metadata["provenance"].get("looks", ()))
     outside = tuple(metadata["provenance"].get("left_out", ()))
     schema = {name: stored for name, stored in ARRAYS.items() if stored.feature in ("", *metadata["features"])}
@@ -247,8 +251,6 @@ def _check(data: CubeData) -> None:
     atlas, sensor, nodes = data.atlas, data.sensor, data.lattice.nodes
     names = (*atlas.names, *(() if atlas.outside is None else atlas.outside.names))
     looks = tuple(look["name"] for look in data.provenance.get("looks", ()))
-    node_model, entry_model = ({**each.describe(), "count": None} for each in (data.model, data.entry_spectra.model))
-    extends = node_model == entry_model and data.entry_spectra.model.count >= data.model.count
     with np.errstate(all="ignore"):
         basis = data.model.basis(sensor.wavelengths)
         white, condition = sensor.matrix.sum(axis=1), np.linalg.cond(sensor.xyz_to_rgb)
@@ -257,7 +259,6 @@ def _check(data: CubeData) -> None:
         (len(set(names)) == len(names), "the names of entries must be unique"),
         (looks == atlas.names[len(atlas.names) - atlas.looks :], "the looks must be the last entries, by their names"),
         (atlas.left_out is None or atlas.measured_count > 0, "left-out spectra need entries"),
-        (extends, "the model of the entries must extend that of the nodes"),
         (has_basis, "the model must have a range of wavelengths"),
         ((nodes[0], nodes[-1]) == (0, 1), "the nodes must run from 0 to 1"),
         (data.points.entry.max(initial=-1) < len(atlas.names), "every entry must be in the atlas table"),

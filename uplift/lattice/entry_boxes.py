@@ -33,9 +33,9 @@ class BoxHits(NamedTuple):
     entry: Indices
     """(k,) row of the entry whose box contains the colour."""
     lattice_weight: Array
-    """(k,) weight of the lattice in the answer, 0 to 1; the entry has the rest."""
+    """(k,) weight in the answer, 0 to 1, of the lattice or, outside [0, 1], of what answers without the entry."""
     exit_rgb: Array
-    """(k, 3) linear RGB of the point at which the lattice is evaluated."""
+    """(k, 3) linear RGB of the point at which that is evaluated."""
 
 
 NO_ROWS = np.zeros(0, dtype=np.int64)
@@ -121,17 +121,6 @@ class EntryBoxes:
         return BoxHits(rows, entry, weight, exit_rgb)
 
 
-class OutsideHits(NamedTuple):
-    """The k of n colours that lie in boxes outside [0, 1]."""
-
-    rows: Indices
-    """(k,) row numbers of the colours."""
-    entry: Indices
-    """(k,) row of the entry whose box contains the colour."""
-    other_weight: Array
-    """(k,) weight of the answer without the entry, 0 to 1; the entry has the rest."""
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class OutsideBoxes:
     """Boxes around entries of linear RGB (O, 3) outside [0, 1], of half widths (O,) in linear RGB, 0 for none.
@@ -145,7 +134,7 @@ class OutsideBoxes:
     def __repr__(self) -> str:
         return f"OutsideBoxes({np.count_nonzero(self.half_width)} boxes)"
 
-    def find(self, rgb: Values) -> OutsideHits:
+    def find(self, rgb: Values) -> BoxHits:
         """Find which of the linear RGB (n, 3) lie in boxes."""
         rows = np.flatnonzero((rgb < 0).any(axis=1) | (rgb > 1).any(axis=1)) if len(self.rgb) else NO_ROWS
         entry, distance = np.full(len(rows), NO_ENTRY), np.ones(len(rows))
@@ -155,4 +144,4 @@ class OutsideBoxes:
             entry[inside], distance[inside] = box, from_centre[inside] / self.half_width[box]
         hit = entry != NO_ENTRY
         # The weight is 0 in the core of the box, and rises linearly to 1 on its faces.
-        return OutsideHits(rows[hit], entry[hit], np.maximum(distance[hit] - CORE, 0) / (1 - CORE))
+        return BoxHits(rows[hit], entry[hit], np.maximum(distance[hit] - CORE, 0) / (1 - CORE), rgb[rows[hit]])

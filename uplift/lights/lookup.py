@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from uplift.colorimetry.gamut import as_rgb
+from uplift.colorimetry.sensor import as_rgb
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError, OptionError
 from uplift.lattice import weighted_sum

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from uplift.colorimetry.gamut import as_rgb, raise_out_of_gamut
-from uplift.colorimetry.sensor import SLACK, Sensor
+from uplift.colorimetry.sensor import SLACK, Sensor, as_rgb, raise_out_of_gamut
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError
 from uplift.cube import CubeData

@@ -23,8 +23,7 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from uplift.colorimetry.gamut import as_rgb
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.sensor import Sensor, as_rgb
 from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes, Lattice
@@ -156,6 +155,7 @@ def _box_hits(grid: Grid, rgb: jax.Array) -> tuple[jax.Array, jax.Array, jax.Arr
         inside = reached < 1
         return jnp.where(inside, candidate, entry), jnp.where(inside, reached, weight)
 
+    # Boxes do not overlap, so that at most one candidate contains a colour.
     none = jnp.full(len(rgb), len(grid.atlas) - 1, dtype=jnp.int32)
     entry, weight = jax.lax.fori_loop(0, len(grid.candidates), turn, (none, jnp.ones(len(rgb))))
     centre = _rows(grid.boxes[:, 0], entry)
@@ -168,6 +168,7 @@ def _box_hits(grid: Grid, rgb: jax.Array) -> tuple[jax.Array, jax.Array, jax.Arr
 def _trilinear(grid: Grid, rgb: jax.Array) -> jax.Array:
     low = _cell(grid, rgb)
     start = _rows(grid.nodes, low)
+    # Σ over the corners of the product of t or 1 − t along the axes, times their values
     along = ((rgb - start) / (_rows(grid.nodes, low + 1) - start)).astype(jnp.float32)
     sides = jnp.stack([1 - along, along])
     total = jnp.zeros((len(rgb), grid.lattice.shape[1]), dtype=jnp.float32)

@@ -67,6 +67,7 @@ def _rgb(data: CubeData, coefficients: Array) -> Array:
 def _fit_to_other(data: CubeData, other: CubeData, rgb: Array) -> Array:
     """Multipliers (n, C) of the cube's model: close to the spectra of ``other``, with exactly the colours (n, 3)."""
     spectra = refined(other, rgb, data.sensor.wavelengths)
+    # min |B p − S⁻¹(g)|, and from this p by steps to the exact colour
     linear = data.model.from_reflectance(np.clip(spectra, MIN_REFLECTANCE, 1 - MIN_REFLECTANCE))
     start = np.linalg.lstsq(data.model.basis(data.sensor.wavelengths), linear.T, rcond=None)[0].T
     return refine_to_rgb(data, data.model, np.ascontiguousarray(start), rgb)

@@ -113,6 +113,7 @@ def mixed_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     # Each lattice point is evaluated once, although neighbouring colours share points.
     points, row = np.unique(nodes.points, return_inverse=True)
     values = reflectance(data.model, data.points.coefficients[points], wavelengths)
+    # g = Σ w g_i has the colour W g = Σ w W g_i = Σ w r_i = x, as trilinear weights reproduce x.
     lattice = weighted_sum(values, row.reshape(nodes.points.shape), nodes.weights)
     return _mix_entries(data, nodes, lattice, wavelengths)
 
@@ -185,6 +186,7 @@ def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
 
     Multipliers followed by zeros are those of the same spectrum, which has more moments.
     """
+    # B p is the same with zeros for further multipliers; the moments c_j = (1/π) ∫ g cos jφ dφ of g follow for any j.
     extended = data.entry_spectra.model.to_storage(_append_zeros(data, data.model.from_storage(coefficients)))
     extended[:, : data.model.count] = coefficients
     return extended
@@ -226,6 +228,7 @@ def _lattice_coefficients(data: CubeData, nodes: Nodes) -> Array:
 
 def _exact_lattice(data: CubeData, nodes: Nodes, rgb: Array) -> Array:
     """Multipliers (n, C) of the lattice that have exactly its share of the colours (n, 3)."""
+    # The mean moments nearly have the mean colour: a step or two of Δx = A⁺ (t − r) suffice (5).
     start = data.model.from_storage(_lattice_coefficients(data, nodes))
     return refine_to_rgb(data, data.model, start, nodes.lattice_rgb(rgb))
 

@@ -43,6 +43,7 @@ class LightErrors:
         """
         nodes, radii = around(self.data, rgb), np.array(self.expected.radii)
         squares = self.expected(rgb_to_lab(self.data.sensor, rgb))
+        # e² = radius² E[e²] + e₀², with the error e₀ that remains at the entries themselves
         remaining = np.tile(radii * np.sqrt(self.expected.floor), (len(rgb), 1))
         remaining = nodes.mix(remaining, self.entries[nodes.hits.entry])
         return np.asarray(np.sqrt(radii**2 * squares + remaining**2))
@@ -89,6 +90,7 @@ def lab_errors(data: CubeData, light: Light) -> LabErrors:
     errors = [delta_e_spectra(light, each, left_out.measured) for each in spectra]
     differences = [_differences(light, each, left_out.measured) for each in spectra]
     expected = expected_products(data.entry_lab, *errors, *map(_products, differences))
+    # d² = eᵀ Σ⁻¹ e of each entry, by the covariance Σ that the other entries let expect
     own = expected.radii.scale**2 * expected.left_out.reshape(-1, 3, 3)
     distances = mahalanobis(own[:, 1:, 1:], differences[0][:, 1:])
     (radius,) = learn_radii(distances, [(LIKELY, NORMAL_RADIUS)])

@@ -18,7 +18,7 @@ from uplift.colorimetry.solid import solid_volume
 from uplift.common.arrays import Array
 from uplift.lookup.cube import Cube
 from uplift.lookup.light_errors import lab_errors
-from uplift.lookup.query import reflectance_anywhere
+from uplift.lookup.outside import reflectance_anywhere
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -64,6 +64,7 @@ class Bounds:
         if self.covariance is None or self.likely_radius is None:
             return None
         values, axes = np.linalg.eigh(self.covariance[row, 1:, 1:])
+        # With Σ = V Λ Vᵀ, the ellipse is μ + radius · V √Λ (cos, sin).
         turn = np.linspace(0, 2 * np.pi, 73)[:-1]
         circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
         return np.asarray(self.lab[row, 1:] + self.likely_radius * (circle * np.sqrt(np.maximum(values, 0))) @ axes.T)

@@ -7,21 +7,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.gamut import as_rgb, map_to_gamut
-from uplift.colorimetry.sensor import Light
+from uplift.colorimetry.sensor import Light, as_rgb
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Mask
-from uplift.common.errors import ColourError
-from uplift.cube import CubeData
+from uplift.common.errors import ColourError, unknown_name
 from uplift.lattice import Status
-from uplift.lookup.blocks import BLOCK, as_wavelengths
+from uplift.lookup.blocks import BLOCK, as_colours, as_wavelengths
 from uplift.lookup.cube import Cube, expected_errors
-from uplift.lookup.interpolate import coefficients
-from uplift.lookup.refine import refine_to_rgb
-from uplift.models import evaluate
+from uplift.lookup.interpolate import MODES
 
-MAPPING = "desaturate"
-"""Gamut mapping to the colour from which the spectra of colours outside the RGB space start."""
 CODE_TOLERANCE = 0.5
 """A colour is that of an entry if their 8-bit codes differ by at most this."""
 
@@ -83,8 +77,11 @@ def query(
     ``requested_rgb`` are the colours before gamut mapping, ``lights`` those of `QueryResult.standard_errors`. Colours
     ``outside`` (n,) are answered as requested.
     """
+    if mode not in MODES:
+        raise unknown_name(mode, MODES, "mode")
     at = as_wavelengths(wavelengths, cube.data.sensor.wavelengths)
     requested = rgb if requested_rgb is None else requested_rgb
+    rgb = as_colours(rgb, cube.data.sensor)
     beyond = np.zeros(len(rgb), dtype=bool) if outside is None else outside
     for start in range(0, len(rgb), BLOCK):
         block = slice(start, start + BLOCK)
@@ -104,6 +101,9 @@ def query_xyz(
     and from an atlas entry outside the space close to it; only those of such entries have a standard error. Raises
     `ColourError` (``colour-unrealisable``) if no reflectance has a colour, or the model does not reach it.
     """
+    from uplift.colorimetry.gamut import map_to_gamut
+    from uplift.lookup.outside import MAPPING
+
     sensor = cube.data.sensor
     sensor.require_xyz()
     values = as_rgb(xyz).astype(float)
@@ -115,62 +115,6 @@ def query_xyz(
     yield from query(cube, mapped.rgb, wavelengths, mode, requested, lights, mapped.outside)
 
 
-def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
-    """Compute reflectances (n, N) at wavelengths (N,) in nm, of linear RGB (n, 3) that may lie outside [0, 1].
-
-    A colour in the object-colour solid has spectra, whether or not its RGB lie in [0, 1]. The multipliers of the
-    nearest colour that the cube holds, on the line of constant dominant wavelength, move to it by minimum-norm steps,
-    which may fail close to the boundary of the solid. In the box of an entry outside [0, 1], so do those of the entry,
-    and the two reflectances, of one colour, are mixed.
-    """
-    possible = solid(data.sensor.matrix).contains(rgb)
-    if not possible.all():
-        raise ColourError(
-            f"no reflectance has the colour of XYZ {_format_xyz(data, rgb[int(possible.argmin())])}",
-            code="colour-unrealisable",
-            hint="reduce its luminance, where white has Y = 1, or its distance from white",
-        )
-    hits, entries = data.outside_boxes.find(rgb), data.outside_spectra
-    has_lattice = np.ones(len(rgb), dtype=bool)
-    has_lattice[hits.rows[hits.other_weight == 0]] = False
-    start = data.model.from_storage(coefficients(data, map_to_gamut(rgb[has_lattice], data.sensor, MAPPING).rgb))
-    multipliers = refine_to_rgb(data, data.model, start, rgb[has_lattice])
-    own = None
-    if entries is not None and hits.rows.size:
-        own = refine_to_rgb(data, entries.model, entries.multipliers[hits.entry], rgb[hits.rows])
-
-    def spectra(wavelengths: Array) -> Array:
-        found = np.zeros((len(rgb), len(wavelengths)))
-        found[has_lattice] = evaluate(data.model, multipliers, wavelengths)
-        if entries is not None and own is not None:  # t · answer + (1 − t) · entry
-            weight = hits.other_weight[:, None]
-            found[hits.rows] = weight * found[hits.rows] + (1 - weight) * evaluate(entries.model, own, wavelengths)
-        return found
-
-    reached = data.sensor.rgb(spectra(data.sensor.wavelengths))
-    distance = np.abs(reached - rgb).max(axis=1)
-    if (distance > data.threshold).any():
-        raise ColourError(
-            f"the model does not reach the colour of XYZ {_format_xyz(data, rgb[int(distance.argmax())])}",
-            code="colour-unrealisable",
-            hint="move it toward white, away from the limit of what reflectances can have",
-        )
-    return spectra(at)
-
-
-def reflectance_anywhere(cube: Cube, rgb: Array, at: Array, mode: str, outside: Mask) -> Array:
-    """Compute reflectances (n, N) at wavelengths (N,) in nm, of linear RGB (n, 3) that may be ``outside`` (n,)."""
-    spectra = np.empty((len(rgb), len(at)))
-    spectra[~outside] = cube.reflectance(rgb[~outside], at, mode)
-    if outside.any():
-        spectra[outside] = reflectance_outside(cube.data, rgb[outside], at)
-    return spectra
-
-
-def _format_xyz(data: CubeData, rgb: Array) -> str:
-    return "(" + ", ".join(f"{value:.4g}" for value in data.sensor.xyz(rgb)) + ")"
-
-
 def _block(
     cube: Cube, rgb: Array, requested: Array, outside: Mask, at: Array, mode: str, lights: Sequence[Light]
 ) -> Iterator[QueryResult]:
@@ -178,7 +122,12 @@ def _block(
     count = len(sensor.wavelengths)
     grid = np.concatenate([sensor.wavelengths, at])
     answered = np.where(outside[:, None], requested, rgb)
-    spectra = reflectance_anywhere(cube, answered, grid, mode, outside)
+    if outside.any():
+        from uplift.lookup.outside import reflectance_anywhere
+
+        spectra = reflectance_anywhere(cube, answered, grid, mode, outside)
+    else:
+        spectra = MODES[mode](data, rgb, grid)
     at_sensor = spectra[:, :count]
     round_trip = sensor.rgb(at_sensor)
     xyz = at_sensor @ sensor.light.xyz.T
@@ -192,9 +141,11 @@ def _block(
     # A colour is that of an entry if their 8-bit codes are close.
     codes, entry_codes = cube.encode(rgb), cube.encode(data.atlas.rgb)
     # Outside the RGB space it is, where the spectrum of the entry alone answers.
-    found, kept = data.outside_boxes.find(answered), data.atlas.outside
-    exact = found.other_weight == 0
-    outside_entries = dict(zip(found.rows[exact].tolist(), found.entry[exact].tolist(), strict=True))
+    outside_entries, kept = {}, data.atlas.outside
+    if kept is not None:
+        found = data.outside_boxes.find(answered)
+        exact = found.lattice_weight == 0
+        outside_entries = dict(zip(found.rows[exact].tolist(), found.entry[exact].tolist(), strict=True))
     low, fraction = data.lattice.cell(rgb)
     statuses = data.points.status[data.lattice.cell_corners(low, fraction)[0]]
     # Mixtures of realisable colours are realisable, so only cells with an unrealisable corner are tested.

@@ -48,6 +48,7 @@ def with_colours(data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, 
     """
     model = data.model
     forward = forward_map(model, data.sensor.wavelengths, data.sensor.matrix)
+    # S(S⁻¹(g) + B Δp): the mixture g is the fixed part of the linear part, and steps find Δp.
     linear = model.from_reflectance(np.array(at_sensor.T, order="C"))
     change = _reach(data, forward, np.zeros((model.count, len(rgb))), rgb, linear)[0].T
     moved = model.to_reflectance(model.from_reflectance(spectra) + blocked_matmul(change, model.basis(wavelengths).T))
@@ -75,6 +76,7 @@ def _reach(
     distance = _descend(forward, multipliers, target, fixed)
     failed = np.flatnonzero(distance > data.threshold)
     if failed.size and data.inexact_cells is not None:
+        # Targets outside the object-colour solid move to its boundary, on their line to grey (9).
         inside = within_solid(data, rgb[failed])
         moved = failed[(inside != rgb[failed]).any(axis=1)]
         target[:, failed] = inside.T
@@ -99,6 +101,7 @@ def _descend(forward: ForwardMap, multipliers: Array, target: Array, fixed: Arra
     for first in range(0, target.shape[1], BLOCK_COLUMNS):
         block = slice(first, first + BLOCK_COLUMNS)
         linear = linear_part(block)
+        # t − r with r = W S(B p); later steps subtract their own change of r.
         residual[:, block] = target[:, block] - blocked_matmul_columns(
             forward.sensor, forward.model.to_reflectance(linear)
         )
@@ -131,6 +134,7 @@ def _move(
         trial = current + change
         difference = forward.model.reflectance_change(linear, blocked_matmul_columns(forward.basis, change))
         trial_off = off - blocked_matmul_columns(forward.sensor, difference)
+    # Damped as by Levenberg and Marquardt: μ falls after a step that helped, and rises after one that did not.
     better = (trial_off**2).sum(axis=0) < (off**2).sum(axis=0)
     better &= np.abs(trial).max(axis=0) <= MAX_MULTIPLIER
     multipliers[:, columns] = np.where(better, trial, current)

@@ -15,7 +15,7 @@ from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
 from uplift.lookup import Cube, load
 from uplift.lookup.interpolate import lattice_spectra
-from uplift.lookup.query import MAPPING, reflectance_anywhere
+from uplift.lookup.outside import MAPPING, reflectance_anywhere
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models import Sigmoid, evaluate
 from uplift.report.measures import delta_e_under

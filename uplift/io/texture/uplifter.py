@@ -23,7 +23,7 @@ from uplift.io import exr
 from uplift.io.texture.colours import ColourChannels, Counts, Floats, check_encoding, make_decoder
 from uplift.io.texture.image import Image, Part, Values
 from uplift.lattice import Status
-from uplift.lattice.entry_boxes import OutsideHits
+from uplift.lattice.entry_boxes import BoxHits
 from uplift.lookup import Cube
 from uplift.lookup.blocks import as_wavelengths, blockwise
 from uplift.lookup.interpolate import refined_multipliers
@@ -261,10 +261,10 @@ class Uplifter(Converter):
         is_off = 0 if self.rgb_error is None else (self.rgb_error(rgb) > self.cube.data.threshold).sum()
         return (rgb, self.sample(rgb)), Counts(unrealisable=int(is_off))
 
-    def _convert_outside(self, rgb: Floats, hits: OutsideHits, entries: Floats) -> Converted:
+    def _convert_outside(self, rgb: Floats, hits: BoxHits, entries: Floats) -> Converted:
         """Mix the answers to mapped colours with those of entries, as their colours: t · mapped + (1 − t) · entry."""
         data, colours = self.cube.data, rgb.reshape(-1, 3).copy()
-        requested, is_mixed, weight = colours[hits.rows], hits.other_weight > 0, hits.other_weight[:, None]
+        requested, is_mixed, weight = colours[hits.rows], hits.lattice_weight > 0, hits.lattice_weight[:, None]
         # With the method "error", only the core of a box is answered.
         map_to_gamut(requested[is_mixed], self.sensor, self.out_of_gamut)
         method = "clip" if self.out_of_gamut == "error" else self.out_of_gamut
