@@ -32,7 +32,7 @@ def prepare_process() -> None:
     os.environ["MPLBACKEND"] = "agg"  # which needs no display
     os.environ["PYTHONSAFEPATH"] = "1"  # worker processes load no module from the working folder
     if os.path.lexists("matplotlibrc"):  # matplotlib would obey it
-        with contextlib.chdir(os.sep):
+        with contextlib.chdir(os.sep), contextlib.suppress(ImportError):
             import matplotlib  # noqa: F401
     sys.warnoptions.append("ignore:resource_tracker:UserWarning")  # of multiprocessing, about a process that was ended
 

@@ -86,7 +86,7 @@ def command(
     from uplift.report.measures import mean_p95_max
     from uplift.report.relight import RGB_PRODUCT, relight, relit_page, write_relit_sheet
     from uplift.samples import sample_path
-    from uplift.viz.figure import SUFFIXES
+    from uplift.viz.figure import SUFFIXES, check_suffix
 
     if cube_path is not None and files:
         raise click.UsageError("--cube and --atlas are alternatives: give one of the two.")
@@ -97,6 +97,8 @@ def command(
             path=output,
             hint="give a file name ending in .png for a figure, .html for a page, or .exr for the image itself",
         )
+    if suffix in SUFFIXES:
+        check_suffix(output)
     paths = expand_patterns(images) or [str(sample_path(SAMPLE))]
     if suffix == IMAGE and len(paths) > 1:
         raise click.UsageError("An .exr file holds one image: relight images one by one.")

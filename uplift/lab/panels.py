@@ -9,7 +9,7 @@ import numpy as np
 from markupsafe import Markup
 
 from uplift.common.arrays import Array, StrPath
-from uplift.viz.figure import GREY, INK, OTHER, STYLE, figure_text, new_figure, style_axes, to_page_svg, write_png
+from uplift.viz.figure import GREY, INK, OTHER, figure_text, new_figure, style_axes, styled, to_page_svg, write_png
 from uplift.viz.scatter import LEGEND, Label, draw_labels, style_title
 
 CLEAR_RATIO = 0.99
@@ -82,17 +82,13 @@ def write_panels(
     force: bool = False,
 ) -> None:
     """Write panels as PNG, with a legend of styles by name. Raises `OutputError`."""
-    import matplotlib
-
-    with matplotlib.rc_context(STYLE):
+    with styled():
         write_png(panel_figure(panels, columns, legend), path, force=force)
 
 
 def page_panel(panel: Panel, number: int) -> Markup:
     """Draw a panel for a page, whose titles are in its text. The artists are named ``marker-<number>-<row>`` etc."""
-    import matplotlib
-
-    with matplotlib.rc_context(STYLE):
+    with styled():
         return to_page_svg(panel_figure([panel], 1, titles=False, first=number), f"{panel.title}, over {panel.axis}")
 
 

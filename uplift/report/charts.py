@@ -8,7 +8,7 @@ from markupsafe import Markup
 from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Indices
-from uplift.viz.figure import ACCENT, BAND, INK, STYLE, new_figure, style_axes, to_page_svg
+from uplift.viz.figure import ACCENT, BAND, INK, new_figure, style_axes, styled, to_page_svg
 from uplift.viz.format import format_power_of_ten
 
 SIZE = (3.3, 1.75)  # inches at 72 dpi; the page scales charts to its columns
@@ -22,9 +22,7 @@ def histogram_chart(
     values: "Histogram", label: str, *, top: int | None = None, threshold: float | None = None
 ) -> Markup:
     """Draw counts over ``label``; the axis holds counts up to ``top``, a dashed line marks the threshold."""
-    import matplotlib
-
-    with matplotlib.rc_context(STYLE):
+    with styled():
         figure, axes = _new_axes(WITH_LABEL)
         axes.stairs(values.counts, values.edges, fill=True, color=ACCENT)
         highest = max(int(values.counts.max()), top or 0, 1)
@@ -46,12 +44,10 @@ def histogram_chart(
 
 def spectra_chart(wavelengths: Array, measured: Array, answered: Array, lattice: Array | None) -> Markup:
     """Draw reflectances (N,) over wavelengths (N,) in nm: the measured one as a broad band, the others as lines."""
-    import matplotlib
-
     curves = [measured, answered] if lattice is None else [measured, answered, lattice]
     highest = max(float(curve.max()) for curve in curves)
     top = next((limit for limit in REFLECTANCE_LIMITS if highest <= limit), REFLECTANCE_LIMITS[-1])
-    with matplotlib.rc_context(STYLE):
+    with styled():
         figure, axes = _new_axes(WITHOUT_LABEL)
         axes.plot(wavelengths, measured, color=BAND, linewidth=4, solid_capstyle="round")
         if lattice is not None:

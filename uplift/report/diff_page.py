@@ -12,7 +12,7 @@ from uplift.common.arrays import Array
 from uplift.io.exr import blue_slices
 from uplift.report.charts import spectra_chart
 from uplift.report.diff import Changes, CubeDiff, to_json
-from uplift.viz.figure import PALE, STYLE, colour_map, new_figure, to_page_svg
+from uplift.viz.figure import PALE, colour_map, new_figure, styled, to_page_svg
 from uplift.viz.html import render
 
 MIN_LIMIT, SHARE = 1.0, 0.99
@@ -53,9 +53,7 @@ def mosaic(slices: Array) -> Array:
 
 def _map(values: Array, limit: float, label: str, picture: NDArray[np.uint8] | None = None) -> Markup:
     """Draw a map of ΔE00 (height, width), next to a picture of 8-bit codes if one is given."""
-    import matplotlib
-
-    with matplotlib.rc_context(STYLE):
+    with styled():
         panels = 1 if picture is None else 2
         figure = new_figure(WIDTH, 0.94 * WIDTH * values.shape[0] / values.shape[1] / panels)
         grid = figure.subplots(1, panels, squeeze=False)[0]

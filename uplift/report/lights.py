@@ -14,7 +14,7 @@ from uplift.lights.table import summarise
 from uplift.report.charts import Histogram, histogram_chart, linear_edges, log_edges, make_histogram
 from uplift.report.measures import COLOURS, SEED
 from uplift.viz.chromaticity import draw_colours, draw_errors, draw_lamps
-from uplift.viz.figure import STYLE, to_page_svg
+from uplift.viz.figure import styled, to_page_svg
 from uplift.viz.html import render
 from uplift.viz.scatter import new_panels
 
@@ -84,9 +84,7 @@ def render_light_report(table: EmissionTable, name: str, size: int) -> str:
 
 
 def _diagram(draw: Callable[..., None], label: str, table: EmissionTable) -> Markup:
-    import matplotlib
-
-    with matplotlib.rc_context(STYLE):
+    with styled():
         figure, ((axes,),) = new_panels(1, 1, PANEL, MARGINS)
         draw(axes, table)
         return to_page_svg(figure, label)

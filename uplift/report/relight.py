@@ -5,12 +5,15 @@ sides of a line that moves.
 """
 
 import base64
-import io
 import math
+import struct
+import tempfile
+import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -23,7 +26,9 @@ from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import OutputError
 from uplift.io.texture.colours import Floats
+from uplift.io.texture.image import read_error, utf8_name
 from uplift.lookup import Cube, bulk
 from uplift.lookup.cube import common_sensor
 from uplift.report.measures import mean_p95_max
@@ -241,23 +246,37 @@ def _section(image: Relit, limits: Sequence[float]) -> dict[str, Any]:
 
 
 def _jpeg(codes: NDArray[np.uint8]) -> str:
-    from PIL import Image
+    import OpenImageIO
 
-    file = io.BytesIO()
-    Image.fromarray(codes).save(file, "JPEG", quality=JPEG_QUALITY, subsampling=0)
-    return _data_url("image/jpeg", file)
+    height, width, channels = codes.shape
+    spec = OpenImageIO.ImageSpec(width, height, channels, "uint8")
+    spec.attribute("Compression", f"jpeg:{JPEG_QUALITY}")
+    spec.attribute("jpeg:subsampling", "4:4:4")
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "image.jpg"
+        image = OpenImageIO.ImageOutput.create("jpeg")
+        if not (image and image.open(utf8_name(path, OutputError), spec) and image.write_image(codes)):
+            raise OSError(read_error(image or OpenImageIO))
+        image.close()
+        return _data_url("image/jpeg", path.read_bytes())
 
 
 def _map(values: NDArray[np.float64]) -> str:
     """Encode a map as a PNG with a palette of the 256 colours of the ramp."""
-    from PIL import Image
+    codes = np.rint(255 * np.clip(values, 0, 1)).astype(np.uint8)
+    height, width = codes.shape
+    chunks = {
+        b"IHDR": struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0),  # 8-bit palette
+        b"PLTE": ramp_codes(np.linspace(0, 1, 256)).tobytes(),
+        b"IDAT": zlib.compress(np.pad(codes, ((0, 0), (1, 0))).tobytes(), 9),  # each row begins with its filter, none
+        b"IEND": b"",
+    }
+    parts = (
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        for kind, data in chunks.items()
+    )
+    return _data_url("image/png", b"\x89PNG\r\n\x1a\n" + b"".join(parts))
 
-    image = Image.fromarray(np.rint(255 * np.clip(values, 0, 1)).astype(np.uint8), "P")
-    image.putpalette(ramp_codes(np.linspace(0, 1, 256)).tobytes())
-    file = io.BytesIO()
-    image.save(file, "PNG", optimize=True)
-    return _data_url("image/png", file)
 
-
-def _data_url(kind: str, file: io.BytesIO) -> str:
-    return f"data:{kind};base64,{base64.b64encode(file.getvalue()).decode()}"
+def _data_url(kind: str, data: bytes) -> str:
+    return f"data:{kind};base64,{base64.b64encode(data).decode()}"

@@ -11,7 +11,7 @@ from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.lights.lattice import chromaticity, unit_xyz
 from uplift.lights.lookup import EmissionTable
-from uplift.viz.figure import GREY, INK, STYLE, colour_map
+from uplift.viz.figure import GREY, INK, colour_map, styled
 from uplift.viz.scatter import LEGEND, Label, draw_labels, new_panels, style_title
 
 PANEL = (5.6, 5.4)  # inches of a diagram with its margins
@@ -37,9 +37,7 @@ ALL = Window((-0.04, 0.64), (0.0, 0.62))  # all chromaticities of lights, with a
 
 def light_figure(table: EmissionTable) -> Any:
     """Draw colours, expected errors, and the region of the lamps side by side."""
-    import matplotlib
-
-    with matplotlib.rc_context(STYLE):
+    with styled():
         figure, ((colours, errors, lamps),) = new_panels(1, 3, PANEL, MARGINS)
         draw_colours(colours, table)
         draw_errors(errors, table)

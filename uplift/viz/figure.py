@@ -5,6 +5,7 @@ import io
 import os
 import re
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from typing import Any, Literal
 
 import numpy as np
@@ -12,7 +13,7 @@ from markupsafe import Markup, escape
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
-from uplift.common.errors import OutputError
+from uplift.common.errors import OutputError, needs_extra
 from uplift.common.files import atomic_write
 from uplift.common.text import printable
 
@@ -57,6 +58,19 @@ _UNUSED = re.compile(r' id="[\w.]+_\d+"|<!--.*?-->|<defs>\s*<style.*?</style>\s*
 _IDENTIFIER = re.compile(r'(id="|#)([mp][0-9a-f]{10})(?=["\)])')
 
 
+def matplotlib() -> Any:
+    """Import matplotlib, which the extra ``plots`` installs. Raises `OutputError`."""
+    with needs_extra("plots", "figures", OutputError):
+        import matplotlib
+    return matplotlib
+
+
+def styled() -> AbstractContextManager[None]:
+    """Draw in `STYLE` in the block."""
+    style: AbstractContextManager[None] = matplotlib().rc_context(STYLE)
+    return style
+
+
 def figure_text(text: str) -> str:
     """Prepare text that comes from a file for a figure, which shows it as it is.
 
@@ -68,7 +82,8 @@ def figure_text(text: str) -> str:
 
 
 def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Any:
-    """Create an empty figure without a window."""
+    """Create an empty figure without a window. Raises `OutputError` without matplotlib."""
+    matplotlib()
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout=layout)
@@ -107,18 +122,18 @@ def rendered(figure: Any) -> NDArray[np.uint8]:
 
 
 def check_suffix(path: str | os.PathLike[str]) -> str:
-    """Return the format of a figure's file, by its suffix."""
+    """Return the format of a figure's file, by its suffix. Raises `OutputError`, also without matplotlib."""
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in SUFFIXES:
         problem = f"the suffix of a plot must be one of {', '.join(SUFFIXES)}, got '{suffix}'"
         hint = "name the file accordingly, such as plot.svg"
         raise OutputError(problem, path=path, hint=hint)
+    matplotlib()
     return suffix
 
 
 def write_figure(figure: Any, path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Write a figure as PNG, SVG or PDF, by the suffix of its file. Equal figures give equal files."""
-    import matplotlib
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
@@ -126,7 +141,7 @@ def write_figure(figure: Any, path: str | os.PathLike[str], *, force: bool = Fal
     if suffix == ".png":
         write_png(figure, path, force=force)
         return
-    with atomic_write(path, force=force) as temporary, matplotlib.rc_context(STYLE):
+    with atomic_write(path, force=force) as temporary, styled():
         if suffix == ".svg":
             FigureCanvasSVG(figure).print_svg(temporary, metadata=_NO_METADATA)
         else:

@@ -23,7 +23,7 @@ from uplift.common.files import atomic_write, check_output
 from uplift.cube import CubeData
 from uplift.io import exr
 from uplift.io.exr import blue_slices
-from uplift.viz.figure import figure_text
+from uplift.viz.figure import figure_text, matplotlib
 from uplift.viz.format import pluralise
 
 TEXT_GREY = 0.75  # linear grey of the text
@@ -47,6 +47,7 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
         channels = {letter: image[..., i] for i, letter in enumerate("RGB")}
         exr.write_parts([exr.make_part("sheet", exr.attributes(data), channels)], path, force=force)
         return
+    matplotlib()
     from matplotlib.image import imsave
 
     codes = np.rint(255 * encode(image)).astype(np.uint8)
@@ -65,6 +66,7 @@ def check_sheet(path: StrPath, *, force: bool = False) -> None:
 
 def _draw_text(image: Image, labels: tuple["Label", ...]) -> Image:
     """Draw the labels on the image (height, width, 3) in the font that comes with matplotlib."""
+    matplotlib()
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

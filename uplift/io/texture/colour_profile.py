@@ -1,13 +1,12 @@
 """Colour space that an image file states: colorInteropID or chromaticities of OpenEXR, PNG code points, or ICC.
 
-Matrix profiles, as displays have them, state their primaries and tone curves. LittleCMS, through Pillow, reads the
-primaries, but evaluates curves with 8 bits only: they are read here. Profiles with lookup tables are not used.
+Matrix profiles, as displays have them, state their primaries, adapted to D50, and tone curves (ICC.1:2022, 8.4.3).
+Profiles with lookup tables are not used.
 """
 
 import contextlib
-import io
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,6 +33,7 @@ D50 = (0.3457, 0.3585)
 GREY = b"GRAY"
 NOT_STATED = ("", "unknown")
 """Values of colorInteropID that name no space."""
+COLORANTS = (b"rXYZ", b"gXYZ", b"bXYZ")
 TONE_CURVES = (b"rTRC", b"gTRC", b"bTRC")
 GREY_CURVE = b"kTRC"
 MAX_TAGS = 100
@@ -115,29 +115,24 @@ def _primaries(numbers: Any) -> Primaries | None:
 
 
 def _icc_space(name: str, data: bytes) -> ImageSpace | None:
-    from PIL import ImageCms
-
-    curves = _tone_curves(data)
+    """Return the space of a matrix or grey profile; None for others, and for damaged ones."""
     try:
-        icc = ImageCms.ImageCmsProfile(io.BytesIO(data))
-    except OSError:
+        (count,) = struct.unpack_from(">I", data, 128)
+        entries = (struct.unpack_from(">4sII", data, 132 + 12 * index) for index in range(min(count, MAX_TAGS)))
+        tags = {tag: data[start : start + size] for tag, start, size in entries}
+        curves = _tone_curves(tags)
+        xyz = [] if data[16:20] == GREY else [struct.unpack_from(">3i", tags[colorant], 8) for colorant in COLORANTS]
+        numbers = [part / sum(each) for each in xyz for part in each[:2]]
+    except (KeyError, ValueError, ZeroDivisionError, struct.error):
         return None
-    primaries = (icc.profile.red_primary, icc.profile.green_primary, icc.profile.blue_primary)
-    numbers = [number for each in primaries if each is not None for number in each[1][:2]]
-    gamut = SRGB if data[16:20] == GREY else _primaries((*numbers, *D50))
+    gamut = _primaries((*numbers, *D50)) if numbers else SRGB
     return None if gamut is None or curves is None else ImageSpace(name, gamut, curves)
 
 
-def _tone_curves(profile: bytes) -> Curve | None:
-    """Return the tone curves (…, 3) of a matrix or grey profile; None for others, and for damaged ones."""
-    try:
-        (count,) = struct.unpack_from(">I", profile, 128)
-        entries = (struct.unpack_from(">4sII", profile, 132 + 12 * index) for index in range(min(count, MAX_TAGS)))
-        tags = {name: profile[start : start + size] for name, start, size in entries}
-        names = TONE_CURVES if all(name in tags for name in TONE_CURVES) else (GREY_CURVE,) * 3
-        curves = [_tone_curve(tags[name]) for name in names]
-    except (KeyError, ValueError, struct.error):
-        return None
+def _tone_curves(tags: Mapping[bytes, bytes]) -> Curve | None:
+    """Return the tone curves (…, 3), None for implausible ones. Raises `KeyError`, `ValueError`, `struct.error`."""
+    names = TONE_CURVES if all(name in tags for name in TONE_CURVES) else (GREY_CURVE,) * 3
+    curves = [_tone_curve(tags[name]) for name in names]
 
     def evaluate(codes: Array) -> Array:
         return np.stack([curve(codes[..., channel]) for channel, curve in enumerate(curves)], axis=-1)

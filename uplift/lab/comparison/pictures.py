@@ -8,7 +8,7 @@ from markupsafe import Markup
 from uplift.common.arrays import StrPath
 from uplift.lab.comparison.compare import HEADINGS, Comparison, RepresentationResult, TunedFilter
 from uplift.lab.panels import Panel, Point, family_colours, page_panel, write_panels
-from uplift.viz.figure import INK, OTHER, STYLE, new_figure, style_axes, to_page_svg, write_png
+from uplift.viz.figure import INK, OTHER, new_figure, style_axes, styled, to_page_svg, write_png
 from uplift.viz.format import capitalise, format_error, format_time
 from uplift.viz.html import Tooltip, render
 from uplift.viz.scatter import style_title
@@ -85,17 +85,13 @@ def write_costs(comparison: Comparison, path: StrPath, *, force: bool = False) -
 
 def write_boxes(comparison: Comparison, path: StrPath, *, force: bool = False) -> None:
     """Write box plots of all sets of lights as PNG. Raises `OutputError`."""
-    import matplotlib
-
-    with matplotlib.rc_context(STYLE):
+    with styled():
         write_png(draw_boxes(comparison, list(comparison.sets)), path, force=force)
 
 
 def page_boxes(comparison: Comparison) -> list[tuple[str, Markup]]:
     """Draw the box plots of each set of lights for a page."""
-    import matplotlib
-
-    with matplotlib.rc_context(STYLE):
+    with styled():
         return [
             (capitalise(title), to_page_svg(draw_boxes(comparison, [name], titles=False), f"Box plots under {title}"))
             for name, title in comparison.sets.items()

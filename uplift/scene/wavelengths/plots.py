@@ -9,7 +9,7 @@ from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array, StrPath
 from uplift.scene.wavelengths import Choice
 from uplift.scene.wavelengths.sampling import RenderSetup, interp_curves
-from uplift.viz.figure import GREY, INK, STYLE, new_figure, style_axes, write_figure
+from uplift.viz.figure import GREY, INK, new_figure, style_axes, styled, write_figure
 
 WIDTH, PANEL_HEIGHT, MARGIN_HEIGHT = 7.2, 1.55, 0.9
 """Inches: width of the figure, height of a panel, height above and below all panels."""
@@ -18,10 +18,8 @@ CHANNEL_COLOURS = {"X": "#c0392b", "Y": "#2e8b57", "Z": "#2f5fb3"}
 
 def plot_choice(setup: RenderSetup, choice: Choice, path: StrPath, *, force: bool = False) -> None:
     """Write a figure with a panel per light, showing its powers, and a panel of the weights. Raises `OutputError`."""
-    import matplotlib
-
     sampling, errors = choice.sampling, choice.errors
-    with matplotlib.rc_context(STYLE):
+    with styled():
         figure = new_figure(WIDTH, MARGIN_HEIGHT + PANEL_HEIGHT * (len(sampling.lights) + 1))
         panels = figure.subplots(len(sampling.lights) + 1, 1, sharex=True, squeeze=False)[:, 0]
         for light, axes in enumerate(panels[:-1]):
