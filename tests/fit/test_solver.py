@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import least_squares, minimize
 
 from uplift import build, load
-from uplift.fit.batch import CPU_BATCH_ROWS, batches, shard
+from uplift.fit.batch import CPU_ROWS, map_batches
 from uplift.fit.solver import LeastChange, solve
 from uplift.models import Moments, Sigmoid, evaluate
 from uplift.models.minimum_norm import forward_map
@@ -60,7 +60,7 @@ def test_solutions_do_not_depend_on_the_batch(sensor, max_passes):
     forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     dark, wild = [[2e-4, 1e-3, 1e-5]], [[0.9, 0.0, 0.9], [1.2, -0.3, 0.5]]
     few = np.concatenate([TARGETS[:5], dark, wild])
-    many = np.resize(few, (CPU_BATCH_ROWS[0] + len(few), 3))
+    many = np.resize(few, (CPU_ROWS[0] + len(few), 3))
     crowd = solve(forward, np.zeros((len(many), 9)), many, tolerance=1e-8, max_passes=max_passes)
     for row, target in enumerate(few):
         alone = solve(forward, np.zeros((1, 9)), target[None], tolerance=1e-8, max_passes=max_passes)
@@ -142,30 +142,16 @@ def test_every_step_of_the_lattice_goes_through_the_interface_of_optimistix(monk
     assert (still.points.distance > 1e-4).mean() > 0.9
 
 
-LARGE, NARROW = CPU_BATCH_ROWS
+def squares(constants, rows):
+    return constants * rows["x"] ** 2, rows["x"][:, 0]
 
 
-@pytest.mark.parametrize(
-    ("count", "smaller", "sizes"),
-    [
-        (0, 4, []),
-        (NARROW + 1, 4, [NARROW, NARROW]),
-        (4 * NARROW, 4, [NARROW] * 4),
-        (4 * NARROW + 1, 4, [LARGE]),
-        (4 * NARROW + 1, 5, [NARROW] * 5),
-        (2 * LARGE + 3, 4, [LARGE, LARGE, NARROW]),
-    ],
-)
-def test_every_row_is_in_one_batch(count, smaller, sizes):
-    rows = np.arange(count) + 7
-    parts = list(batches(count, smaller))
-    np.testing.assert_array_equal(np.concatenate([rows[:0], *(rows[part] for part, _ in parts)]), rows)
-    assert [width for _, width in parts] == sizes
-    for part, width in parts:
-        padded = np.asarray(shard(rows[part], width))
-        np.testing.assert_array_equal(padded[: len(rows[part])], rows[part])
-        assert len(padded) == width
-        assert set(padded[len(rows[part]) :]) <= {rows[part][-1]}
+@pytest.mark.parametrize("count", [1, CPU_ROWS[1] + 1, 2 * CPU_ROWS[0] + 3])
+def test_every_row_is_in_one_batch(count):
+    x = RNG.random((count, 2))
+    found, first = map_batches(squares, np.array(3.0), {"x": x})
+    np.testing.assert_allclose(found, 3 * x**2, rtol=1e-15)
+    np.testing.assert_array_equal(first, x[:, 0])
 
 
 SEVERAL = """

@@ -165,7 +165,7 @@ def test_builds_do_not_depend_on_batches(monkeypatch):
     """In a wide gamut, where some points need many iterations."""
     options = {"dim": 7, "space": "ITU-R BT.2020"}
     as_it_is = quietly(MACBETH, **options).data
-    monkeypatch.setattr("uplift.fit.batch.CPU_BATCH_ROWS", (1024, 64))
+    monkeypatch.setattr("uplift.fit.batch.CPU_ROWS", (1024, 256))
     assert digest(quietly(MACBETH, **options).data) == digest(as_it_is)
 
 

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 _LOCK = threading.Lock()
+_CALLERS: set[object] = set()
 _LIMITS: list[Any] = []
-"""The limit of the process, once for every caller."""
+"""Those of the callers in their order, all lifted after the last caller: a later one may know more libraries."""
 
 
 @contextlib.contextmanager
@@ -18,23 +19,25 @@ def single_threaded_blas() -> Iterator[None]:
 
     The matrices of this package are small, so threads would wait for each other. Results then also do not depend on the
     number of threads, which changes the rounding of sums. The threads of XLA are not affected: they distribute rows.
+    Only loaded libraries are limited: scipy, which brings its own BLAS, must be imported before.
     """
-    import scipy.linalg  # noqa: F401  loads its own BLAS, and only loaded libraries can be limited
     from threadpoolctl import OpenBLASController, ThreadpoolController, threadpool_limits
 
     per_thread = ThreadpoolController().select(threading_layer="openmp")  # its limits hold for the calling thread
     with per_thread.limit(limits=1, user_api="blas"):
+        caller = object()
         with _LOCK:
-            _LIMITS.append(_LIMITS[0] if _LIMITS else threadpool_limits(1, user_api="blas"))
+            _CALLERS.add(caller)
+            _LIMITS.append(threadpool_limits(1, user_api="blas"))
         try:
             yield
         finally:
             with _LOCK:
-                limit = _LIMITS.pop()
-                if not _LIMITS:
+                _CALLERS.remove(caller)
+                while _LIMITS and not _CALLERS:
                     # The limit can otherwise be restored by the thread only that set it.
                     OpenBLASController.clear_controlling_thread(force=True)
-                    limit.restore_original_limits()
+                    _LIMITS.pop().restore_original_limits()
 
 
 CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")

@@ -23,7 +23,7 @@ from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.solver import solve
 from uplift.lattice import Lattice, weighted_sum
 from uplift.models import Moments, reflectance
-from uplift.models.arithmetic import blocked_matmul
+from uplift.models.arithmetic import blocked_matmul, distances
 from uplift.models.duality import cosine_basis
 from uplift.models.minimum_norm import ForwardMap
 from uplift.models.model import Model
@@ -145,15 +145,13 @@ def learn_base(
 
 def _samples(plain: Base, problem: Problem, family: Family, entries: FittedEntries | None) -> FamilySamples:
     """Deviations of the spectra of a family from smooth ones, brightened; spectra of atlas entries are left out."""
-    from scipy.spatial import cKDTree
-
     sensor = problem.sensor
     rgb = sensor.rgb(family.measured)
     rows = np.flatnonzero(sensor.contains(rgb))
     rgb, measured = np.clip(rgb[rows], 0, 1), family.measured[rows]
     locations = rgb_to_lab(sensor, rgb)
     if entries is not None and len(entries.rgb) and len(rgb):
-        close = cKDTree(rgb_to_lab(sensor, entries.rgb)).query_ball_point(locations, SAME_COLOUR)
+        close = distances(locations, rgb_to_lab(sensor, entries.rgb)) <= SAME_COLOUR
         differences = [
             ((entries.measured[near] - own) ** 2).mean(axis=1) for near, own in zip(close, measured, strict=True)
         ]

@@ -1,22 +1,25 @@
 """Batches of few shapes, so that XLA compiles rarely, over all devices of JAX; the compiled integrals of moments."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from functools import cache, partial
 from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax import lax
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, blocks
 from uplift.models import Moments
 from uplift.models.arithmetic import arctan
 from uplift.models.duality import integrate, moments_from_multipliers
 from uplift.models.minimum_norm import ForwardMap
 from uplift.models.model import Model
 
-CPU_BATCH_ROWS, ACCELERATOR_BATCH_ROWS = (2048, 64), (1 << 17, 4096)
-"""Rows per device: a large batch that fills a core's cache or keeps a GPU busy, and a small one for short rounds."""
+CPU_ROWS, ACCELERATOR_ROWS = (4096, 256), (1 << 15, 1 << 15)
+"""Rows of a batch per device, and of a chunk: that of a CPU fits its cache, an accelerator takes a whole batch."""
+EVERYWHERE, ROWS = PartitionSpec(), PartitionSpec("rows")  # type: ignore[no-untyped-call]
 MAX_NODES = 256
 """Larger rules of integration, which few spectra need, are not worth compiling."""
 PART_NODES = 97
@@ -29,46 +32,59 @@ jax.tree_util.register_dataclass(
 )
 
 
-def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any, max_small: int = 0) -> Any:
-    """Apply a compiled function to constants and to trees of arrays (n, …), n > 0, and join the arrays it returns."""
-    parts = []
+def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any) -> Any:
+    """Apply a function to constants and to trees of arrays (n, …), n > 0, and join the arrays that it returns.
+
+    It is compiled for a chunk of rows, once if it is the same object in each call. Batches run side by side.
+    """
+    devices, parts = len(jax.devices()), []
+    width, chunk = CPU_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_ROWS
     with jax.enable_x64(True):
-        constants = _distribute(constants)
-        for rows, width in batches(len(arrays[0]), max_small):
-            given = jax.tree.map(lambda array, rows=rows, width=width: shard(array[rows], width), arrays)
-            result = function(constants, *given)
-            parts.append(jax.tree.map(lambda array, rows=rows: np.asarray(array)[: rows.stop - rows.start], result))
+        run, constants = _program(function, chunk, devices), _place(constants, EVERYWHERE)
+        for rows in blocks(len(jax.tree.leaves(arrays)[0]), devices * width):
+            # The last row is repeated. Chunks beyond the counts are not computed.
+            count, last = rows.stop - rows.start, rows.stop - 1
+            own = np.minimum(np.arange(rows.start, rows.start + devices * width), last)
+            counts = np.clip(count - width * np.arange(devices), 0, width)
+            given = jax.tree.map(lambda array, own=own: array[own], arrays)
+            parts.append((count, run(constants, *_place((counts, given), ROWS))))
+        parts = [jax.tree.map(lambda array, count=count: np.asarray(array)[:count], part) for count, part in parts]
     return jax.tree.map(lambda *joined: np.concatenate(joined), *parts)
 
 
-def batches(count: int, max_small: int = 0) -> Iterator[tuple[slice, int]]:
-    """Split rows into large batches and a remainder: their slices, and the width that `shard` pads them to.
+@cache
+def _program(function: Callable[..., Any], chunk: int, devices: int) -> Callable[..., Any]:
+    """Compile the loop over the chunks of a batch on each device."""
+    traced_once = jax.jit(function)
 
-    The remainder is split into at most ``max_small`` small batches; a longer one becomes a large batch. A second width
-    is a second program to compile or to load, which small batches must be worth.
-    """
-    devices = len(jax.devices())
-    sizes = CPU_BATCH_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_BATCH_ROWS
-    large, small = (devices * size for size in sizes)
-    filled = count // large * large
-    remainder = large if count - filled > max_small * small else small
-    for first, last, width in ((0, filled, large), (filled, count, remainder)):
-        for begin in range(first, last, width):
-            yield slice(begin, min(begin + width, last)), width
+    def run(constants: Any, counts: jax.Array, arrays: Any) -> Any:
+        def compute(first: Any) -> Any:
+            rows = jax.tree.map(lambda array: lax.dynamic_slice_in_dim(array, first, chunk), arrays)
+            return traced_once(constants, *rows)
+
+        def advance(carry: Any) -> Any:
+            first, results = carry
+            update = partial(lax.dynamic_update_slice_in_dim, start_index=first, axis=0)
+            return first + chunk, jax.tree.map(update, results, compute(first))
+
+        width = len(jax.tree.leaves(arrays)[0])
+        empty = jax.tree.map(lambda some: jnp.zeros((width, *some.shape[1:]), some.dtype), jax.eval_shape(compute, 0))
+        return lax.while_loop(lambda carry: carry[0] < counts[0], advance, (jnp.asarray(0), empty))[1]
+
+    if devices > 1:
+        run = jax.shard_map(run, mesh=_mesh(), in_specs=(EVERYWHERE, ROWS, ROWS), out_specs=ROWS, check_vma=False)
+    return jax.jit(run)
 
 
-def shard(rows: Array, width: int) -> Any:
-    """Distribute the rows of a batch over the devices, with the last one repeated up to ``width``."""
-    missing = width - len(rows)
-    padded = np.concatenate([rows, np.repeat(rows[-1:], missing, axis=0)]) if missing else rows
-    return _distribute(padded, "rows") if len(jax.devices()) > 1 else padded
-
-
-def _distribute(arrays: Any, *axes: str) -> Any:
+def _place(arrays: Any, spec: PartitionSpec) -> Any:
+    """Put arrays on the devices."""
     if len(jax.devices()) == 1:
         return jax.device_put(arrays)
-    mesh = Mesh(np.array(jax.devices()), ("rows",))
-    return jax.device_put(arrays, NamedSharding(mesh, PartitionSpec(*axes)))  # type: ignore[no-untyped-call]
+    return jax.device_put(arrays, NamedSharding(_mesh(), spec))  # type: ignore[no-untyped-call]
+
+
+def _mesh() -> Mesh:
+    return Mesh(np.array(jax.devices()), ("rows",))
 
 
 def to_storage(model: Model, multipliers: Array) -> Array:
@@ -93,7 +109,6 @@ def _integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     return moments
 
 
-@jax.jit
 def _weighted(rule: tuple[jax.Array, jax.Array], multipliers: jax.Array) -> jax.Array:
     synthesis, analysis = rule
     return (0.5 + arctan(multipliers @ synthesis) / jnp.pi) @ analysis

@@ -36,6 +36,8 @@ def solve_bounded(problem: BoundedProblem) -> Array:
     Without bounds the pseudo-inverse gives the minimum of least norm. With bounds an active-set method does: BVLS of
     Stark & Parker 1995 in scipy's ``lsq_linear``. Independent blocks are solved one by one.
     """
+    import scipy.linalg  # noqa: F401  whose BLAS is limited only if it is loaded
+
     x = np.zeros(problem.matrix.shape[1])
     with single_threaded_blas():
         for rows, columns in _independent_blocks(problem.matrix):

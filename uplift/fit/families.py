@@ -24,6 +24,7 @@ from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.errors import unknown_name
 from uplift.fit.entries import LIGHTS_WEIGHT
 from uplift.fit.kriging import JITTER, Kernel
+from uplift.models.arithmetic import distances
 
 FILE = "library.npz"
 """Package data, written by tools/ship_library.py."""
@@ -124,8 +125,6 @@ class FamilyKriging:
 
 def krige_families(families: Sequence[FamilySamples]) -> FamilyKriging:
     """Fit the kriging of the deviations of families of any size, also empty."""
-    from scipy.linalg import cho_factor, cho_solve
-
     sizes = [len(family.locations) for family in families]
     number = np.repeat(np.arange(len(families)), sizes)
     locations, deviations, counts = (
@@ -139,7 +138,7 @@ def krige_families(families: Sequence[FamilySamples]) -> FamilyKriging:
         rows = np.flatnonzero(number == own)
         covariance[np.ix_(rows, rows)] *= 1 + spread[own]
     covariance[np.diag_indices(len(number))] += NUGGET / counts
-    weights = cho_solve(cho_factor(covariance, overwrite_a=True), deviations)
+    weights = np.linalg.solve(covariance, deviations)
     # Their covariance with a new material, whose deviation is d(x) and the related part of d_f(x).
     weights *= (1 + related * spread)[number][:, None]
     return FamilyKriging(locations, weights, number, len(families))
@@ -171,9 +170,7 @@ def _kernel_sum(lab: Array, locations: Array, weights: Array) -> Array:
 
 def _matern(first: Array, second: Array) -> Array:
     """Matérn correlation (n, m) with ν = 3/2: (1 + √3 d / l) exp(−√3 d / l), in place."""
-    from scipy.spatial.distance import cdist
-
-    distance = cdist(first, second)
+    distance = distances(first, second)
     distance *= -np.sqrt(3) / LENGTH
     kernel = np.exp(distance)
     kernel *= np.subtract(1, distance, out=distance)
@@ -187,17 +184,13 @@ def learn_relevance(lights: Sequence[Light], locations: Array, plain: Array, par
     ``parts`` (F, n, N) are the contributions of the families. Residuals are differences of spectra and of their colours
     under the lights; those of entries of close colours are correlated.
     """
-    from scipy.linalg import solve_triangular
-    from scipy.optimize import lsq_linear
-    from scipy.spatial.distance import cdist
-
     assumed = np.ones(len(parts))
     if not len(measured):
         return assumed
     matrices, whites = (np.stack([getattr(light, name) for light in lights]) for name in ("xyz", "white"))
     expected = np.clip(plain + parts.sum(axis=0), 0, 1)
     to_lab = LIGHTS_WEIGHT * lab_jacobian((expected @ matrices.mT).swapaxes(0, 1), whites)
-    covariance = CORRELATED(cdist(locations, locations)) / CORRELATED(np.zeros(()))
+    covariance = CORRELATED(distances(locations, locations)) / CORRELATED(np.zeros(()))
     root = np.linalg.cholesky(covariance + JITTER * np.eye(len(covariance)))
 
     def independent(change: Array) -> Array:
@@ -205,7 +198,7 @@ def learn_relevance(lights: Sequence[Light], locations: Array, plain: Array, par
         xyz = (change @ matrices.mT).swapaxes(0, 1)
         colours = (to_lab @ xyz[..., None])[..., 0].reshape(len(change), -1)
         features = np.concatenate([change / np.sqrt(change.shape[1]), colours], axis=1)
-        return np.asarray(solve_triangular(root, features, lower=True))
+        return np.asarray(np.linalg.solve(root, features))
 
     columns = np.stack([independent(part).ravel() for part in parts], axis=1)
     unexplained = independent(measured - plain)
@@ -220,4 +213,10 @@ def learn_relevance(lights: Sequence[Light], locations: Array, plain: Array, par
     ridge = np.sqrt(noise / VARIANCE)  # noise over assumed variance
     rows = np.concatenate([columns, ridge * np.eye(len(parts))])
     goal = np.concatenate([unexplained.ravel(), ridge * assumed])
-    return np.asarray(lsq_linear(rows, goal, bounds=(0, MAX_RELEVANCE), method="bvls").x)
+    q, r = np.linalg.qr(rows)
+    unbounded = np.linalg.solve(r, q.T @ goal)
+    if ((unbounded >= 0) & (unbounded <= MAX_RELEVANCE)).all():
+        return unbounded
+    from scipy.optimize import lsq_linear
+
+    return np.asarray(lsq_linear(r, q.T @ goal, bounds=(0, MAX_RELEVANCE), method="bvls").x)

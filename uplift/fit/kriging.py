@@ -14,6 +14,7 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
 from uplift.common.arrays import Array, blocks
 from uplift.fit.problem import Problem
+from uplift.models.arithmetic import distances
 
 REACH = 12.0
 """ΔE*ab within which a deviation that belongs to one entry alone fades away."""
@@ -72,16 +73,10 @@ class Kriging:
 
 def krige(locations: Array, deviations: Array, kernel: Kernel) -> tuple[Kriging, Array]:
     """Fit the kriging of deviations (E, C) at L*a*b* (E, 3); with it, return its leave-one-out errors (E, C)."""
-    from scipy.linalg import cho_factor, cho_solve
-    from scipy.linalg.lapack import dpotri
-    from scipy.spatial.distance import cdist
-
     # w = (K + 10⁻³ I)⁻¹ D, and the error of entry i without itself is w_i / [(K + 10⁻³ I)⁻¹]_ii.
-    covariance = kernel(cdist(locations, locations))
-    factor = cho_factor(covariance + JITTER * np.eye(len(covariance)))
-    weights = cho_solve(factor, deviations)
-    inverse, _ = dpotri(factor[0], overwrite_c=True)
-    return Kriging(locations, weights, kernel), weights / np.diag(inverse)[:, None]
+    precision = np.linalg.inv(kernel(distances(locations, locations)) + JITTER * np.eye(len(locations)))
+    weights = precision @ deviations
+    return Kriging(locations, weights, kernel), weights / np.diag(precision)[:, None]
 
 
 def kernel_sums(lab: Array, locations: Array, columns: Array, kernel: Kernel) -> tuple[Array, Array]:

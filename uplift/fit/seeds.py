@@ -49,14 +49,12 @@ def outside_half_widths(lattice: Lattice, rgb: Array) -> Array:
 
 def _half_widths(steps: Array) -> Array:
     """Half widths (E,) of the boxes around positions (E, 3) in lattice steps."""
-    from scipy.spatial import KDTree
-
-    if len(steps) < 2:
-        return np.full(len(steps), MAX_HALF_WIDTH)
-    unique = np.ones(len(steps), dtype=bool)
-    unique[[later for _, later in KDTree(steps).query_pairs(SAME_COLOUR, p=np.inf)]] = False
-    widths = np.zeros(len(steps))
-    nearest = KDTree(steps[unique]).query(steps[unique], k=2, p=np.inf)[0][:, 1]
+    widths, apart = np.zeros(len(steps)), np.zeros((len(steps), len(steps)))
+    for row, step in zip(apart, steps, strict=True):
+        row[:] = np.abs(steps - step).max(axis=1)
+    unique = ~np.tril(apart <= SAME_COLOUR, -1).any(axis=1)
+    np.fill_diagonal(apart, np.inf)
+    nearest = apart[np.ix_(unique, unique)].min(axis=1, initial=np.inf)
     widths[unique] = np.minimum(MAX_HALF_WIDTH, nearest / 2)
     return widths
 

@@ -6,7 +6,7 @@ other solver of optimistix (`uplift.fit.stock_solvers`), over batches of fixed s
 """
 
 from collections.abc import Callable, Iterator
-from functools import partial
+from functools import cache
 from itertools import chain, islice, repeat
 from typing import Any, NamedTuple, Protocol
 
@@ -27,8 +27,6 @@ FIRST_DAMPING = 1e-6
 """Initial μ; divided by four after a successful step, multiplied by four after a rejected one."""
 SINGLE_STEPS, MORE_STEPS = 2, 8
 """Passes that take one step, in which most problems converge, and the steps of each later pass."""
-MAX_SMALL_BATCHES = 12
-"""Small batches that are cheaper than a large one, which runs until its last problem converges."""
 MIN_GAIN, PATIENCE = 1e-3, 8
 """A problem is abandoned after `PATIENCE` consecutive passes that each reduce its distance by less than `MIN_GAIN`.
 Otherwise unrealisable colours, frequent in wide gamuts, would remain until the last pass."""
@@ -183,8 +181,8 @@ def solve(
         if not rows.size:
             break
         given = (solution.multipliers[rows], target[rows], options)
-        advance = partial(_advance, method, tolerance=tolerance, max_steps=steps)
-        y, residual, taken, options = map_batches(advance, forward, *given, max_small=MAX_SMALL_BATCHES)
+        advance = _advance(method)  # type: ignore[arg-type]
+        y, residual, taken, options = map_batches(advance, (forward, tolerance, steps), *given)
         steps_taken[rows] += taken
         before = solution.distance[rows]
         closer = (residual**2).sum(axis=1) <= (solution.residual[rows] ** 2).sum(axis=1)
@@ -199,21 +197,23 @@ def solve(
     return solution
 
 
-@partial(jax.jit, static_argnums=0)
-def _advance(
-    method: Method,
-    forward: ForwardMap,
-    y: jax.Array,
-    target: jax.Array,
-    options: Options,
-    *,
-    tolerance: float,
-    max_steps: int,
-) -> tuple[jax.Array, jax.Array, jax.Array, Options]:
-    """Take up to ``max_steps`` steps in a batch; the options go on from there."""
-    solver = method(forward, tolerance)
-    y, state, steps = iterate(solver, lambda p, goal: (forward.residual(p, goal), None), y, target, options, max_steps)
-    return y, state.residual, jnp.full(len(y), steps), solver.resume(options, y, state)
+@cache
+def _advance(method: Method) -> Callable[..., Any]:
+    """Make the function that takes up to a number of steps in a chunk of rows; the options go on from there."""
+
+    def advance(constants: Any, y: jax.Array, target: jax.Array, options: Options) -> Any:
+        forward, tolerance, max_steps = constants
+        solver = method(forward, tolerance)
+        y, state, steps = iterate(
+            solver, _without_aux(forward, jax.jit(ForwardMap.residual)), y, target, options, max_steps
+        )
+        return y, state.residual, jnp.full(len(y), steps), solver.resume(options, y, state)
+
+    return advance
+
+
+def _without_aux(forward: ForwardMap, residual: Callable[..., Any] = ForwardMap.residual) -> Any:
+    return lambda p, goal: (residual(forward, p, goal), None)
 
 
 def iterate(solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps: Any) -> tuple[Any, Any, Any]:
@@ -244,11 +244,7 @@ def solve_singly(forward: ForwardMap, start: Array, target: Array, tolerance: fl
 
     The steps are those of numpy: nothing needs to be compiled for a few problems.
     """
-
-    def fn(p: Any, goal: Any) -> tuple[Any, None]:
-        return forward.residual(p, goal), None
-
-    solver, multipliers = LeastChange(forward, tolerance), start.copy()
+    fn, solver, multipliers = _without_aux(forward), LeastChange(forward, tolerance), start.copy()
     for row, goal in enumerate(target):
         y = start[row : row + 1]
         options = LeastChange.options(y, None)

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-import jax
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,7 +18,6 @@ SINGLE: np.dtype[Any] = np.dtype(np.float32)
 DOUBLE: np.dtype[Any] = np.dtype(np.float64)
 MAX_LOSS = 0.1
 """Part of the threshold that single precision may add to the distance of a node; docs/stability.md."""
-_rgb = jax.jit(ForwardMap.rgb)
 
 
 def store(growth: Growth, seeds: Seeds, prior: Prior) -> PointTable:
@@ -61,7 +59,7 @@ def _store_coefficients(
     def evaluate(points: Indices) -> None:
         if points.size:
             multipliers = problem.model.from_storage(coefficients[points].astype(kind))
-            rgb = map_batches(_rgb, problem.forward, multipliers)
+            rgb = map_batches(ForwardMap.rgb, problem.forward, multipliers)
             growth.rgb[points], distance[points] = rgb, np.abs(nodes.goal(points) - rgb).max(axis=1)
 
     # Block by block; once a block loses too much in single precision, all sensitive nodes so far are evaluated again.
