@@ -6,6 +6,8 @@ import os
 import signal
 import stat
 import sys
+import threading
+import time
 import warnings
 from pathlib import Path
 
@@ -15,6 +17,8 @@ from uplift.common.text import printable
 
 ENDING = ("SIGTERM", "SIGHUP", "SIGBREAK")
 """Signals that end a command and its worker processes, as well as Ctrl-C."""
+GRACE = 5.0
+"""Seconds between Ctrl-C and the end of a command that does not react."""
 _CACHES: set[Path] = set()
 """The folder of compiled code that is checked and in use."""
 
@@ -29,6 +33,8 @@ def prepare_process() -> None:
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # not under nohup
             signal.signal(number, _end)
+    if os.name == "posix":
+        _watch_signals()
     os.environ["MPLBACKEND"] = "agg"  # which needs no display
     os.environ["PYTHONSAFEPATH"] = "1"  # worker processes load no module from the working folder
     if os.path.lexists("matplotlibrc"):  # matplotlib would obey it
@@ -50,10 +56,27 @@ def _open_closed_streams() -> None:
         sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
 
 
-def _end(number: int, frame: object) -> None:
+def _end(number: int, frame: object = None) -> None:
     """End the process at once: an exception might be dropped, in an import or a callback of JAX."""
     remove_temporaries()
     os._exit(128 + number)  # as shells report the signal
+
+
+def _watch_signals() -> None:
+    """End the process from a thread: Python's handlers wait for compiled code, which may decode a file for minutes."""
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+
+    def watch() -> None:
+        while True:
+            number = os.read(reader, 1)[0]
+            if number == signal.SIGINT:
+                time.sleep(GRACE)
+            if number == signal.SIGINT or signal.getsignal(number) is _end:
+                _end(number)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def hide_drawing_notes() -> None:

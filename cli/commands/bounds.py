@@ -39,7 +39,7 @@ def command(
 
     RGB does not identify a material: others of the same colour may differ under another light. Under each --light, the
     bounds are the largest ΔE00 of any reflectance of the colour from the answer of the cube, and the ranges of L*, a*
-    and b*.
+    and b* among sampled extremes; the ends of the ranges can lie some units further out.
 
     \b
     Examples:

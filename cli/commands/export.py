@@ -134,7 +134,7 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     if style == "coeff":
         enable_jit_cache()
         with progress_bar("fitting sigmoids"):
-            return f"rgb2spec table, largest RGB error {write_coeff(data, path, **settings):.1e}"
+            return f"rgb2spec table, largest RGB error {write_coeff(data, path, **settings):.1e} between its points"
     if style == "npz":
         return f"{write_npz(data, path, **settings)} arrays"
     if style == "csv":

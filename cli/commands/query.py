@@ -401,8 +401,9 @@ def _errors(cube: Cube, result: QueryResult) -> list[tuple[str, float, float]]:
     """Return light, standard error and error bound, that of the cube first; empty if they are unknown."""
     if result.standard_error is None or result.error_bound is None:
         return []
-    others = [(name, error, result.error_bounds[name]) for name, error in result.standard_errors.items()]
-    return [(cube.data.error_illuminant, result.standard_error, result.error_bound), *others]
+    reference = cube.data.error_illuminant
+    others = [(name, x, result.error_bounds[name]) for name, x in result.standard_errors.items() if name != reference]
+    return [(reference, result.standard_error, result.error_bound), *others]
 
 
 def _light_colours(cube: Cube, result: QueryResult) -> dict[str, tuple[Array, str]]:

@@ -1,13 +1,14 @@
 """Errors and warnings on standard error: one line each, or JSON, with hints in terms of command-line options."""
 
 import contextlib
+import os
 import signal
 from pathlib import Path
 from typing import Any
 
 import click
 
-from uplift.common.errors import Diagnostic, OutputError, UpliftError, UpliftWarning
+from uplift.common.errors import Diagnostic, OptionError, OutputError, UpliftError, UpliftWarning
 from uplift.common.text import printable
 
 from ..startup import remove_compiled_code
@@ -84,6 +85,9 @@ def _internal_error(cause: BaseException) -> UpliftError:
     import traceback  # slow to import, and rarely needed
 
     place = traceback.extract_tb(cause.__traceback__)[-1:]
+    if place and Path(place[0].filename).name == "xla_bridge.py":
+        problem = f"JAX finds no device for JAX_PLATFORMS={printable(os.environ.get('JAX_PLATFORMS', ''))}"
+        return OptionError(problem, hint="unset JAX_PLATFORMS, or install JAX for this device")
     where = "".join(f" in {Path(frame.filename).name}:{frame.lineno}" for frame in place)
     detail = " ".join(str(cause).split())[:MAX_DETAIL]
     problem = f"internal error, please report it: {type(cause).__name__}{where}" + (f": {detail}" if detail else "")

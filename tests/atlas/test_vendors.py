@@ -2,6 +2,7 @@
 
 import contextlib
 import sys
+import zipfile
 
 import numpy as np
 import pytest
@@ -134,6 +135,25 @@ def test_missing_packages_are_named(tmp_path, monkeypatch, format):
 def test_damaged_files_raise(save, text, code):
     with raises(AtlasError, code):
         read_atlas(save(text))
+
+
+SHEET_XML = '<worksheet><sheetData><row r="1"><c r="A1"><v>1</v></c></row>{}</sheetData></worksheet>'
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        '<row r="1048576"><c r="XFD1048576"><v>2</v></c></row>',
+        "<x:row r='1048576'><x:c r='xfd1048576'><v>2</v></x:c></x:row>",
+        '<row r="4294967290">' + "<c><v>2</v></c>" * 2 + "</row>",
+    ],
+)
+def test_sheets_with_distant_cells_are_refused_before_they_are_allocated(tmp_path, row):
+    with zipfile.ZipFile(tmp_path / "a.xlsx", "w") as archive:
+        archive.writestr("xl/worksheets/sheet1.xml", SHEET_XML.format(row))
+    with raises(AtlasError, "atlas") as caught:
+        read_atlas(tmp_path / "a.xlsx")
+    assert f"{spreadsheet.MAX_CELLS:,} cells" in caught.value.problem
 
 
 @pytest.mark.parametrize(("limit", "value"), [("MAX_CONTENT", 100), ("MAX_CELLS", 10)])

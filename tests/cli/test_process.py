@@ -258,3 +258,40 @@ def test_compiled_code_that_cannot_be_read_is_removed(tmp_path):
         for entry in entries if damage else ():
             entry.write_bytes(b"damaged")
     assert b"damaged" not in [entry.read_bytes() for entry in entries]
+
+
+def test_a_missing_device_of_jax_is_no_internal_error(tmp_path):
+    done = shell(f"{UPLIFT} build --dim 2 -o {tmp_path}/cube.uplift", JAX_PLATFORMS="cuda")
+    assert (done.returncode, b"JAX_PLATFORMS=cuda" in done.stderr) == (2, True)
+
+
+@needs_proc
+def test_too_little_memory_is_an_error_not_an_abort(tmp_path):
+    done = shell(f"ulimit -v 1500000; {UPLIFT} build --dim 8 -o {tmp_path}/cube.uplift")
+    assert (done.returncode, b"of memory" in done.stderr) == (2, True)
+
+
+DEAF = """
+import hashlib
+from uplift_cli import startup
+startup.GRACE = 0.1
+startup.prepare_process()
+print(flush=True)
+hashlib.pbkdf2_hmac("sha256", b"", b"", 2**31 - 1)
+"""
+"""Ten minutes in one call of compiled code, in which no handler of Python runs."""
+
+
+@needs_modes
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_signals_end_compiled_code(number, code):
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    with subprocess.Popen([sys.executable, "-c", DEAF], stdout=subprocess.PIPE) as process:
+        signal.signal(signal.SIGINT, before)
+        process.stdout.readline()
+        time.sleep(0.5)  # until the call has begun
+        process.send_signal(number)
+        try:
+            assert process.wait(SECONDS) == code
+        finally:
+            process.kill()

@@ -368,3 +368,8 @@ def test_plot(run, refuse, home, table):
     assert refuse("query", "#ffffff", "--plot", "red.png").code == "file-exists"
     run("query", "--input", table("#cc3319\n#ffffff\n"), "--plot", "red.png", "--force")
     assert (matplotlib.image.imread(home / "red.png").shape) == picture.shape
+
+
+def test_the_error_under_the_light_of_the_cube_is_stated_once(run, macbeth_cube):
+    lines = run("query", "--cube", macbeth_cube, "--light", "A", 0.2, 0.3, 0.4).stdout.splitlines()
+    assert [line.count("(A)") for line in lines if line.startswith(("std. error", "error bound"))] == [1, 1]

@@ -1,5 +1,7 @@
 """Sensors, lights, RGB spaces and codes by name, compared with colour-science."""
 
+import os
+
 import colour
 import numpy as np
 import PyOpenColorIO
@@ -190,3 +192,11 @@ def test_temperatures_from_4000_k_are_cie_daylight(nominal):
 def test_temperatures_out_of_range_are_refused(name):
     with raises(OptionError, "option"):
         observer.light(name)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no pipes in the file system")
+def test_a_configuration_that_never_ends_is_refused(tmp_path, monkeypatch):
+    os.mkfifo(tmp_path / "pipe.ocio")
+    monkeypatch.setenv("OCIO", str(tmp_path / "pipe.ocio"))
+    with raises(OptionError, "file-unreadable"):
+        find_space("sRGB")

@@ -7,8 +7,16 @@ import stat
 import pytest
 
 from tests.helpers import raises
-from uplift.common.errors import OutputError
-from uplift.common.files import atomic_write, check_output, check_outputs, remove_temporaries
+from uplift.common.errors import OutputError, TextureError
+from uplift.common.files import (
+    atomic_write,
+    check_output,
+    check_outputs,
+    check_regular,
+    file_digest,
+    read_bytes,
+    remove_temporaries,
+)
 
 
 def write(path, text, **options):
@@ -142,3 +150,13 @@ def test_dash_is_standard_output_unless_part_of_a_path(tmp_path, monkeypatch):
         write("-", "text")
     write(tmp_path / "-", "text")
     assert os.listdir(tmp_path) == ["-"]
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self"), reason="needs /proc")
+def test_pipes_devices_and_files_of_the_kernel_are_not_read(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", "/dev/zero", "/proc/kmsg", "/proc/self/status"):
+        for read in (check_regular, read_bytes, file_digest):
+            options = {check_regular: {"hint": ""}, read_bytes: {"hint": "", "limit": 9}}.get(read, {})
+            with raises(TextureError, "file-unreadable"):
+                read(path, TextureError, **options)

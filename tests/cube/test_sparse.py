@@ -1,15 +1,22 @@
 """Files of sparse cubes: present points only, and errors for points without a place."""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from tests.cube.cube_files import forge
 from tests.cube.hand_made import hand_made
 from tests.helpers import near_black, raises, with_absent_points
-from uplift.common.errors import CubeFileError
+from uplift.common import machine
+from uplift.common.errors import CubeFileError, OutputError
 from uplift.cube import digest, read, write
 from uplift.cube.file import POINTS
-from uplift.lattice import Lattice, Status
+from uplift.io.exr import write_slices
+from uplift.lattice import CORNERS, Lattice, Status
+from uplift.viz.sheet import write_sheet
 
 
 @pytest.fixture
@@ -81,3 +88,36 @@ CHANGES = {
 def test_forged_files_are_refused(data, tmp_path, change):
     with raises(CubeFileError, "cube-file"):
         read(forge(data, tmp_path / "forged.uplift", change))
+
+
+def of_dim(dim):
+    """A change to the first cell of a lattice of another dim."""
+
+    def change(tensors, metadata):
+        rows = np.searchsorted(tensors["points"], Lattice(tensors["nodes"]).index(CORNERS))
+        metadata["dim"], tensors["nodes"] = dim, np.linspace(0, 1, dim)
+        tensors["points"] = Lattice(tensors["nodes"]).index(CORNERS).astype(tensors["points"].dtype)
+        tensors.update({name: tensors[name][rows] for name in POINTS if name in tensors})
+
+    return change
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="counts memory as Linux does")
+def test_small_files_of_large_lattices_take_little_memory(plain_cube, tmp_path):
+    sparse = with_absent_points(plain_cube.data, near_black(plain_cube.data))
+    path = forge(sparse, tmp_path / "forged.uplift", of_dim(320))
+    assert path.stat().st_size < 20_000
+    code = (
+        "import resource, sys, uplift\nfrom uplift.report.measures import compute_smoothness\n"
+        "cube = uplift.load(sys.argv[1]).fill_missing([[0.5, 0.5, 0.5]])\ncompute_smoothness(cube.data)\n"
+        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024)"
+    )
+    done = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True, check=True, timeout=120)
+    assert int(done.stdout) < 1200  # MB; the arrays of all nodes take 2500
+
+
+def test_images_of_more_nodes_than_memory_are_refused(data, tmp_path, monkeypatch):
+    monkeypatch.setattr(machine, "free_memory", lambda: 10_000)
+    for write_images, name in ((write_slices, "a.exr"), (write_sheet, "a.png")):
+        with raises(OutputError, "out-of-memory"):
+            write_images(data, tmp_path / name)

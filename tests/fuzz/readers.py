@@ -23,10 +23,10 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import METHODS, map_to_gamut
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import UpliftError
+from uplift.common.files import file_digest
 from uplift.cube import CubeData, read
 from uplift.cube.file import POINTS
 from uplift.design.palette import design, matrix, read_palette, standard_model
-from uplift.io.scene_colours import file_digest
 from uplift.io.texture import Counts, convert
 from uplift.io.texture.uplifter import Converter
 from uplift.lab.chart.table import Requirement, criteria, read_chart, recommend_cube

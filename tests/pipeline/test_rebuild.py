@@ -87,6 +87,15 @@ def test_a_recorded_name_opens_no_file_outside_the_folder_of_the_cube(tiny_cube,
     assert not opened
 
 
+def test_a_recorded_observer_opens_no_file(tiny_cube, home, monkeypatch):
+    opened = []
+    monkeypatch.setattr("uplift.colorimetry.observer.read_camera", opened.append)
+    options = {**tiny_cube.data.provenance["options"], "space": "camera", "observer": "/etc/camera.CSV"}
+    with raises(CubeFileError):
+        rebuild(with_provenance(tiny_cube, options=options), home / "cube.uplift")
+    assert not opened
+
+
 def test_a_shipped_atlas_is_found_by_its_digest_in_any_folder(tiny_cube, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "macbeth.txt").write_text("Entry ID: other\n", encoding="utf-8")

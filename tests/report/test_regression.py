@@ -7,6 +7,7 @@ import colour
 import numpy as np
 import pytest
 
+import uplift
 from tests.helpers import raises, with_points
 from uplift.colorimetry.lights import REGRESSION_LIGHTS
 from uplift.colorimetry.observer import light
@@ -132,3 +133,9 @@ def test_entries_outside_the_space_are_compared(cyan_cube, small_cube):
     renamed = dataclasses.replace(changed(names=("turquoise",)), provenance={"left_out": ["turquoise"]})
     found = [(change.name, change.change) for change in compare_rebuilt(PATH, data, renamed).entries]
     assert found == [("cyan", "removed"), ("turquoise", "added")]
+
+
+def test_a_lattice_without_a_point_inside_the_realisable_colours_equals_itself():
+    data = uplift.build(dim=2, coefficients=3, space="ACEScg").data
+    assert Status.UNREALISABLE in data.points.status
+    assert compare_rebuilt(PATH, data, data).failures == ()

@@ -124,11 +124,16 @@ def on_range(sensor: Sensor, start: float, end: float, step: float) -> Sensor:
     )
 
 
+def is_camera_file(observer: str) -> bool:
+    """Whether the name of an observer is that of a file of sensitivities, which is read."""
+    return observer.casefold().endswith(".csv")
+
+
 def find_camera(camera: str | Camera) -> Camera:
     """Find the sensitivities of a camera."""
     if isinstance(camera, Camera):
         return camera
-    if camera.casefold().endswith(".csv"):
+    if is_camera_file(camera):
         return read_camera(camera)
     found = tables.look_up("camera", camera)
     return Camera(found.name, found.wavelengths, found.values)

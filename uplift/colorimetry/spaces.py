@@ -16,9 +16,11 @@ from uplift.colorimetry.srgb import encode
 from uplift.colorimetry.tables import RgbSpace
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, unknown_name
+from uplift.common.files import check_regular
 from uplift.common.text import format_value, parse_float
 
 VARIABLE = "OCIO"
+CONFIGURATION_HINT = "correct the environment variable OCIO, or unset it to use the built-in configuration"
 """Environment variable with the path of a configuration."""
 BUILT_IN = "ocio://studio-config-latest"
 REFERENCE = "ACES2065-1"
@@ -171,7 +173,7 @@ def find_ocio_space(name: str, *, built_in: bool = True) -> OcioSpace | None:
             raise OptionError(
                 f"the configuration of OpenColorIO cannot be used: {' '.join(str(error).split())}",
                 path=place,
-                hint="correct the environment variable OCIO, or unset it to use the built-in configuration",
+                hint=CONFIGURATION_HINT,
             ) from error
         return OcioSpace(space.getName(), space.getEncoding() == "scene-linear", cpu)
     return None
@@ -181,4 +183,6 @@ def find_ocio_space(name: str, *, built_in: bool = True) -> OcioSpace | None:
 def _configuration(place: str) -> Any:
     import PyOpenColorIO
 
+    if not place.startswith("ocio:"):
+        check_regular(place, OptionError, hint=CONFIGURATION_HINT)
     return PyOpenColorIO.Config.CreateFromFile(place)

@@ -22,16 +22,20 @@ if TYPE_CHECKING:
 
 DAY = 86_400.0
 """Seconds without a change after which a temporary file belongs to a writer that was killed."""
+KERNEL = "/proc"
 _TEMPORARIES: set[Path] = set()
 """Temporary files that this process is writing."""
 
 
 def check_regular(path: StrPath, error: type[UpliftError], *, hint: str) -> None:
-    """Check that a path is a regular file, which ends and can be read twice; raise ``error`` otherwise."""
+    """Check that a path is a regular file, which ends and can be read twice; raise ``error`` otherwise.
+
+    Files of the kernel such as ``/proc/kmsg`` look regular, but reading them may never end.
+    """
     with _reading(path, error, hint):
-        mode = os.stat(path).st_mode
-    if not stat.S_ISREG(mode):
-        kind = "a folder" if stat.S_ISDIR(mode) else "a device or a pipe"
+        status = os.stat(path)
+    if not stat.S_ISREG(status.st_mode) or (os.path.exists(KERNEL) and status.st_dev == os.stat(KERNEL).st_dev):
+        kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a device or a pipe"
         raise error(f"must be a file, got {kind}", code="file-unreadable", path=path, hint=hint)
 
 
@@ -43,6 +47,15 @@ def read_bytes(path: StrPath, error: type[UpliftError], *, limit: int, hint: str
     if len(data) > limit:
         raise error(f"must not exceed {limit:,} bytes", code="file-unreadable", path=path, hint=hint)
     return data
+
+
+def file_digest(path: StrPath, error: type[UpliftError] = UpliftError) -> str:
+    """Return the SHA-256 digest of a regular file in hexadecimal; raise ``error`` for others."""
+    import hashlib
+
+    check_regular(path, error, hint="name a file")
+    with _reading(path, error, "name a file"), open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 @contextlib.contextmanager

@@ -2,10 +2,13 @@
 
 import contextlib
 import os
+import re
 import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+
+from uplift.common.errors import UpliftError
 
 _LOCK = threading.Lock()
 _CALLERS: set[object] = set()
@@ -40,17 +43,37 @@ def single_threaded_blas() -> Iterator[None]:
                     _LIMITS.pop().restore_original_limits()
 
 
+AVAILABLE = re.compile(r"^(?:MemAvailable|SwapFree): +(\d+)", re.MULTILINE)
+THREADS = 1_200_000_000
+"""Addresses that the threads of XLA reserve, which a limit of addresses must leave."""
 CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
 """Limits of a container, by version of cgroups."""
 
 
-def total_memory() -> int | None:
-    """Return the bytes that this process may have at most, None if unknown: of the machine or of its container."""
+def free_memory() -> int | None:
+    """Return the bytes that this process can still have, None if unknown: of the machine, its container, its limit."""
     limits = []
+    with contextlib.suppress(OSError, AttributeError):  # on Linux
+        limits.append(1024 * sum(map(int, AVAILABLE.findall(Path("/proc/meminfo").read_text()))))
     with contextlib.suppress(AttributeError, ValueError, OSError):  # not on Windows
         limits.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     # A container has the memory of the machine in sysconf, and its limit in a file.
     for path in CGROUP_LIMITS:
         with contextlib.suppress(OSError, ValueError):  # "max" without a limit
             limits.append(int(Path(path).read_text()))
+    with contextlib.suppress(ImportError, OSError):
+        import resource
+
+        limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+        if limit != resource.RLIM_INFINITY:
+            used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+            limits.append(max(limit - used - THREADS, 0))
     return min(limits, default=None)
+
+
+def check_memory(need: float, subject: str, error: type[UpliftError], hint: str) -> None:
+    """Raise ``error`` if the subject needs more memory than is free."""
+    free = free_memory()
+    if free is not None and need > free:
+        problem = f"{subject} needs about {need / 1e9:.3g} GB of memory, {free / 1e9:.3g} GB are free"
+        raise error(problem, code="out-of-memory", hint=hint)

@@ -9,8 +9,8 @@ import re
 import tomllib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from pathlib import Path, PureWindowsPath
+from typing import Annotated, Any, NoReturn, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
@@ -56,6 +56,17 @@ def resolves(look_up: Callable[[Any], Any]) -> AfterValidator:
         return value
 
     return AfterValidator(check)
+
+
+def _check_inside(name: str) -> str:
+    if PureWindowsPath(name).anchor or ".." in PureWindowsPath(name).parts:  # of POSIX, too
+        hint = "move the file there, or this file to a folder above both"
+        raise problem(f"must lie in the folder of this file, got {format_value(name)}", hint)
+    return name
+
+
+InsidePath = Annotated[str, AfterValidator(_check_inside)]
+"""A path within the folder of the spec file, which may come from a stranger."""
 
 
 @dataclass(frozen=True)

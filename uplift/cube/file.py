@@ -21,7 +21,7 @@ from uplift.cube.container import (
     require,
 )
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
-from uplift.lattice import ABSENT_VALUES, CORNERS, Lattice, PointTable, Status
+from uplift.lattice import CORNERS, Lattice, PointTable, Status
 from uplift.models import from_description
 
 FORMAT = "uplift cube"
@@ -280,13 +280,4 @@ def _expand(points: PointTable, numbers: Indices, lattice: Lattice) -> PointTabl
     for corner in CORNERS:
         low = low[np.isin(low + lattice.index(corner), numbers, assume_unique=True)]
     require(low.size > 0, "one cell must have all its corners")
-    arrays: dict[str, Any] = {}
-    for name in POINTS:
-        rows = getattr(points, name)
-        if rows is not None:
-            shape = (size, *rows.shape[1:])
-            # Pages of zeros take no memory before they are written.
-            absent = ABSENT_VALUES.get(name)
-            arrays[name] = np.zeros(shape, rows.dtype) if absent is None else np.full(shape, absent, rows.dtype)
-            arrays[name][numbers] = rows
-    return PointTable(**arrays)
+    return points.spread(numbers, size)

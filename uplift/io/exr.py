@@ -13,10 +13,13 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.gamut import Gamut
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write
+from uplift.common.machine import check_memory
 from uplift.cube.data import CubeData
 from uplift.cube.file import digest
 from uplift.lattice import Status
 
+NODE_BYTES = 220
+"""Memory of a node in all images, without its coefficients."""
 MAX_FLOAT32 = float(np.finfo(np.float32).max)
 COMMENTS = (
     "A blue slice of a spectral uplifting cube. A pixel is a lattice point: red rises to the right, green "
@@ -94,7 +97,15 @@ def write_slices(data: CubeData, path: str | os.PathLike[str], *, force: bool = 
             path=path,
             hint="name the file .exr, or write a contact sheet",
         )
+    check_slices(data)
     write_parts(_parts(data), path, force=force)
+
+
+def check_slices(data: CubeData) -> None:
+    """Raise `OutputError` if the images of all nodes, of which a sparse cube has few, do not fit into free memory."""
+    need = data.lattice.size * (NODE_BYTES + 4 * data.model.count)
+    hint = "use a machine with more memory, or a cube of a smaller dim"
+    check_memory(need, f"images of {data.lattice.dim}³ nodes", OutputError, hint)
 
 
 def blue_slices(values: NDArray[Any], dim: int) -> NDArray[Any]:

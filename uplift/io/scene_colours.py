@@ -1,6 +1,5 @@
 """The colours of images as a scene: `uplift.build` fits only the lattice points that answer them."""
 
-import hashlib
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
+from uplift.common.files import file_digest
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.io.texture.colours import check_encoding, coloured_parts, make_decoder, space_warnings
 from uplift.io.texture.image import open_image
@@ -83,9 +83,3 @@ def cells_touched(lattice: Lattice, rgb: Array) -> Indices:
     on_face = (low != high).any(axis=1)
     adjacent = np.where(CORNERS[:, None, :] == 1, high[on_face], low[on_face]).reshape(-1, 3)
     return np.concatenate([lattice.index(low), lattice.index(adjacent)])
-
-
-def file_digest(path: Path) -> str:
-    """Return the SHA-256 digest of a file in hexadecimal."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -65,6 +65,17 @@ class PointTable:
         """(n,) True where a point has a spectrum: everywhere, unless the cube was built for a scene."""
         return self.status != Status.ABSENT
 
+    def spread(self, numbers: Indices, size: int) -> "PointTable":
+        """Return the table of ``size`` nodes whose rows, at the nodes ``numbers`` (n,), are those of this one."""
+        columns = {key.name: getattr(self, key.name) for key in fields(self)}
+        for name, rows in columns.items():
+            if rows is not None:
+                shape, absent = (size, *rows.shape[1:]), ABSENT_VALUES.get(name)
+                # Pages of zeros take no memory before they are written.
+                columns[name] = np.zeros(shape, rows.dtype) if absent is None else np.full(shape, absent, rows.dtype)
+                columns[name][numbers] = rows
+        return PointTable(**columns)
+
     def restricted_to(self, points: Indices) -> "PointTable":
         """Return the table with all nodes but some (k,) absent."""
         absent = np.ones(len(self.status), dtype=bool)

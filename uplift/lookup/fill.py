@@ -1,16 +1,16 @@
 """Fill missing points of a sparse cube with the spectra of another cube, fitted by the sparse cube's model."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData, digest
 from uplift.lattice import Status
+from uplift.lattice.point_table import ABSENT_VALUES, PointTable
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import cells, refined
 from uplift.lookup.refine import refine_to_rgb
@@ -50,14 +50,18 @@ def fill_missing(data: CubeData, points: Indices, other: CubeData, threads: int 
     status = np.where(distance > data.threshold, Status.UNFITTED, Status.REGULAR)
     filled: dict[str, Any] = {"coefficients": coefficients, "rgb": rgb, "distance": distance, "status": status}
     if table.standard_error is not None:
-        filled["standard_error"] = table.standard_error.max()
-    arrays: dict[str, NDArray[Any]] = {}
-    for name, values in filled.items():
-        column = getattr(table, name)
-        arrays[name] = column.astype(kind if name == "coefficients" else column.dtype)
-        arrays[name][points] = values
+        filled["standard_error"] = np.full(len(points), table.standard_error.max())
+    present = np.flatnonzero(table.present)  # the others take no memory
+    rows: dict[str, Any] = {}
+    for each in fields(table):
+        column = getattr(table, each.name)
+        if column is not None:
+            values = filled.get(each.name, np.full(len(points), ABSENT_VALUES.get(each.name, 0)))
+            dtype = kind if each.name == "coefficients" else column.dtype
+            rows[each.name] = np.concatenate([column[present], values]).astype(dtype)
+    complete = PointTable(**rows).spread(np.concatenate([present, points]), data.lattice.size)
     provenance = {**data.provenance, "filled": {"points": len(points), "cube": digest(other)}}
-    return replace(data, provenance=provenance, points=replace(table, **arrays))
+    return replace(data, provenance=provenance, points=complete)
 
 
 def _rgb(data: CubeData, coefficients: Array) -> Array:

@@ -9,8 +9,9 @@ import numpy as np
 from uplift.colorimetry.camera import CAMERA
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.observer import AXES, DEFAULT_OBSERVER, END, START, STEP
+from uplift.common import machine
 from uplift.common.errors import OptionError, unknown_name
-from uplift.common.machine import total_memory
+from uplift.common.machine import free_memory
 from uplift.common.text import format_value
 from uplift.cube.file import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
 from uplift.models import Moments, Sigmoid
@@ -168,10 +169,7 @@ def check_memory(options: Options) -> None:
         return
     # Peak memory of a node: multipliers, and coefficients in single precision, and the other arrays.
     node = 16 * options.spectrum_model().count + 60
-    need, have = PROCESS_BYTES + options.dim**3 * node, total_memory()
-    if have is not None and need > have:
-        largest = int(max((have - PROCESS_BYTES) / node, 8) ** (1 / 3))
-        # A float overflows for absurd values of dim.
-        needed, memory = (f"{min(count, 10**300) / 1e9:.3g} GB" for count in (need, have))
-        problem = f"dim {format_value(options.dim)} needs about {needed} of memory, this machine has {memory}"
-        raise OptionError(problem, hint=f"use dim={largest} or less")
+    largest = int(max(((free_memory() or 0) - PROCESS_BYTES) / node, 8) ** (1 / 3))
+    hint = f"use dim={largest} or less" if largest > 2 else "use a machine with more memory"
+    need = PROCESS_BYTES + min(options.dim, 10**90) ** 3 * node  # a float overflows for absurd values of dim
+    machine.check_memory(need, f"dim {format_value(options.dim)}", OptionError, hint)

@@ -9,6 +9,7 @@ from typing import Any
 from uplift.atlas import Atlas, merge, read_atlas, shipped_atlases
 from uplift.atlas.document import read_document
 from uplift.colorimetry.camera import Camera
+from uplift.colorimetry.observer import is_camera_file
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import CubeFileError, LookError, OptionError, UnknownNameError, UpliftWarning
@@ -142,6 +143,8 @@ def _read_options(data: CubeData, path: StrPath) -> Options:
         raise _missing_provenance(path)
     try:
         options = Options(**recorded_options(data.provenance["options"]))
+        if is_camera_file(options.observer) and data.sensor.sensitivities is None:
+            raise OptionError("the file of a camera without its sensitivities")
     except (TypeError, OptionError, UnknownNameError) as error:
         raise _unknown_options(error, path) from error
     if options.solver == CUSTOM:

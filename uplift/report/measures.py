@@ -71,31 +71,33 @@ def compute_smoothness(data: CubeData) -> Smoothness:
     rows = np.arange(dim**3).reshape(dim, dim, dim)
     parts: list[NDArray[np.float32]] = []
     largest, steepest = -1.0, (0, 0)
-    previous = np.full((dim, dim, len(data.sensor.wavelengths)), np.nan)
+    spectra, at = np.zeros((0, len(data.sensor.wavelengths))), np.full((dim, dim), ABSENT)
     for here in rows:
-        plane = _spectra(data, here)
-        pairs = (
-            (plane[:, :-1], plane[:, 1:], here[:, :-1], here[:, 1:]),  # along blue
-            (plane[:-1], plane[1:], here[:-1], here[1:]),  # along green
-            (previous, plane, here - dim**2, here),  # along red
-        )
-        for first, second, *ends in pairs:
-            rms = np.sqrt(((second - first) ** 2).mean(axis=-1))
-            present = ~np.isnan(rms)
-            parts.append(rms[present].astype(np.float32))
-            if present.any() and np.nanmax(rms) > largest:
-                low, high = (int(each.flat[np.nanargmax(rms)]) for each in ends)
-                largest, steepest = float(np.nanmax(rms)), (low, high)
-        previous = plane
-    return Smoothness(np.concatenate(parts), data.lattice.points[np.array(steepest)])
+        before, at_before = spectra, at
+        spectra, at = _plane(data, here)
+        for own, first, second, nodes, step in (
+            (spectra, at[:, :-1], at[:, 1:], here[:, 1:], 1),  # along blue
+            (spectra, at[:-1], at[1:], here[1:], dim),  # along green
+            (before, at_before, at, here, dim**2),  # along red
+        ):
+            both = (first != ABSENT) & (second != ABSENT)
+            rms = np.sqrt(((spectra[second[both]] - own[first[both]]) ** 2).mean(axis=-1))
+            parts.append(rms.astype(np.float32))
+            if rms.max(initial=-1) > largest:
+                high = int(nodes[both][rms.argmax()])
+                largest, steepest = float(rms.max()), (high - step, high)
+    return Smoothness(np.concatenate(parts), data.lattice.target(np.array(steepest)))
 
 
-def _spectra(data: CubeData, rows: Indices) -> Array:
-    """Spectra (..., N) of lattice points (...); NaN if absent."""
-    present = data.points.present[rows]
-    spectra = np.full((*rows.shape, len(data.sensor.wavelengths)), np.nan)
-    spectra[present] = reflectance(data.model, data.points.coefficients[rows[present]], data.sensor.wavelengths)
-    return spectra
+ABSENT = -1  # row of a point without a spectrum
+
+
+def _plane(data: CubeData, nodes: Indices) -> tuple[Array, Indices]:
+    """Spectra (m, N) of the present ones of some nodes (dim, dim), and the rows of the nodes in them."""
+    present = data.points.status[nodes] != Status.ABSENT
+    rows = np.full(nodes.shape, ABSENT)
+    rows[present] = np.arange(np.count_nonzero(present))
+    return reflectance(data.model, data.points.coefficients[nodes[present]], data.sensor.wavelengths), rows
 
 
 COLOURS = 4096

@@ -78,10 +78,12 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
     lights = [light(name, stored.sensor.observer, *stored.sensor.range) for name in REGRESSION_LIGHTS]
     delta_e = delta_e_under(lights, first, second)
     measures = {
-        "rgb": float(np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[compared].max()),
-        "spectra_max": float(difference.max()),
-        "spectra_rms": float(np.sqrt((difference**2).mean())),
-    } | dict(zip((f"delta_e_{name}" for name in REGRESSION_LIGHTS), delta_e.max(axis=0).tolist(), strict=True))
+        "rgb": float(np.abs(stored.points.rgb.astype(float) - rebuilt.points.rgb)[compared].max(initial=0)),
+        "spectra_max": float(difference.max(initial=0)),
+        "spectra_rms": float(np.sqrt((difference**2).sum() / max(difference.size, 1))),
+    } | dict(
+        zip((f"delta_e_{name}" for name in REGRESSION_LIGHTS), delta_e.max(axis=0, initial=0).tolist(), strict=True)
+    )
     moved = delta_e[np.count_nonzero(compared) :].max(axis=1)
     # Cubes of earlier versions have the names of entries outside their RGB space only.
     old, new = (data.provenance.get("left_out", ()) for data in (stored, rebuilt))
@@ -98,10 +100,15 @@ def _same_lattice(stored: CubeData, rebuilt: CubeData) -> bool:
 
 
 def _well_determined(data: CubeData) -> Mask:
-    """Points (n,) whose spectra do not depend on the machine: all, if the space has no unrealisable points."""
-    if Status.UNREALISABLE not in data.points.status:
+    """Points (n,) whose spectra do not depend on the machine: all, if the space has no unrealisable points.
+
+    The smallest lattices have only points on the boundary of realisable colours: those that were fitted are compared.
+    """
+    unrealisable = data.points.status == Status.UNREALISABLE
+    if not unrealisable.any():
         return np.ones(data.lattice.size, dtype=bool)
-    return np.asarray(solid(data.sensor.matrix).signed_distance(data.lattice.points) < -BOUNDARY_MARGIN)
+    inside = np.asarray(solid(data.sensor.matrix).signed_distance(data.lattice.points) < -BOUNDARY_MARGIN)
+    return inside if inside.any() else ~unrealisable
 
 
 def _counts(data: CubeData, compared: Mask) -> dict[str, int]:

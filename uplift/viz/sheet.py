@@ -41,6 +41,7 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
     information).
     """
     check_sheet(path, force=force)
+    exr.check_slices(data)
     sheet = compose(data)
     image = _draw_text(sheet.image, sheet.labels)
     if Path(path).suffix.lower() == ".exr":

@@ -1,5 +1,7 @@
 """Contents of palette specs, and the errors of invalid ones."""
 
+import shutil
+
 import numpy as np
 import pytest
 
@@ -12,30 +14,30 @@ from uplift.design.palette import illuminant, read_palette
 from uplift.design.palette.colours import planck, screen_matrix
 from uplift.design.palette.palette import MinDifference
 
-COMPLETE = f"""
+COMPLETE = """
 smoothness = 0.002
 model-error = 0.5
 coefficients = 5
 
 [lights]
-day = {{ illuminant = "D65" }}
-glow = {{ planck = 2856, luminance = 0.5 }}
-odd = {{ design = true, bounds = [0, 3] }}
+day = { illuminant = "D65" }
+glow = { planck = 2856, luminance = 0.5 }
+odd = { design = true, bounds = [0, 3] }
 
 [materials]
-orange = {{ atlas = "{MACBETH.as_posix()}", entry = "orange" }}
-rose = {{ rgb = "#cc3366" }}
-sea = {{ rgb = [0.1, 0.2, 0.3], cube = "{(ROOT / "cubes" / "moments-8.uplift").as_posix()}" }}
-new = {{ design = true }}
-wild = {{ design = true, bounds = false }}
+orange = { atlas = "macbeth.txt", entry = "orange" }
+rose = { rgb = "#cc3366" }
+sea = { rgb = [0.1, 0.2, 0.3], cube = "cube.uplift" }
+new = { design = true }
+wild = { design = true, bounds = false }
 
 [colours.new]
 day = "#808080"
-glow = {{ rgb = [0.3, 0.2, 0.1], weight = 2 }}
+glow = { rgb = [0.3, 0.2, 0.1], weight = 2 }
 
 [colours.wild]
-day = {{ free = "one" }}
-glow = {{ free = "two", weight = 0 }}
+day = { free = "one" }
+glow = { free = "two", weight = 0 }
 
 [free.one]
 low = "#101010"
@@ -54,7 +56,9 @@ HEAD = 'lights.day.illuminant = "D65"\nmaterials.new.design = true\n'
 
 @pytest.fixture
 def read(tmp_path):
-    """A spec as text → palette."""
+    """A spec as text, next to an atlas and a cube → palette."""
+    shutil.copy(MACBETH, tmp_path)
+    shutil.copy(ROOT / "cubes" / "moments-8.uplift", tmp_path / "cube.uplift")
 
     def read(text):
         path = tmp_path / "spec.toml"

@@ -11,10 +11,10 @@ from PIL import Image
 from tests.helpers import raises
 from tests.io.texture.conftest import planes, write_exr
 from tests.io.texture.exr_bytes import attribute, exr_bytes
+from uplift.common import machine
 from uplift.common.errors import OutputError, TextureError
 from uplift.io import texture
 from uplift.io.texture import exr_file, writer
-from uplift.io.texture import image as image_module
 from uplift.io.texture.image import Window, open_image
 from uplift.io.texture.writer import OutputPart, open_writer
 
@@ -140,9 +140,16 @@ def test_hostile_headers_are_refused_and_odd_ones_are_read(content, code, tmp_pa
 
 def test_blocks_that_do_not_fit_into_memory_are_refused(tmp_path, monkeypatch):
     (tmp_path / "a.exr").write_bytes(exr_bytes())
-    monkeypatch.setattr(image_module, "total_memory", lambda: 4 * 3 * 5 - 1)
-    with raises(TextureError), open_image(tmp_path / "a.exr"):
+    monkeypatch.setattr(machine, "free_memory", lambda: 4 * 3 * 5 - 1)
+    with raises(TextureError, "out-of-memory"), open_image(tmp_path / "a.exr"):
         pass
-    monkeypatch.setattr(image_module, "total_memory", lambda: 4 * 3 * 5)
+    monkeypatch.setattr(machine, "free_memory", lambda: 4 * 3 * 5)
     with open_image(tmp_path / "a.exr"):
+        pass
+
+
+def test_files_of_no_known_format_are_not_tried_by_all_decoders(tmp_path):
+    with (tmp_path / "a.exr").open("wb") as file:
+        file.truncate(20 << 30)  # sparse
+    with raises(TextureError, "texture"), open_image(tmp_path / "a.exr"):
         pass

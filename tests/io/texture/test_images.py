@@ -157,8 +157,8 @@ RGB = dict.fromkeys("RGB", ZERO)
     ("name", "content", "code"),
     [
         ("none.png", None, "file-not-found"),
-        (".", None, "file-not-found"),
-        ("text.png", "no image", "file-unreadable"),
+        (".", None, "file-unreadable"),
+        ("text.png", "no image", "texture"),
         ("a.bmp", Image.new("RGB", (5, 4)), "texture"),
         ("depth.exr", {"Z": ZERO}, "texture"),
         ("layers.exr", {f"{layer}.{letter}": ZERO for layer in ("diffuse", "coat") for letter in "RGB"}, "texture"),

@@ -1,6 +1,8 @@
 """Reader of spreadsheets (``.xlsx``, ``.xls``, ``.ods``), by the package python-calamine."""
 
+import functools
 import io
+import re
 import zipfile
 from dataclasses import replace
 from typing import Any
@@ -16,7 +18,10 @@ OLE = b"\xd0\xcf\x11\xe0"
 MAX_CONTENT = 256 << 20
 """Bytes of all files of an archive after decompression."""
 MAX_CELLS = 20_000_000
-CHUNK = 1 << 20
+TAG = re.compile(rb"<(?:\w+:)?(row|c)\b([^>]*)")
+"""A row or a cell of ``.xlsx``."""
+PLACE = re.compile(rb"""\br\s*=\s*["']([A-Za-z]{0,8})(\d{1,12})["']""")
+"""Where it lies, such as ``C7``."""
 HINT = "save the sheet as a CSV table"
 
 
@@ -44,9 +49,7 @@ def read(document: Document) -> Measurements:
 def _rows(book: Any, name: str, document: Document) -> list[Row]:
     with parsed_by("python-calamine", "spreadsheets", document):
         sheet = book.get_sheet_by_name(name)
-        if sheet.height * sheet.width > MAX_CELLS:
-            problem = f"a sheet must have at most {MAX_CELLS:,} cells, got {sheet.height} × {sheet.width}"
-            raise document.location.error(problem, HINT)
+        _check_cells(sheet.height, sheet.width, document)
         start = sheet.start[0] if sheet.start else 0
         lines = sheet.to_python(skip_empty_area=True)
     rows = [trimmed(Cell(_text(value), line) for value in values) for line, values in enumerate(lines, start + 1)]
@@ -68,7 +71,34 @@ def _check_content(document: Document) -> None:
     with parsed_by("zipfile", "spreadsheets", document), zipfile.ZipFile(io.BytesIO(document.data)) as archive:
         for member in archive.infolist():
             with archive.open(member) as file:
-                while left >= 0 and (chunk := file.read(CHUNK)):  # the size that an archive states may be wrong
-                    left -= len(chunk)
-    if left < 0:
-        raise document.location.error(f"its content must not exceed {MAX_CONTENT:,} bytes", HINT)
+                content = file.read(left + 1)  # the size that an archive states may be wrong
+            left -= len(content)
+            if left < 0:
+                raise document.location.error(f"its content must not exceed {MAX_CONTENT:,} bytes", HINT)
+            _check_cells(*_extent(content), document)
+
+
+def _check_cells(height: int, width: int, document: Document) -> None:
+    if height * width > MAX_CELLS:
+        problem = f"a sheet must have at most {MAX_CELLS:,} cells, got {height} × {width}"
+        raise document.location.error(problem, HINT)
+
+
+def _extent(content: bytes) -> tuple[int, int]:
+    """Return rows and columns with values of a sheet of ``.xlsx``. Opened by calamine, all its cells are allocated."""
+    row = column = height = width = 0
+    for kind, text in TAG.findall(content):
+        place = PLACE.search(text)
+        if kind == b"row":
+            row, column = (int(place[2]) if place else row + 1), 0
+            continue
+        if place:
+            row, column = (
+                int(place[2]),
+                functools.reduce(lambda sum, letter: 26 * sum + letter - 64, place[1].upper(), 0),
+            )
+        else:
+            column += 1
+        if not text.endswith(b"/"):  # a format without a value
+            height, width = max(height, row), max(width, column)
+    return height, width

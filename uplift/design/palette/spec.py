@@ -16,7 +16,7 @@ from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.srgb import MAX_NUMBER, WrittenColour, is_number, parse_colour
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError, PaletteError, unknown_name
-from uplift.common.spec_file import Key, SpecFile, SpecModel, problem, read_toml, resolves
+from uplift.common.spec_file import InsidePath, Key, SpecFile, SpecModel, problem, read_toml, resolves
 from uplift.common.text import format_value
 from uplift.design.palette.colours import MAX_KELVIN, MIN_KELVIN, illuminant, planck
 from uplift.design.palette.factor import COUNTS
@@ -157,7 +157,7 @@ class _DesignedLight(SpecModel):
 class _AtlasMaterial(SpecModel):
     """A material by its entry in an atlas file."""
 
-    atlas: str
+    atlas: InsidePath
     entry: str
 
     @property
@@ -176,7 +176,7 @@ class _RgbMaterial(SpecModel):
     """A material by its colour, uplifted by a cube."""
 
     rgb: _Colour
-    cube: str | None = None
+    cube: InsidePath | None = None
 
     @property
     def file(self) -> str | None:

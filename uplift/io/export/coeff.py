@@ -25,15 +25,18 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write
 from uplift.cube import CubeData
+from uplift.lattice import CORNERS
 from uplift.lookup.interpolate import around
 from uplift.models import Sigmoid
-from uplift.models.minimum_norm import ForwardMap, forward_map
+from uplift.models.minimum_norm import forward_map
 
 MAGIC = b"SPEC"
 RES = 64
 """Resolution of Mitsuba's own table."""
 MIN_RES, MAX_RES = 2, 256
 TOLERANCE, MAX_PASSES = 1e-6, 32
+COLOURS, SEED = 20_000, 20200617
+"""Random colours of which the error is stated."""
 START, END = 360.0, 830.0
 """Wavelength range of rgb2spec in nm."""
 
@@ -42,20 +45,21 @@ def write_coeff(data: CubeData, path: str | os.PathLike[str], *, res: int = RES,
     """Write a cube as an rgb2spec table of ``res`` points along each axis, 2 to 256.
 
     Readers interpret RGB in the cube's space under its illuminant. Mitsuba assumes sRGB under D65. Returns the largest
-    error of a component of linear RGB, compared with the cube's colours. A camera's cube is a `ColourError`.
+    difference of a component of linear RGB from the cube's answers, of `COLOURS` random colours that rgb2spec
+    interpolates. A camera's cube is a `ColourError`.
     """
     data.sensor.require_xyz()
     if not MIN_RES <= res <= MAX_RES:
         raise OptionError(f"res must be from {MIN_RES} to {MAX_RES}, got {res}", hint=f"{RES} is the default")
     with atomic_write(path, force=force) as temporary:
         scale = _scale(res)
-        coefficients, max_error = _fit(data, scale)
+        coefficients = _fit(data, scale)
         with temporary.open("wb") as file:
             file.write(MAGIC + np.array(res, dtype="<u4").tobytes())
             file.write(scale.astype("<f4").tobytes())
             file.write(coefficients.astype("<f4").tobytes())
             file.write(_sensor_bytes(data.sensor))
-    return max_error
+    return _largest_error(data, scale, coefficients)
 
 
 def _sensor_bytes(sensor: Sensor) -> bytes:
@@ -86,8 +90,8 @@ def _points(level: float, res: int) -> Array:
     return level * np.stack([np.roll(shares, largest, axis=-1) for largest in range(3)]).reshape(-1, 3)
 
 
-def _fit(data: CubeData, scale: Array) -> tuple[NDArray[np.float32], float]:
-    """Fit coefficients (3, res, res, res, 3); return them and the largest error of linear RGB.
+def _fit(data: CubeData, scale: Array) -> NDArray[np.float32]:
+    """Fit coefficients (3, res, res, res, 3).
 
     Levels are fitted upwards and downwards from a medium one. Each starts from the multipliers of the previous level,
     so that neighbours are similar and can be interpolated.
@@ -98,21 +102,24 @@ def _fit(data: CubeData, scale: Array) -> tuple[NDArray[np.float32], float]:
     model = Sigmoid(*sensor.wavelengths[[0, -1]].tolist())
     forward = forward_map(model, sensor.wavelengths, sensor.matrix)
     table = np.empty((3, res, res, res, 3), dtype=np.float32)
-    middle, max_error = res // 5, 0.0
+    middle = res // 5
     middle_multipliers = np.zeros((3 * res * res, model.count))
     for levels in (range(middle, res), range(middle - 1, -1, -1)):
         multipliers = middle_multipliers
         for level in levels:
             rgb = _points(scale[level], res)
-            target = around(data, rgb).weighted_sum(data.points.rgb.astype(float), data.atlas.rgb)
-            multipliers = solve(forward, multipliers, target, tolerance=TOLERANCE, max_passes=MAX_PASSES).multipliers
+            multipliers = solve(
+                forward, multipliers, _targets(data, rgb), tolerance=TOLERANCE, max_passes=MAX_PASSES
+            ).multipliers
             if level == middle:
                 middle_multipliers = multipliers
-            stored = _per_nanometre(model, multipliers).astype(np.float32)
-            error = np.abs(_colours(model, forward, sensor.wavelengths, stored) - target).max()
-            max_error = max(max_error, float(error))
-            table[:, level] = stored.reshape(3, res, res, 3)
-    return table, max_error
+            table[:, level] = _per_nanometre(model, multipliers).reshape(3, res, res, 3)
+    return table
+
+
+def _targets(data: CubeData, rgb: Array) -> Array:
+    """Return linear RGB (n, 3) of the spectra that the cube answers."""
+    return around(data, rgb).weighted_sum(data.points.rgb.astype(float), data.atlas.rgb)
 
 
 def _per_nanometre(model: Sigmoid, multipliers: Array) -> Array:
@@ -129,7 +136,25 @@ def _per_nanometre(model: Sigmoid, multipliers: Array) -> Array:
     )
 
 
-def _colours(model: Sigmoid, forward: ForwardMap, wavelengths: Array, coefficients: NDArray[np.float32]) -> Array:
-    """Return linear RGB (n, 3) of stored coefficients (n, 3)."""
+def _largest_error(data: CubeData, scale: Array, table: NDArray[np.float32]) -> float:
+    rgb = np.random.default_rng(SEED).random((COLOURS, 3))
+    wavelengths = data.sensor.wavelengths
     powers = np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
-    return np.asarray(model.to_reflectance(coefficients.astype(float) @ powers) @ forward.sensor.T)
+    spectra = Sigmoid(*wavelengths[[0, -1]].tolist()).to_reflectance(_interpolated(scale, table, rgb) @ powers)
+    return float(np.abs(data.sensor.rgb(spectra) - _targets(data, rgb)).max())
+
+
+def _interpolated(scale: Array, table: NDArray[np.float32], rgb: Array) -> Array:
+    """Return coefficients (n, 3) as rgb2spec interpolates them: linearly between the eight points around a colour."""
+    last, rows = len(scale) - 2, np.arange(len(rgb))
+    largest = rgb.argmax(axis=1)
+    level = rgb[rows, largest]
+    shares = np.stack([rgb[rows, (largest + step) % 3] / level for step in (2, 1)], axis=1) * (last + 1)
+    at = np.clip(np.searchsorted(scale, level, side="right") - 1, 0, last)
+    low = np.minimum(shares.astype(int), last)
+    part = np.column_stack([(level - scale[at]) / (scale[at + 1] - scale[at]), shares - low])
+    found = np.zeros((len(rgb), 3))
+    for corner in CORNERS:
+        weight = np.where(corner, part, 1 - part).prod(axis=1)
+        found += weight[:, None] * table[largest, at + corner[0], low[:, 0] + corner[1], low[:, 1] + corner[2]]
+    return found

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.errors import ColourError, TextureError, UpliftError
-from uplift.common.machine import total_memory
+from uplift.common.files import check_regular
+from uplift.common.machine import check_memory
 from uplift.io.texture import exr_file
 from uplift.io.texture.colour_profile import Profile, read_profile
 
@@ -28,6 +29,8 @@ MAX_EXACT_INTEGER = 1 << 24
 """Integers up to this number pass through 32-bit floats."""
 UNKNOWN_PROBLEM = "the image cannot be read"
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+SIGNATURES = (exr_file.MAGIC, b"#?", PNG_SIGNATURE, b"\xff\xd8", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+"""First bytes of the formats."""
 PNG_INTERLACE = 28
 """Offset of the byte that marks an interlaced PNG file, which can only be decoded in one piece."""
 TECHNICAL = frozenset(
@@ -199,13 +202,15 @@ def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
 
 
 def _read_start(path: Path) -> bytes:
-    if not path.is_file():
-        raise TextureError("no such file", code="file-not-found", hint=FORMAT_HINT)
+    check_regular(path, TextureError, hint=FORMAT_HINT)
     try:
         with path.open("rb") as file:
-            return file.read(PNG_INTERLACE + 1)
+            start = file.read(PNG_INTERLACE + 1)
     except OSError as error:
         raise TextureError(f"cannot be read: {error.strerror}", code="file-unreadable", hint=FORMAT_HINT) from error
+    if not start.startswith(SIGNATURES):  # OpenImageIO would try all its formats, for minutes if the file is large
+        raise TextureError("unsupported image format", hint=FORMAT_HINT)
+    return start
 
 
 def _parts(handle: Any) -> Iterator[Part]:
@@ -270,13 +275,9 @@ def _is_text(name: str) -> bool:
 def _check_memory(part: Part, rows: int) -> None:
     """Raise `TextureError` if rows that must be decoded together do not fit into memory."""
     rows = min(rows, part.window.height)
-    needed, total = rows * part.window.width * len(part.channels) * 4, total_memory()
-    if total is not None and needed > total:
-        raise TextureError(
-            f"blocks of {rows} rows must be decoded together and need {needed / 1e9:.1f} GB, "
-            f"more than the memory of {total / 1e9:.1f} GB",
-            hint="write the image with smaller tiles or strips, or without interlacing",
-        )
+    hint = "write the image with smaller tiles or strips, or without interlacing"
+    need = rows * part.window.width * len(part.channels) * 4
+    check_memory(need, f"a block of {rows} rows, decoded together,", TextureError, hint)
 
 
 def read_error(source: Any) -> str:

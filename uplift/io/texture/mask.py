@@ -8,7 +8,6 @@ the mixture of two reflectances of one colour has this colour, and stays in [0, 
 """
 
 import contextlib
-import hashlib
 import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
@@ -18,7 +17,7 @@ import numpy as np
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import ColourError, OptionError, TextureError
-from uplift.common.files import check_regular
+from uplift.common.files import file_digest
 from uplift.io.texture.colours import Counts, Floats, colour_channels, coloured_parts
 from uplift.io.texture.image import Image, Part, Values, open_image
 from uplift.io.texture.uplifter import Converted, Converter, ConvertRows, Uplifter
@@ -176,9 +175,7 @@ def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
             "cubes of one texture must have the same wavelengths or, for moments and multipliers, the same model",
             hint="write spectra at given wavelengths, or build the cubes with the same options",
         )
-    check_regular(mask, TextureError, hint="name an image")
-    with mask.open("rb") as file:
-        mask_digest = hashlib.file_digest(file, "sha256").hexdigest()
+    mask_digest = file_digest(mask, TextureError)
     digests = [each.header["uplift.cube"] for each in uplifters]
     description = json.loads(first.header["uplift.texture"]) | {"cubes": digests, "mask": mask_digest}
     header = {**first.header, "uplift.cube": ", ".join(digests), "uplift.texture": json.dumps(description)}

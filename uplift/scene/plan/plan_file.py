@@ -12,11 +12,12 @@ from pydantic import ConfigDict, Field
 from uplift.colorimetry import observer
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PlanFileError, unknown_name
+from uplift.common.files import file_digest
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.spec_file import SpecFile, SpecModel, read_json, resolves
 from uplift.common.text import format_value
 from uplift.common.version import VERSION
-from uplift.io.scene_colours import Images, file_digest
+from uplift.io.scene_colours import Images
 from uplift.io.texture import Spectrum
 from uplift.io.texture.colours import check_encoding
 from uplift.lookup import Cube

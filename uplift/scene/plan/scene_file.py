@@ -12,7 +12,7 @@ from uplift.colorimetry import Light, Sensor, observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PlanFileError
-from uplift.common.spec_file import SpecFile, SpecModel, problem, read_toml, resolves
+from uplift.common.spec_file import InsidePath, SpecFile, SpecModel, problem, read_toml, resolves
 from uplift.common.text import format_value
 from uplift.io.texture.colours import check_encoding
 
@@ -94,7 +94,9 @@ def _canonical_light(name: str) -> str:
     return observer.light(name).name
 
 
-Paths = Annotated[list[Annotated[str, AfterValidator(_check_path)]], BeforeValidator(_as_list), Field(min_length=1)]
+Paths = Annotated[
+    list[Annotated[InsidePath, AfterValidator(_check_path)]], BeforeValidator(_as_list), Field(min_length=1)
+]
 Lights = Annotated[
     list[Annotated[str, resolves(observer.light), AfterValidator(_canonical_light)]],
     BeforeValidator(_as_list),
