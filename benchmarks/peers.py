@@ -1,6 +1,7 @@
 """Other tools on the task of a build: CPU time per fitted node and accuracy, for docs/performance.md.
 
-The task is the lattice of linear sRGB under D65, without an atlas. Answers are checked before they are timed.
+The task is the lattice of linear sRGB under D65, without an atlas. Answers are checked before they are timed. The other
+tools must be installed: a record without them would replace one that has them.
 """
 
 import json
@@ -18,10 +19,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from benchmarks import ROOT
+from benchmarks import ROOT, record
 from uplift.colorimetry import Sensor, observer
 from uplift.common.arrays import Array
-from uplift.common.processes import ChildError, call_in_child
+from uplift.common.processes import call_in_child
 from uplift.lab.chart.method import stopwatch
 from uplift.lab.timing import Spread, spread
 from uplift.lattice import Lattice
@@ -33,39 +34,32 @@ THRESHOLD = 1e-4
 DIM = 16
 OUR_DIMS = (16, 32)
 OUR_MODELS = (("sigmoid", 3), ("moments", 3), ("moments", 5), ("moments", 9), ("moments", 17))
-MAX_RUNS, LIMIT = 3, 3600
-"""Most runs, as some tools take half a minute for a few nodes, and seconds after which a tool counts as hung."""
+RUNS, LIMIT = 3, 3600
+"""Runs, and seconds after which a tool counts as hung."""
 
 
 @dataclass(frozen=True)
 class Peer:
     """CPU time in µs per node (all threads) of a tool, share of nodes within `THRESHOLD`, and largest residual.
 
-    ``model`` is 'sigmoid' or 'moments', ``count`` its number of coefficients. A tool that is not installed has no
-    figures; ``notes`` then states why.
+    ``model`` is 'sigmoid' or 'moments', ``count`` its number of coefficients.
     """
 
     tool: str
     model: str
     count: int
     points: int
-    cpu_us: Spread | None = None
-    share: float | None = None
-    worst: float | None = None
-    notes: str = ""
+    cpu_us: Spread
+    share: float
+    worst: float
+    notes: str
 
 
-def time_peers(runs: int) -> list[Peer]:
-    """Time each tool in a process without the compiled code or settings of the others."""
-    return [row for tool in TOOLS for row in alone(tool, min(runs, MAX_RUNS))]
-
-
-def alone(tool: Callable[[int], list[Peer]], runs: int, seconds: float = LIMIT) -> list[Peer]:
-    """Return the rows of ``tool``, timed ``runs`` times in a fresh process, or one that states how it failed."""
-    try:
-        return call_in_child(tool, runs, seconds=seconds)
-    except ChildError as error:
-        return [Peer(tool.__name__, "", 0, 0, notes=str(error))]
+def main() -> None:
+    """Time each tool in a process without the compiled code or settings of the others, and store."""
+    tools = (ceres, ours)  # what may be missing comes first
+    ceres_rows, our_rows = (call_in_child(tool, RUNS, seconds=LIMIT) for tool in tools)
+    record("peers", runs=RUNS, threshold=THRESHOLD, peers=[*our_rows, *ceres_rows])
 
 
 @cache
@@ -126,7 +120,7 @@ def ours(runs: int) -> list[Peer]:
 
 
 CERES_SOURCE, CERES_BUILT = ROOT / "benchmarks" / "ceres", ROOT / "out" / "ceres"
-CERES_NEEDS = "Ceres with cmake and a C++ compiler (libceres-dev, cmake, g++) is not installed"
+CERES_NEEDS = "install Ceres, cmake and a C++ compiler: libceres-dev, cmake, g++"
 CERES_STEPS = 12
 """Iterations from each start. The default of Ceres, 50, doubles the time for moments and fits no more of them."""
 CERES_JOBS = (("sigmoid", 3, "sigmoid", 0.99), ("moments", 9, "moments", 0.5), ("moments", 9, "multipliers", 0.99))
@@ -135,25 +129,23 @@ UNKNOWNS = {"sigmoid": "", "moments": "in c, ", "multipliers": "in p, "}
 
 
 def ceres(runs: int) -> list[Peer]:
-    """Time the solver of the thesis with numeric differences (`benchmarks/ceres/fit.cpp`), if Ceres is installed.
+    """Time the solver of the thesis with numeric differences (`benchmarks/ceres/fit.cpp`).
 
     It grows from the middle of the lattice, every node from its fitted neighbours.
     """
     program = _build_ceres()
-    if program is None:
-        return [Peer("Ceres", model, count, 0, notes=CERES_NEEDS) for model, count, *_ in CERES_JOBS]
     return [_ceres_row(program, *job, runs) for job in CERES_JOBS]
 
 
-def _build_ceres() -> Path | None:
-    """Build the program; return None if cmake, a compiler or Ceres is missing."""
-    cmake = partial(subprocess.run, capture_output=True, check=False)
-    if shutil.which("cmake") is None or cmake(["cmake", "-S", CERES_SOURCE, "-B", CERES_BUILT]).returncode:
-        return None
-    (CERES_BUILT / "fit").unlink(missing_ok=True)  # of an earlier build
-    cmake(["cmake", "--build", CERES_BUILT]).check_returncode()
-    program = CERES_BUILT / "fit"
-    return program if program.exists() else None
+def _build_ceres() -> Path:
+    """Build the program. Raises `RuntimeError` without cmake, a compiler or Ceres."""
+    if shutil.which("cmake") is not None:
+        for words in (["-S", CERES_SOURCE, "-B", CERES_BUILT], ["--build", CERES_BUILT]):
+            if subprocess.run(["cmake", *words], capture_output=True, check=False).returncode:
+                break
+        else:
+            return CERES_BUILT / "fit"
+    raise RuntimeError(CERES_NEEDS)
 
 
 def _ceres_row(program: Path, name: str, count: int, unknowns: str, least: float, runs: int) -> Peer:
@@ -182,4 +174,5 @@ def _run_ceres(program: Path, unknowns: str, count: int) -> tuple[Array, dict[st
         return np.fromfile(solution).reshape(-1, count), json.loads(done.stdout)
 
 
-TOOLS = (ours, ceres)
+if __name__ == "__main__":
+    main()

@@ -1,4 +1,4 @@
-"""Times of builds, processes, lookups, the exported C header and other tools, for docs/performance.md.
+"""Times of builds, processes, lookups and the exported C header, for docs/performance.md.
 
 Results are checked before they are timed.
 """
@@ -42,8 +42,6 @@ def main() -> None:
     """Time everything and store."""
     # First: a process started from a large one counts the memory of its parent as its own.
     processes = time_processes()
-    from benchmarks.peers import THRESHOLD, time_peers
-
     cube = _build(dim=32)
     record(
         "performance",
@@ -53,8 +51,6 @@ def main() -> None:
         processes=processes,
         lookups=time_lookups(cube),
         bulk=time_bulk(cube),
-        threshold=THRESHOLD,
-        peers=time_peers(RUNS),
     )
     if compiler := shutil.which("cc"):
         version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True).stdout

@@ -1,13 +1,11 @@
-"""Checks of other tools' answers, and rows of tools that are absent, crash or hang."""
+"""Checks of other tools' answers, and a tool that is missing."""
 
-import os
 import shutil
-import time
 
 import numpy as np
 import pytest
 
-from benchmarks.peers import Peer, alone, ceres, judge
+from benchmarks.peers import ceres, judge
 
 TARGET = np.full((10, 3), 0.5)
 
@@ -26,26 +24,7 @@ def test_judge_raises_on_a_wrong_answer(wrong):
         judge(found, TARGET, least=0.9)
 
 
-def test_absent_tools_have_rows_without_figures(monkeypatch):
+def test_a_missing_tool_is_an_error_not_a_row_without_figures(monkeypatch):
     monkeypatch.setattr(shutil, "which", lambda name: None)
-    rows = ceres(1)
-    assert [(row.cpu_us, row.share, row.worst) for row in rows] == [(None, None, None)] * 3
-    assert all("not installed" in row.notes for row in rows)
-
-
-def abort(runs: int) -> list[Peer]:
-    os.abort()
-
-
-def hang(runs: int) -> list[Peer]:
-    time.sleep(600)
-    return []
-
-
-@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
-@pytest.mark.parametrize(
-    ("tool", "seconds", "why"), [(abort, 60, "crashed: signal 6"), (hang, 0.5, "no answer within 0.5 s")]
-)
-def test_a_tool_that_crashes_or_hangs_has_a_row(tool, seconds, why):
-    (row,) = alone(tool, 1, seconds)
-    assert (row.tool, row.cpu_us, row.notes) == (tool.__name__, None, why)
+    with pytest.raises(RuntimeError, match="libceres-dev"):
+        ceres(1)
