@@ -30,8 +30,8 @@ MAX_SIDE = 960
     "--tolerance",
     type=options.NUMBER,
     metavar="DE",
-    help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by more, or if entries were added or "
-    "removed.",
+    help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by more, if one cube alone lacks a "
+    "colour, or if entries were added or removed.",
 )
 @click.option(
     "--worst", type=options.Whole(0), default=5, show_default=True, help="Number of worst colours of each set."
@@ -128,7 +128,7 @@ def _print(figures: dict[str, Any]) -> None:
     for change in ("removed", "added"):
         if figures[f"entries_{change}"]:
             say(f"entries {change}: {', '.join(figures[f'entries_{change}'])}")
-    if figures["uncovered"]:
-        say(f"{figures['uncovered']:,} colours are in one of the cubes only")
+    for row in figures["lacking"]:
+        say(f"{row['set']}: {row['cubes']} cannot answer {row['colours']:,} colours")
     if "tolerance" in figures:
         say("passed" if figures["passed"] else f"FAILED: the tolerance is ΔE00 {figures['tolerance']:g}")

@@ -11,11 +11,24 @@ from tests.helpers import raises, with_points
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
 from uplift.common.errors import OptionError
+from uplift.lattice import Status
 from uplift.lookup import Cube
 from uplift.report.diff import diff_cubes, to_json
 from uplift.report.diff_page import render_diff
 
 LIGHTS = ("D65", "A")
+
+
+@pytest.fixture(scope="module")
+def two_scenes(plain_cube):
+    """The plain cube with its darkest cell alone, and with its brightest alone."""
+    cubes = []
+    for cell in (0, -2):
+        kept = np.zeros(plain_cube.data.lattice.shape, dtype=bool)
+        kept[np.ix_(*[range(plain_cube.dim)[cell : cell + 2 or None]] * 3)] = True
+        status = np.where(kept.ravel(), plain_cube.data.points.status, Status.ABSENT)
+        cubes.append(Cube(with_points(plain_cube.data, status=status.astype(np.uint8))))
+    return cubes
 
 
 @pytest.fixture(scope="module")
@@ -81,6 +94,32 @@ def test_images_json_and_page(small_cube, changed):
     assert [row["moved"] for row in figures["differences"] if row["set"] == "nodes"][1] >= 1
     assert not figures["passed"]
     assert render_diff(found, {"image.png": image}, 2).count("<svg") >= 4
+
+
+def test_colours_that_one_cube_lacks_are_counted_and_fail(plain_cube, two_scenes):
+    first, second = two_scenes
+    for cubes in ({"a": first, "b": plain_cube}, {"a": plain_cube, "b": second}):
+        found = diff_cubes(cubes, LIGHTS)
+        ((name, lacking, count),) = found.lacking
+        assert (name, lacking, count) == ("nodes", "ab"[cubes["a"] is plain_cube], np.isnan(found.nodes.largest).sum())
+        assert not found.is_within(100)
+    image = np.array([[[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [1.0, 0.0, 0.0]]])
+    found = diff_cubes({"a": first, "b": second}, LIGHTS, {"image": image})
+    assert [each for each in found.lacking if each[0] == "image"] == [
+        ("image", "a", 1),
+        ("image", "b", 1),
+        ("image", "a and b", 1),
+    ]
+    assert found.largest == 0
+    assert json.loads(json.dumps(to_json(found, None, 2), allow_nan=False))["differences"] == []
+    assert "a and b cannot answer" in render_diff(found, {"image": image}, 2)
+
+
+def test_colours_that_neither_cube_has_do_not_fail(two_scenes):
+    found = diff_cubes({"a": two_scenes[0], "b": two_scenes[0]}, LIGHTS)
+    assert found.is_within(0)
+    assert [cubes for _, cubes, _ in found.lacking] == ["a and b"]
+    assert len(found.nodes.compared) + found.lacking[0][2] == len(found.nodes.rgb)
 
 
 def test_spaces_must_agree(small_cube):

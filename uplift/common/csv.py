@@ -1,4 +1,4 @@
-"""CSV text: the one writer of the project.
+"""CSV text: the writer of the project, and the reader of tables that it wrote.
 
 A spreadsheet runs a cell that begins with ``=``, ``+``, ``-``, ``@`` or a tab as a formula. Such text is written with
 an apostrophe before it, which spreadsheets hide; `plain_cell` takes it away again. Numbers, also those formatted as
@@ -49,6 +49,21 @@ def csv_text(header: Sequence[object], rows: Iterable[Sequence[object]], *, quot
     for row in (header, *rows):
         writer.write(row)
     return text.getvalue()
+
+
+def parse_csv(data: bytes) -> list[dict[str, str]]:
+    """Parse a table with a line of column names, a dictionary for each row.
+
+    `ValueError` for bytes that are not UTF-8 or CSV, and for rows that have not a cell for each name.
+    """
+    reader = csv.DictReader(io.StringIO(data.decode("utf-8-sig"), newline=""))
+    try:
+        rows = list(reader)
+    except csv.Error as error:
+        raise ValueError(str(error)) from error
+    if any(None in row or None in row.values() for row in rows):
+        raise ValueError("columns are missing, or lines differ in length")
+    return rows
 
 
 def plain_cell(cell: str) -> str:

@@ -1,12 +1,12 @@
 """Stored answers of a cube compared with those that it gives now: a test of what a renderer's users rely on."""
 
-import csv
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from uplift.common.arrays import Array, StrPath
+from uplift.common.csv import parse_csv
 from uplift.common.errors import ColourError
 from uplift.common.files import read_bytes
 from uplift.common.text import parse_float
@@ -34,25 +34,26 @@ def read_answers(path: StrPath) -> StoredAnswers:
 
     Raises `ColourError` for a file that cannot be read, or that has no such table.
     """
-    data = read_bytes(path, ColourError, limit=MAX_BYTES, hint="name a CSV file of answers")
+    hint = "name a CSV file of answers"
+    data = read_bytes(path, ColourError, limit=MAX_BYTES, hint=hint)
     try:
-        header, *rows = csv.reader(data.decode("utf-8", errors="replace").splitlines()) if data else [[]]
-    except csv.Error as error:
-        raise ColourError(f"is not CSV: {error}", path=path, hint="name a CSV file of answers") from error
-    wanted = {name: column for column, name in enumerate(header)}
-    at = {value: column for name, column in wanted.items() if math.isfinite(value := _number(name))}
-    if not {"r", "g", "b"} <= wanted.keys() or not at or not rows:
+        rows = parse_csv(data)
+    except ValueError as error:
+        raise ColourError(f"is not CSV: {error}", path=path, hint=hint) from error
+    names = rows[0].keys() if rows else set()
+    at = {value: name for name in names if math.isfinite(value := _number(name))}
+    if not {"r", "g", "b"} <= names or not at:
         raise ColourError(
             "must have columns r, g and b, columns of wavelengths, and rows",
             path=path,
             hint="write it as queries are written in CSV",
         )
-    columns = [wanted[name] for name in "rgb"] + [at[nm] for nm in sorted(at)]
-    values = np.full((len(rows), len(columns)), np.nan)
-    for number, row in enumerate(rows):
-        values[number] = [_number(row[column]) if column < len(row) else math.nan for column in columns]
-        if not np.isfinite(values[number]).all():
-            raise ColourError("each column needs a finite number", path=path, line=number + 2, hint="correct the row")
+    columns = [*"rgb", *(at[nm] for nm in sorted(at))]
+    values = np.array([[_number(row[name]) for name in columns] for row in rows])
+    finite = np.isfinite(values).all(axis=1)
+    if not finite.all():
+        line = int(finite.argmin()) + 2
+        raise ColourError("each column needs a finite number", path=path, line=line, hint="correct the row")
     return StoredAnswers(values[:, :3], np.array(sorted(at)), values[:, 3:])
 
 

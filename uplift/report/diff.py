@@ -25,12 +25,19 @@ class Changes:
     rgb: Array
     """(n, 3) linear RGB."""
     delta_e: Array
-    """(n, L) ΔE00 under each light."""
+    """(n, L) ΔE00 under each light; NaN for colours that a cube lacks."""
+    lacking: Indices
+    """(n,) which cubes, built for a scene, lack the colour: 0 none, 1 the first, 2 the second, 3 both."""
 
     @property
     def largest(self) -> Array:
         """(n,) largest ΔE00 of each colour under any light."""
-        return np.asarray(self.delta_e.max(axis=1, initial=0.0))
+        return np.asarray(self.delta_e.max(axis=1))
+
+    @property
+    def compared(self) -> Array:
+        """(m, L) ΔE00 of the colours that both cubes answer."""
+        return self.delta_e[self.lacking == 0]
 
     def worst(self, count: int) -> Indices:
         """Rows of at most ``count`` colours that differ, each once, largest ΔE00 first."""
@@ -87,8 +94,6 @@ class CubeDiff:
     entries: Changes
     """Spectra of ``pairs``."""
     images: tuple[Changes, ...]
-    uncovered: int
-    """Colours that one of the cubes lacks, because it was built for a scene. Their difference counts as 0."""
 
     @property
     def sets(self) -> tuple[Changes, ...]:
@@ -96,13 +101,25 @@ class CubeDiff:
         return tuple(each for each in (self.nodes, self.entries, *self.images) if len(each.rgb))
 
     @property
+    def lacking(self) -> tuple[tuple[str, str, int], ...]:
+        """Colours without an answer: their set, the cubes that lack them, and their number."""
+        codes = dict(enumerate((*self.names, " and ".join(self.names)), 1))
+        counts = [
+            (each, names, np.count_nonzero(each.lacking == code)) for each in self.sets for code, names in codes.items()
+        ]
+        return tuple((each.name, names, int(count)) for each, names, count in counts if count)
+
+    @property
     def largest(self) -> float:
         """Largest ΔE00 of all colours under all lights."""
-        return max(float(each.largest.max()) for each in self.sets)
+        return float(np.max([each.compared.max(initial=0.0) for each in self.sets]))
 
     def is_within(self, tolerance: float) -> bool:
-        """Whether both cubes have the same entries, and no colour differs by more than ΔE00 ``tolerance``."""
-        return not self.pairs.removed and not self.pairs.added and self.largest <= tolerance
+        """Whether both cubes have the same entries and colours, and none differs by more than ΔE00 ``tolerance``."""
+        changed = (
+            self.pairs.removed or self.pairs.added or any(np.isin(each.lacking, (1, 2)).any() for each in self.sets)
+        )
+        return not changed and self.largest <= tolerance
 
 
 def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping[str, Array] | None = None) -> CubeDiff:
@@ -118,7 +135,6 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
     nodes, others = (cube.data.lattice.points for cube in (first, second))
     nodes = nodes if np.array_equal(nodes, others) else np.concatenate([nodes, others])
     colours = {NODES: nodes, **{name: rgb.reshape(-1, 3) for name, rgb in (images or {}).items()}}
-    covered = {name: first.covers(rgb) & second.covers(rgb) for name, rgb in colours.items()}
 
     def difference(rgb: Array) -> Array:
         answers = [cube.reflectance(rgb, sensor.wavelengths) for cube in (first, second)]
@@ -126,9 +142,9 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
 
     changes = []
     for name, rgb in colours.items():
-        delta_e = np.zeros((len(rgb), len(under)))
-        delta_e[covered[name]] = blockwise(difference, rgb[covered[name]], len(under))
-        changes.append(Changes(name, rgb, delta_e))
+        delta_e, lacking = np.full((len(rgb), len(under)), np.nan), ~first.covers(rgb) + 2 * ~second.covers(rgb)
+        delta_e[lacking == 0] = blockwise(difference, rgb[lacking == 0], len(under))
+        changes.append(Changes(name, rgb, delta_e, lacking))
 
     pairs = pair_entries(first.data, second.data)
     first_name, second_name = cubes
@@ -138,9 +154,8 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
         lights=tuple(each.name for each in under),
         nodes=changes[0],
         pairs=pairs,
-        entries=Changes(ENTRIES, pairs.rgb, delta_e_under(under, *pairs.spectra)),
+        entries=Changes(ENTRIES, pairs.rgb, delta_e_under(under, *pairs.spectra), np.zeros(len(pairs.names), np.int64)),
         images=tuple(changes[1:]),
-        uncovered=sum(int((~mask).sum()) for mask in covered.values()),
     )
 
 
@@ -158,7 +173,8 @@ def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, ob
                 **({} if tolerance is None else {"moved": int((values > tolerance).sum())}),
             }
             for each in diff.sets
-            for name, values in zip(diff.lights, each.delta_e.T, strict=True)
+            for name, values in zip(diff.lights, each.compared.T, strict=True)
+            if values.size
         ],
         "worst": [
             {
@@ -173,5 +189,5 @@ def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, ob
         ],
         "entries_removed": list(diff.pairs.removed),
         "entries_added": list(diff.pairs.added),
-        "uncovered": diff.uncovered,
+        "lacking": [{"set": name, "cubes": cubes, "colours": count} for name, cubes, count in diff.lacking],
     }

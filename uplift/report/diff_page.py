@@ -24,7 +24,8 @@ WIDTH = 10.5
 
 def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
     """Render a comparison, with the images (height, width, 3) in linear RGB that it was made for."""
-    limit = max(MIN_LIMIT, math.ceil(np.quantile(diff.nodes.largest, SHARE)))
+    worst_of = diff.nodes.compared.max(axis=1)
+    limit = max(MIN_LIMIT, math.ceil(np.quantile(worst_of, SHARE))) if worst_of.size else MIN_LIMIT
     dim = diff.cubes[0].data.lattice.dim
     nodes = blue_slices(diff.nodes.largest[: dim**3], dim)
     return render(

@@ -118,8 +118,9 @@ def from_other_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
 
 def from_stored_entries(data: CubeData) -> EntryQuery:
     """Query the cube's own entries; without measurements, targets are the stored spectra."""
-    table, rows = data.atlas, np.arange(len(data.atlas.names))
-    return EntryQuery(table.names, table.rgb, data.entry_spectra.reflectance(rows, data.sensor.wavelengths), rows)
+    table = data.atlas.with_outside
+    rows, spectra = np.arange(len(table.names)), table.spectra_in(data.model)
+    return EntryQuery(table.names, table.rgb, spectra.reflectance(rows, data.sensor.wavelengths), rows)
 
 
 def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> EntryErrors:

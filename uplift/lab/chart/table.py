@@ -1,7 +1,5 @@
 """A chart as rows of numbers and as CSV, its panels with Pareto fronts, and the recommendation of a cube."""
 
-import csv
-import io
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -10,7 +8,7 @@ from importlib.resources import files
 
 from uplift.colorimetry.lights import CHART_LIGHTS, DEFAULT_ILLUMINANT
 from uplift.common.arrays import StrPath
-from uplift.common.csv import csv_text
+from uplift.common.csv import csv_text, parse_csv
 from uplift.common.errors import ChartFileError, OptionError, unknown_name
 from uplift.common.files import read_bytes
 from uplift.common.text import format_value, parse_float, shorten
@@ -120,18 +118,18 @@ def shipped_chart() -> Chart:
 def parse_chart(data: bytes, path: StrPath) -> Chart:
     """Parse the CSV file of a chart. Raises `ChartFileError`."""
     try:
-        lines = list(csv.DictReader(io.StringIO(data.decode("utf-8-sig"))))
+        lines = parse_csv(data)
         if not lines:
             raise ValueError("it contains no methods")
         results = tuple(map(_result, lines))
-    except (ValueError, csv.Error) as error:
+    except ValueError as error:
         raise ChartFileError(f"is not the table of a chart: {error}", path=path, hint=HINT) from error
     return Chart({name: lines[0][name] for name in FACTS}, results)
 
 
 def _result(line: dict[str, str]) -> MethodResult:
-    if None in line or None in line.values() or not {*TEXTS, *FACTS} <= line.keys():
-        raise ValueError("columns are missing, or lines differ in length")
+    if not {*TEXTS, *FACTS} <= line.keys():
+        raise ValueError("columns are missing")
     texts = {name: line[name] for name in TEXTS if name != "state"}
     numbers = {name: _number(name, line[name]) for name in line if name not in (*TEXTS, *FACTS) and line[name].strip()}
     state = State(line["state"])
