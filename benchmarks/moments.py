@@ -3,17 +3,27 @@
 import warnings
 from collections.abc import Mapping
 from typing import Any
+from unittest import mock
 
 import numpy as np
+from scipy.optimize import minimize
 
 import uplift
-from benchmarks import ATLASES, DOCS, read_reference, record
+from benchmarks import ATLASES, DOCS, MACBETH, read_reference, record
+from uplift.atlas import Atlas, on_grid
+from uplift.colorimetry import observer
+from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, lab
 from uplift.colorimetry.lights import REPORT_LIGHTS
-from uplift.lab.study.moments import ALL_ATLASES, TECHNIQUES, MomentsStudy, Technique, study_moments
+from uplift.common.arrays import Array
+from uplift.lab.study.moments import ALL_ATLASES, STEP, TECHNIQUES, MomentsStudy, Technique, fine_grid, study_moments
 from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
+from uplift.models.moments import WARPS
 
 PICTURES = DOCS / "moments"
 FLOATS = (3, 5, 9, 13, 16)
+TRIES = 300
+"""Warps that the search tries."""
+CUBE_DIM, COEFFICIENTS = 16, (3, 5, 9)
 Pair = list[float]
 """Mean and largest error."""
 Errors = Mapping[tuple[Technique, int], Pair]
@@ -42,6 +52,9 @@ def main() -> None:
             for count in counts
         ],
         lights=[under_lights(study, floats, one) for floats in FLOATS for one in TECHNIQUES],
+        warps=[warp_errors(study.measured, name, floats) for name in WARPS for floats in FLOATS],
+        least=least_error(study.measured),
+        cubes=[cube_errors(atlases, name, count) for count in COEFFICIENTS for name in WARPS],
     )
 
 
@@ -84,3 +97,39 @@ def under_lights(study: MomentsStudy, floats: int, technique: Technique) -> dict
     _, *delta_e, rms = pairs(study, technique, max_moments(technique, floats))
     errors = dict(zip(REPORT_LIGHTS, delta_e, strict=True))
     return {"floats": floats, "technique": technique.short, "errors": errors, "rms": rms}
+
+
+def warp_errors(measured: Array, warp: str, floats: int) -> dict[str, Any]:
+    """Return ΔE76 under D65 and the rms difference of reflectances (E, 401) from those of their mirrored moments."""
+    technique, light = Technique(mirrored=True, warped=warp != "none", warp=warp), observer.light("D65")
+    original = measured[:, :: round(observer.STEP / STEP)]
+    spectra = technique.reconstruct(technique.moments(measured, fine_grid(), floats - 1), observer.grid())
+    delta_e = delta_e_1976(*(lab(each @ light.xyz.T, light.white) for each in (spectra, original)))
+    rms = np.sqrt(((spectra - original) ** 2).mean(axis=1))
+    return {"warp": warp, "floats": floats, "mean": delta_e.mean(), "max": delta_e.max(), "rms": rms.mean()}
+
+
+def cube_errors(atlases: Mapping[str, Atlas], warp: str, count: int) -> dict[str, Any]:
+    """Return mean ΔE00 under each light of a ColorChecker cube, at the entries of all other atlases in sRGB."""
+    cube = uplift.build(MACBETH, dim=CUBE_DIM, coefficients=count, entry_coefficients=count, warp=warp)
+    sensor = cube.data.sensor
+    measured = np.concatenate(
+        [on_grid(each, sensor.wavelengths) for name, each in atlases.items() if name != "macbeth"]
+    )
+    rgb = sensor.rgb(measured)
+    measured, rgb = measured[sensor.contains(rgb)], np.clip(rgb[sensor.contains(rgb)], 0, 1)
+    answers = cube.reflectance(rgb)
+    errors = {name: delta_e_spectra(observer.light(name), answers, measured).mean() for name in REPORT_LIGHTS}
+    return {"warp": warp, "coefficients": count, "spectra": len(rgb), "errors": errors}
+
+
+def least_error(measured: Array) -> float:
+    """Return the least mean error of three floats that a search from the warp ``colour`` finds."""
+
+    def error(terms: Array) -> float:
+        with mock.patch.dict(WARPS, fitted=((1.0, *terms[:2]), tuple(terms[2:]))):
+            return float(warp_errors(measured, "fitted", min(FLOATS))["mean"])
+
+    (_, *first), second = WARPS["colour"]
+    found = minimize(error, [*first, *second], method="Nelder-Mead", options={"maxfev": TRIES})
+    return float(found.fun)

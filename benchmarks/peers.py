@@ -172,7 +172,3 @@ def _run_ceres(program: Path, unknowns: str, count: int) -> tuple[Array, dict[st
         quiet = os.environ | {"GLOG_minloglevel": "3"}
         done = subprocess.run(command, env=quiet, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
         return np.fromfile(solution).reshape(-1, count), json.loads(done.stdout)
-
-
-if __name__ == "__main__":
-    main()

@@ -75,7 +75,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     metavar="N",
     help="Coefficients per spectrum of an atlas entry, from --coefficients to 17.",
 )
-@click.option("--warp", default="none", help="Phase warp of the moments: none or vision.")
+@click.option("--warp", default="none", help="Phase warp of the moments: none, vision or colour.")
 @click.option("--axis", default="srgb", help="Spacing of the nodes: srgb or linear.")
 @options.sensor
 @click.option(

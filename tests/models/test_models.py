@@ -12,12 +12,13 @@ from hypothesis.extra.numpy import arrays
 from tests.helpers import raises
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.models import Moments, Sigmoid, evaluate, from_description
+from uplift.models.moments import WARPS
 from uplift.models.sigmoid import evaluate_unscaled
 
 GRID = np.arange(380.0, 781.0, 5.0)
 LIMIT = 2e-7
 """Linear RGB: about the rounding of RGB itself."""
-MODELS = [Moments(3), Moments(9), Moments(17), Moments(9, warp="vision"), Sigmoid()]
+MODELS = [Moments(3), Moments(9), Moments(17), Moments(9, warp="vision"), Moments(3, warp="colour"), Sigmoid()]
 each = pytest.mark.parametrize("model", MODELS, ids=lambda model: f"{model.name}{model.count}")
 
 
@@ -96,7 +97,7 @@ def test_sigmoid_agrees_with_colour_science():
     np.testing.assert_allclose(model.to_reflectance(model.basis(GRID) @ [c0, c1, c2]), theirs.values, atol=1e-12)
 
 
-@pytest.mark.parametrize("warp", ["none", "vision"])
+@pytest.mark.parametrize("warp", WARPS)
 def test_phases_increase_from_minus_pi_to_0(warp):
     model = Moments(warp=warp)
     values = model.phase(np.arange(300.0, 901.0, 5.0))

@@ -30,16 +30,23 @@ MAX_SAFE_LINEAR = 30.0
 from .01 to .99."""
 
 
-def _vision(wavelengths: Array) -> Array:
-    """Antiderivative of the density that hero-wavelength renderers sample by, 1/cosh²(0.0072 (λ − 538)).
+WARPS: dict[str, tuple[tuple[float, float, float], ...]] = {
+    "none": (),
+    "vision": ((1.0, 0.0072, 538.0),),
+    "colour": ((1.0, 0.0263, 480.0), (1.066, 0.0227, 578.0)),
+}
+"""Terms (a, k, m) of increasing functions w(λ) = Σ a tanh(k (λ − m)); without any, w(λ) = λ.
 
-    Radziszewski, Boryczko & Alda 2009, "An improved technique for full spectral rendering".
-    """
-    return np.tanh(0.0072 * (wavelengths - 538.0))
+The density of ``vision`` is that by which hero-wavelength renderers sample, 1/cosh²(0.0072 (λ − 538)): Radziszewski,
+Boryczko & Alda 2009, "An improved technique for full spectral rendering". That of ``colour`` has a peak for blue and
+one for green and red, fitted to the colours of the shipped atlases as three coefficients keep them (docs/moments.md).
+"""
 
 
-WARPS: dict[str, Callable[[Array], Array]] = {"none": np.asarray, "vision": _vision}
-"""Increasing functions of the wavelength; ``vision`` gives more phase to wavelengths of high luminous efficiency."""
+def warped(name: str, wavelengths: Any, tanh: Callable[[Any], Any] = np.tanh) -> Any:
+    """Return w(λ) of a warp at wavelengths in nm, by the hyperbolic tangent of their array library."""
+    terms = WARPS[name]
+    return sum(a * tanh(k * (wavelengths - m)) for a, k, m in terms) if terms else wavelengths
 
 
 @dataclass(frozen=True)
@@ -55,7 +62,7 @@ class Moments(Model):
         Number of coefficients, from 3 to 17: the zeroth moment and 2 to 16 others.
     start, end : float
         Range in nm.
-    warp : {"none", "vision"}
+    warp : {"none", "vision", "colour"}
         Increasing function applied to the wavelength before its linear map to the phase.
 
     Raises
@@ -111,10 +118,9 @@ class Moments(Model):
             φ in [−π, 0].
         """
         # φ = π (w(λ) − w(λ₀)) / (w(λ₁) − w(λ₀)) − π
-        warp = WARPS[self.warp]
-        low, high = warp(np.array([self.start, self.end]))
+        low, high = warped(self.warp, np.array([self.start, self.end]))
         inside = np.clip(np.asarray(wavelengths, dtype=float), self.start, self.end)
-        return np.pi * (warp(inside) - low) / (high - low) - np.pi
+        return np.asarray(np.pi * (warped(self.warp, inside) - low) / (high - low) - np.pi)
 
     def basis(self, wavelengths: ArrayLike) -> Array:
         # B p = p₀ + 2 Σ p_l cos lφ

@@ -87,7 +87,7 @@ def build(
     model: ModelName = "moments",
     coefficients: int = 9,
     entry_coefficients: int = MAX_COUNT,
-    warp: Literal["none", "vision"] = "none",
+    warp: Literal["none", "vision", "colour"] = "none",
     axis: Literal["srgb", "linear"] = "srgb",
     space: str = "sRGB",
     illuminant: str = DEFAULT_ILLUMINANT,
@@ -125,7 +125,7 @@ def build(
     entry_coefficients : int, default 17
         Coefficients of the spectra of atlas entries in the moment model, from ``coefficients`` to 17. Entries are few,
         so more of them cost little, and the answers at and near the colours of entries come closer to the measurements.
-    warp : {"none", "vision"}, default "none"
+    warp : {"none", "vision", "colour"}, default "none"
         Map from wavelengths to the phase of the moments. ``"vision"`` resolves wavelengths by the sensitivity
         of the eye.
     axis : {"srgb", "linear"}, default "srgb"

@@ -9,12 +9,12 @@ from uplift.lookup import Cube, load
 from uplift.models import Moments
 
 
-@pytest.fixture(scope="session")
-def warped_cube(small_cube) -> Cube:
+@pytest.fixture(scope="session", params=["vision", "colour"])
+def warped_cube(small_cube, request) -> Cube:
     """Cube of five of nine moments, reinterpreted with another wavelength range and warp."""
     data = small_cube.data
     atlas = replace(data.atlas, coefficients=data.atlas.coefficients[:, :5], spectra=None)
-    model = Moments(5, 400, 700, "vision")
+    model = Moments(5, 400, 700, request.param)
     return Cube(with_points(replace(data, model=model, atlas=atlas), coefficients=data.points.coefficients[:, :5]))
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
 from uplift.models import Moments, Sigmoid
-from uplift.models.moments import WARPS
+from uplift.models.moments import WARPS, warped
 
 BIN_COUNT = 1024
 """Even bins of [0, 1]: few of them contain more than one node."""
@@ -18,6 +18,8 @@ TEXEL = 4
 """Rows are padded to whole texels of four channels."""
 COLUMNS = 2048
 """Texels in a row of the table as an image: every graphics card that can run the program has textures of this width."""
+MAX_TERMS = 2
+"""Terms of a warp that programs compute."""
 MODES = ("spectra", "moments")
 
 Floats = NDArray[np.float32]
@@ -113,6 +115,9 @@ def _model_constants(model: object) -> dict[str, float]:
     if isinstance(model, Sigmoid):
         return {"SIGMOIDS": 1, "START": model.start, "END": model.end}
     assert isinstance(model, Moments)
-    low, high = WARPS[model.warp](np.array([model.start, model.end])).tolist()
-    constants = {"SIGMOIDS": 0, "WARPED": int(model.warp == "vision"), "START": model.start, "END": model.end}
-    return constants | {"LOW": low, "SCALE": 1 / (high - low)}
+    low, high = warped(model.warp, np.array([model.start, model.end])).tolist()
+    terms = np.zeros((MAX_TERMS, 3))
+    terms[: len(WARPS[model.warp])] = WARPS[model.warp] or 0
+    constants = {"SIGMOIDS": 0, "WARPED": int(terms.any()), "START": model.start, "END": model.end}
+    warp = {f"WARP_{number}": value for number, value in enumerate(terms.ravel().tolist()) if terms.any()}
+    return constants | warp | {"LOW": low, "SCALE": 1 / (high - low)}

@@ -9,7 +9,7 @@ import numpy as np
 from uplift.io.mitsuba.texels import PADDING, Placement, Samples, Texels
 from uplift.models import Moments, Sigmoid
 from uplift.models.model import Model
-from uplift.models.moments import WARPS
+from uplift.models.moments import warped
 
 HASH_ROUNDS = 3
 ARCTAN = (
@@ -77,10 +77,9 @@ def _squash(model: Model, linear: Any) -> Any:
 def _phase(model: Moments, wavelengths: Any) -> Any:
     import drjit as dr
 
-    low, high = WARPS[model.warp](np.array([model.start, model.end])).tolist()
-    clipped = dr.clip(wavelengths, model.start, model.end)
-    warped = dr.tanh(0.0072 * (clipped - 538)) if model.warp == "vision" else clipped
-    return dr.pi * (warped - low) / (high - low) - dr.pi
+    low, high = warped(model.warp, np.array([model.start, model.end])).tolist()
+    inside = warped(model.warp, dr.clip(wavelengths, model.start, model.end), dr.tanh)
+    return dr.pi * (inside - low) / (high - low) - dr.pi
 
 
 @cache

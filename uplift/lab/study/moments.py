@@ -27,11 +27,12 @@ class Technique:
 
     ``mirrored``: map [start, end] nm to the half circle [−π, 0] and mirror it, which makes the moments real.
         Otherwise the range covers the circle [−π, π], and its two ends meet.
-    ``warped``: warp the phase towards wavelengths to which the eye is sensitive.
+    ``warped``: warp the phase towards wavelengths to which the eye is sensitive, by the ``warp`` of this name.
     """
 
     mirrored: bool
     warped: bool
+    warp: str = "vision"
 
     @property
     def short(self) -> str:
@@ -49,7 +50,7 @@ class Technique:
 
     def phase(self, wavelengths: ArrayLike) -> Array:
         """Phases (N,) of wavelengths (N,)."""
-        half = Moments(warp="vision" if self.warped else "none").phase(wavelengths)
+        half = Moments(warp=self.warp if self.warped else "none").phase(wavelengths)
         return half if self.mirrored else 2 * half + np.pi
 
     def moments(self, reflectance: Array, wavelengths: ArrayLike, moments: int) -> Complex | Array:

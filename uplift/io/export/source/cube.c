@@ -84,7 +84,8 @@ UP_FUNCTION float up_deviation(float weight, float x)
 UP_FUNCTION float up_warp(float wavelength)
 {
 #if UP_WARPED
-    return UP_TANH(0.0072f * (wavelength - 538.0f));
+    float low = UP_WARP_0 * UP_TANH(UP_WARP_1 * (wavelength - UP_WARP_2));
+    return low + UP_WARP_3 * UP_TANH(UP_WARP_4 * (wavelength - UP_WARP_5));
 #else
     return wavelength;
 #endif
