@@ -8,6 +8,7 @@ import pytest
 from uplift_cli.main import COMMANDS, main
 
 import uplift
+from benchmarks.__main__ import pages
 from tests.conftest import ROOT
 from tests.examples import examples
 from tests.helpers import warns
@@ -79,12 +80,40 @@ def unknown_options(text):
     return unknown
 
 
+REASONS = ("background", "not done", "not offered", "cannot be repeated")
+
+
 def test_the_page_of_coverage_has_no_empty_row_and_names_what_exists():
     lines = [line.strip("|").split("|") for line in COVERAGE.splitlines() if line.startswith("| ")]
     table = [[cell.strip() for cell in row] for row in lines]
     assert len(table) > 80
-    assert [row for row in table if len(row) != 3 or not all(row)] == []
+    assert [row for row in table if len(row) != 4 or not all(row)] == []
     assert unknown_options(COVERAGE) == []
+    shown = [row for row in table if row[3] not in ("—", "shown by")]
+    assert [row for row in table if row[3] == "—" and not row[2].startswith(REASONS)] == []
+    assert [
+        row for row in shown if (code := re.findall("`([^`]+)`", row[3])) == [] or not all(map(is_real, code))
+    ] == []
+
+
+def is_real(code):
+    """Whether a test of this path and name, a page that can be measured, or a command of this line exists."""
+    path, _, name = code.partition("::")
+    if path.startswith("tests/"):
+        return (ROOT / path).is_file() and (not name or f"def {name}(" in (ROOT / path).read_text(encoding="utf-8"))
+    if code.startswith("make measure PAGE="):
+        return code.removeprefix("make measure PAGE=") in pages()
+    if code.startswith("uplift "):
+        test_command_lines_parse(code)
+        return True
+    return code == "make site"
+
+
+@pytest.mark.parametrize(
+    "code", ["tests/fit/test_seeds.py::test_seed", "tests/no.py", "make measure PAGE=no", "make no"]
+)
+def test_evidence_that_does_not_exist_is_found(code):
+    assert not is_real(code)
 
 
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")

@@ -103,11 +103,9 @@ class CubeDiff:
     @property
     def lacking(self) -> tuple[tuple[str, str, int], ...]:
         """Colours without an answer: their set, the cubes that lack them, and their number."""
-        codes = dict(enumerate((*self.names, " and ".join(self.names)), 1))
-        counts = [
-            (each, names, np.count_nonzero(each.lacking == code)) for each in self.sets for code, names in codes.items()
-        ]
-        return tuple((each.name, names, int(count)) for each, names, count in counts if count)
+        cubes = ("", *self.names, " and ".join(self.names))
+        counts = [(each.name, np.bincount(each.lacking, minlength=4).tolist()) for each in self.sets]
+        return tuple((name, cubes[code], count[code]) for name, count in counts for code in (1, 2, 3) if count[code])
 
     @property
     def largest(self) -> float:
@@ -116,10 +114,9 @@ class CubeDiff:
 
     def is_within(self, tolerance: float) -> bool:
         """Whether both cubes have the same entries and colours, and none differs by more than ΔE00 ``tolerance``."""
-        changed = (
-            self.pairs.removed or self.pairs.added or any(np.isin(each.lacking, (1, 2)).any() for each in self.sets)
-        )
-        return not changed and self.largest <= tolerance
+        has_same_colours = not any(np.isin(each.lacking, (1, 2)).any() for each in self.sets)
+        has_same_entries = not (self.pairs.removed or self.pairs.added)
+        return has_same_colours and has_same_entries and self.largest <= tolerance
 
 
 def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping[str, Array] | None = None) -> CubeDiff:

@@ -44,6 +44,15 @@ def test_npz_has_all_arrays_and_multipliers_of_the_spectra(small_cube, tmp_path)
     np.testing.assert_allclose(atlas, small_cube.reflectance(data.atlas.rgb, [450, 650]), atol=1e-9)
 
 
+def test_npz_has_the_entries_outside_the_space(cyan_cube, tmp_path):
+    write_npz(cyan_cube.data, tmp_path / "cube.npz")
+    with np.load(tmp_path / "cube.npz", allow_pickle=False) as arrays:
+        assert arrays["outside.names"].tolist() == ["cyan"]
+        np.testing.assert_array_equal(arrays["outside.rgb"], cyan_cube.data.atlas.outside.rgb)
+        found = evaluate(cyan_cube.data.entry_spectra.model, arrays["outside.multipliers"], [450, 650])
+    np.testing.assert_allclose(found, cyan_cube.data.outside_spectra.reflectance(np.array([0]), [450, 650]), atol=1e-9)
+
+
 def read(path):
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))

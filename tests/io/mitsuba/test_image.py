@@ -71,6 +71,26 @@ def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(texture, spectrum
     np.testing.assert_allclose(spectrum(found, (0.75, 0.5), [450, 650]), other, atol=1e-5)
 
 
+def test_texels_of_an_entry_outside_the_space_have_its_spectrum(mi, spectrum, cyan_cube, tmp_path):
+    """A bitmap, an OpenEXR file and a colour; beyond the entry a colour is mapped."""
+    cyan_cube.save(tmp_path / "cyan.uplift")
+    at, rgb = np.array([450.0, 650.0]), cyan_cube.data.atlas.outside.rgb[0]
+    entry = cyan_cube.data.outside_spectra.reflectance(np.array([0]), at)[0]
+    pixels = np.array([[rgb, [1, 0.2, 0]]], dtype=np.float32)
+    write_exr(tmp_path / "image.exr", planes(pixels))
+    every = {"type": "uplift", "cube": str(tmp_path / "cyan.uplift")}
+    nearest = every | {"filter_type": "nearest", "out_of_gamut": "error"}
+    for source in ({"bitmap": mi.Bitmap(pixels)}, {"filename": str(tmp_path / "image.exr")}):
+        np.testing.assert_allclose(spectrum(mi.load_dict(nearest | source), (0.25, 0.5), at), entry, atol=1e-5)
+    colour = ", ".join(map(repr, rgb.tolist()))
+    np.testing.assert_allclose(spectrum(mi.load_dict(every | {"rgb": colour}), (0.5, 0.5), at), entry, atol=1e-5)
+    pixels[0, 0] = rgb - [0.5, 0, 0]
+    with warns("pixels-out-of-gamut", "texture-in-python"):
+        found = mi.load_dict(every | {"bitmap": mi.Bitmap(pixels), "filter_type": "nearest"})
+    mapped = cyan_cube.reflectance(pixels[0, 0].clip(0, 1), at, mode="refined")
+    np.testing.assert_allclose(spectrum(found, (0.25, 0.5), at), mapped, atol=1e-5)
+
+
 def test_only_encoded_files_are_decoded_and_layers_are_read(mi, spectrum, small_cube, tmp_path, cube_path):
     codes = np.array([[[200, 30, 90]]], dtype=np.uint8)
     linear = small_cube.decode(codes).astype(np.float32)

@@ -133,3 +133,25 @@ def test_cubes_that_do_not_fit_are_refused(cubes, small_sigmoid_cube, tmp_path):
             prepared((cubes[0], *others), mask, encoding)
     with raises(TextureError, "file-not-found"):
         prepared(cubes[:2], tmp_path / "none.png")
+
+
+@pytest.mark.parametrize("encoding", [SPECTRUM, texture.Moments(), texture.Multipliers()])
+def test_an_entry_outside_the_space_answers_where_its_cube_is_chosen(cyan_cube, plain_cube, tmp_path, encoding):
+    """Three pixels of its colour: of its cube, of one without it, and half of each."""
+    boxes, data = cyan_cube.data.outside_boxes, plain_cube.data
+    rgb = np.tile(boxes.rgb[0], (1, 3, 1)).astype(np.float32)
+    image = write_exr(tmp_path / "cyan.exr", {name: rgb[..., k].copy() for k, name in enumerate("RGB")})
+    mask = write_exr(tmp_path / "weights.exr", {"Y": np.array([[0, 1, 0.5]], dtype=np.float32)})
+    converter = prepared((cyan_cube, plain_cube), mask, encoding)
+    result = texture.convert(converter, image, tmp_path / "out.exr")
+    assert [each.code for each in result.warnings] == ["pixels-out-of-gamut"]
+    (colours,), (numbers,) = (read_channels(result.target, names) for names in ("RGB", converter.channels))
+    clipped = boxes.rgb[0].clip(0, 1)
+    np.testing.assert_allclose(colours, [boxes.rgb[0], clipped, (boxes.rgb[0] + clipped) / 2], atol=1e-6)
+    alone = [each.convert(colours[None, [row]])[0][1][0, 0] for row, each in enumerate(converter.uplifters)]
+    np.testing.assert_allclose(numbers[:2], alone, atol=1e-6)
+    if encoding.name != "multipliers":
+        np.testing.assert_allclose(numbers[2], np.mean(alone, axis=0), atol=1e-6)
+    else:
+        spectrum = evaluate(data.model, numbers[[2]].astype(float), data.sensor.wavelengths)
+        np.testing.assert_allclose(data.sensor.rgb(spectrum)[0], colours[2], atol=1e-4)

@@ -21,15 +21,18 @@ def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
 
     The file has the arrays of docs/cube-file.md under their names. In addition, it has ``multipliers`` (n, C) of the
     nodes in ``model`` and ``atlas.multipliers`` (E, K) of the entries in ``entry_model``, from which spectra are
-    evaluated directly, ``atlas.names`` (E,), and ``metadata``, the JSON text with both models.
+    evaluated directly, ``atlas.names`` (E,), the same of the entries outside the RGB space as ``outside.…``, if there
+    are any, and ``metadata``, the JSON text with both models.
     """
     tensors, metadata = contents(data)
     arrays = tensors | {
         "multipliers": data.model.from_storage(data.points.coefficients[data.points.present]),
-        "atlas.multipliers": data.entry_spectra.multipliers,
-        "atlas.names": np.array(data.atlas.names, dtype=np.str_),
         "metadata": np.array(json.dumps(metadata, ensure_ascii=False, allow_nan=False)),
     }
+    for prefix, table in (("atlas", data.atlas), ("outside", data.atlas.outside)):
+        if table is not None:
+            arrays[f"{prefix}.multipliers"] = table.spectra_in(data.model).multipliers
+            arrays[f"{prefix}.names"] = np.array(table.names, dtype=np.str_)
     with atomic_write(path, force=force) as temporary, temporary.open("wb") as file:
         np.savez(file, allow_pickle=False, **arrays)
     return len(arrays)

@@ -18,8 +18,6 @@ TEXEL = 4
 """Rows are padded to whole texels of four channels."""
 COLUMNS = 2048
 """Texels in a row of the table as an image: every graphics card that can run the program has textures of this width."""
-MAX_TERMS = 2
-"""Terms of a warp that programs compute."""
 MODES = ("spectra", "moments")
 
 Floats = NDArray[np.float32]
@@ -116,8 +114,7 @@ def _model_constants(model: object) -> dict[str, float]:
         return {"SIGMOIDS": 1, "START": model.start, "END": model.end}
     assert isinstance(model, Moments)
     low, high = warped(model.warp, np.array([model.start, model.end])).tolist()
-    terms = np.zeros((MAX_TERMS, 3))
-    terms[: len(WARPS[model.warp])] = WARPS[model.warp] or 0
-    constants = {"SIGMOIDS": 0, "WARPED": int(terms.any()), "START": model.start, "END": model.end}
-    warp = {f"WARP_{number}": value for number, value in enumerate(terms.ravel().tolist()) if terms.any()}
+    terms = [number for term in WARPS[model.warp] for number in term]
+    warp = {f"WARP_{number}": value for number, value in enumerate((*terms, 0.0, 0.0, 0.0)[:6])} if terms else {}
+    constants = {"SIGMOIDS": 0, "WARPED": int(bool(terms)), "START": model.start, "END": model.end}
     return constants | warp | {"LOW": low, "SCALE": 1 / (high - low)}

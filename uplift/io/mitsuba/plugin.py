@@ -8,18 +8,20 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.gamut import METHODS, check_method, map_to_gamut
+from uplift.colorimetry.gamut import METHODS, map_to_gamut
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, CubeFileError, OptionError, UpliftError, UpliftWarning, needs_extra
-from uplift.io.mitsuba.texels import Placement, Texels, light_texels, uplift_texels
+from uplift.io.mitsuba.texels import THREADS, Placement, Texels, light_texels, prepare_texels, uplift_texels
 from uplift.io.mitsuba.texture import make_environment, make_texture
-from uplift.io.mitsuba.texture_file import read_colours, read_lights, read_texels
-from uplift.io.texture.colours import Decoder
+from uplift.io.mitsuba.texture_file import read_colours, read_texels
+from uplift.io.texture.colours import Counts
 from uplift.io.texture.exr_file import is_exr
 from uplift.io.texture.image import Values
+from uplift.io.texture.lights import prepare_lights
 from uplift.lights.lookup import EmissionTable, load_emission
 from uplift.lookup import Cube, load
+from uplift.models import evaluate
 
 START, END = 360, 830
 """Wavelength range of Mitsuba in nm."""
@@ -72,6 +74,9 @@ def _make(props: Any) -> Any:
         if is_light:
             return _constant(_table(props).spectrum(rgb, at))
         cube, method = _cube(props), str(props.get("out_of_gamut", "error"))
+        if cube.data.outside_boxes.find(rgb[None]).rows.size:
+            (_, multipliers), _ = prepare_texels(cube, method, of_entries=True).convert(rgb[None].astype(np.float32))
+            return _constant(evaluate(cube.data.entry_spectra.model, multipliers.astype(float), at)[0])
         return _constant(cube.reflectance(map_to_gamut(rgb, cube.data.sensor, method).rgb, at))
     texels, placement = _texels(props, is_light=is_light), Placement.read(props)
     _warn_in_scalar_variants("texture")
@@ -97,8 +102,7 @@ def _source(props: Any, names: tuple[str, ...]) -> str:
     sources = [name for name in names if name in props]
     if len(sources) != 1:
         raise OptionError(
-            f"an uplift texture must have one of {', '.join(names)}, got {len(sources)}",
-            hint="pass one of them",
+            f"an uplift texture must have one of {', '.join(names)}, got {len(sources)}", hint="pass one of them"
         )
     return sources[0]
 
@@ -110,30 +114,29 @@ def _texels(props: Any, *, is_light: bool) -> Texels:
     path = _resolve(props["filename"]) if "filename" in props else None
     if path is not None and (texels := read_texels(path)) is not None:
         return texels
-    uplift: Callable[[Array], Texels]
     rgb: Values
     found: tuple[UpliftWarning, ...] = ()
+    counts, method = Counts(), "clip"
     if is_light:
         table = _table(props)
-        uplift = partial(light_texels, table)
         if path is None:
             rgb = _linear(decode, props["bitmap"])
         else:
-            rgb, found = read_lights(path, table)
+            rgb, counts, found = read_colours(path, prepare_lights(table, threads=THREADS))
+        texels = light_texels(table, rgb.astype(float))
     else:
-        cube, method = _cube(props), str(props.get("out_of_gamut", "clip"))
-        check_method(method)
-        sensor, uplift = cube.data.sensor, partial(uplift_texels, cube)
+        cube, method = _cube(props), str(props.get("out_of_gamut", method))
+        uplifter = prepare_texels(cube, method)
         if path is not None and path.is_file() and is_exr(path):
-            rgb, found = read_colours(path, sensor, method)
+            rgb, counts, found = read_colours(path, uplifter)
         else:
             bitmap = props["bitmap"] if path is None else mitsuba.Bitmap(str(path))
-            encoded = _linear(lambda codes: cube.decode(255 * codes), bitmap)
-            rgb, counts = Decoder(np.asarray, False, False, None, sensor, method)(encoded)
-            found = counts.warnings(method, path)
-    for warning in found:
+            rgb, counts = uplifter.mapped(_linear(lambda codes: cube.decode(255 * codes), bitmap))
+        texels, converted = uplift_texels(uplifter, rgb)
+        counts += converted
+    for warning in (*found, *counts.warnings(method, path)):
         warnings.warn(warning, stacklevel=2)
-    return uplift(rgb.astype(float))
+    return texels
 
 
 def _table(props: Any) -> EmissionTable:
@@ -165,10 +168,7 @@ def _parse_rgb(value: Any) -> Array:
         words = value.replace(",", " ").split() if isinstance(value, str) else value
         red, green, blue = (float(word) for word in words)
     except (TypeError, ValueError) as error:
-        raise OptionError(
-            f"rgb must be three numbers, got {value!r}",
-            hint="for example '0.8, 0.2, 0.1'",
-        ) from error
+        raise OptionError(f"rgb must be three numbers, got {value!r}", hint="for example '0.8, 0.2, 0.1'") from error
     return np.array([red, green, blue])
 
 

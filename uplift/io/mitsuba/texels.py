@@ -1,7 +1,6 @@
 """Texels of an image: the numbers of their spectra, uplifted from RGB, and how they lie on a surface."""
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,10 +8,11 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
 from uplift.common.errors import unknown_name
+from uplift.io.texture.colours import Counts, Floats
+from uplift.io.texture.uplifter import Multipliers, Uplifter, prepare
 from uplift.lights.lookup import EmissionTable
 from uplift.lookup import Cube
-from uplift.lookup.blocks import as_colours, blockwise
-from uplift.lookup.interpolate import extended_multipliers, refined_multipliers
+from uplift.lookup.blocks import blockwise
 from uplift.models import evaluate
 from uplift.models.model import Model
 
@@ -57,18 +57,23 @@ class Texels:
         return f"UpliftTexture[{width} × {height}, {self.model.name}, {count} {numbers}, {wrap}]"
 
 
-def uplift_texels(cube: Cube, rgb: Array) -> Texels:
-    """Uplift linear RGB (h, w, 3) to multipliers of spectra that have exactly these colours.
+def prepare_texels(cube: Cube, method: str, *, of_entries: bool = False) -> Uplifter:
+    """Prepare a cube for texels, with as many multipliers as its nodes or ``of_entries`` have."""
+    return prepare(cube, Multipliers(of_entries), out_of_gamut=method, threads=THREADS)
+
+
+def uplift_texels(uplifter: Uplifter, rgb: Floats) -> tuple[Texels, Counts]:
+    """Uplift linear RGB (h, w, 3) of its decoder to multipliers of spectra that have exactly these colours.
 
     All texels have one number of multipliers: that of the cube's entries if a texel lies in the box of an entry, else
-    that of its nodes. Raises `ColourError` outside [0, 1].
+    that of its nodes.
     """
-    data, model, function = cube.data, cube.data.model, refined_multipliers
-    texels = as_colours(rgb, data.sensor)
-    if data.entry_boxes.find(texels.reshape(-1, 3)).rows.size:
-        model, function = data.entry_spectra.model, extended_multipliers
-    multipliers = blockwise(partial(function, data), texels, model.count, np.float32, THREADS)
-    return model_texels(model, multipliers)
+    data, colours = uplifter.cube.data, rgb.reshape(-1, 3).astype(float)
+    if any(found.rows.size for found in (data.entry_boxes.find(colours.clip(0, 1)), data.outside_boxes.find(colours))):
+        uplifter = prepare_texels(uplifter.cube, uplifter.out_of_gamut, of_entries=True)
+    assert uplifter.model is not None
+    (_, multipliers), counts = uplifter.convert(rgb)
+    return model_texels(uplifter.model, multipliers), counts
 
 
 def model_texels(model: Model, multipliers: NDArray[Any]) -> Texels:

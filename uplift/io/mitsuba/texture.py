@@ -12,16 +12,7 @@ from uplift.models.model import Model
 from uplift.models.moments import warped
 
 HASH_ROUNDS = 3
-ARCTAN = (
-    0.49999966,
-    -0.318291775,
-    0.249550106,
-    -0.207882832,
-    0.16639951,
-    -0.10996833,
-    0.048598712,
-    -0.010096807,
-)
+ARCTAN = (0.49999966, -0.318291775, 0.249550106, -0.207882832, 0.16639951, -0.10996833, 0.048598712, -0.010096807)
 """arccos(c) / (π √(1 − c²)) on [0, 1] as a polynomial of c, lowered by its error to keep reflectances in [0, 1]."""
 
 

@@ -11,16 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import TextureError, UpliftError, UpliftWarning
 from uplift.io.mitsuba.texels import THREADS, Samples, Texels, model_texels
 from uplift.io.texture import exr_file
-from uplift.io.texture.colours import ColourChannels, Counts, Floats, coloured_parts, make_decoder, space_warnings
-from uplift.io.texture.image import Image, Part, open_image
-from uplift.io.texture.lights import prepare_lights
-from uplift.io.texture.uplifter import ReadColours
-from uplift.lights.lookup import EmissionTable
+from uplift.io.texture.colours import Counts, Floats, coloured_parts, space_warnings
+from uplift.io.texture.image import open_image
+from uplift.io.texture.uplifter import Converter
 from uplift.lookup.blocks import blockwise
 from uplift.models import Moments, from_description
 from uplift.models.model import Model
@@ -29,7 +26,6 @@ QUANTITIES = ("T", "S0")
 """Beginnings of the names of channels of reflectance and of power in the layout of Fichet et al. 2021."""
 WAVELENGTH = re.compile(r"(\d+)(?:,(\d+))?nm")
 NUMBERED = re.compile(r"(moment|multiplier)\.\d+")
-Colours = tuple[Floats, tuple[UpliftWarning, ...]]
 GREY_SHARES = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
 EVEN = 1e-3
 """Tolerance of equidistant wavelengths in nm."""
@@ -60,34 +56,16 @@ def read_texels(path: Path) -> Texels | None:
     return model_texels(model, numbers)
 
 
-def read_colours(path: Path, sensor: Sensor, method: str) -> Colours:
-    """Read linear RGB (h, w, 3) in [0, 1] of an OpenEXR image, as `uplift texture` does, and its warnings.
+def read_colours(path: Path, converter: Converter) -> tuple[Floats, Counts, tuple[UpliftWarning, ...]]:
+    """Read linear RGB (h, w, 3) of an image as `uplift.io.texture.convert` does, with counts and warnings of its space.
 
-    The first part with colours counts, other channels do not. Raises `TextureError` and `ColourError`.
+    The first part with colours counts, other channels do not. Raises `TextureError`, `ColourError` and `OptionError`.
     """
     with open_image(path) as image:
-        part, channels = coloured_parts(image)[0]
-        return _decoded(image, part, channels, make_decoder(sensor, part, "auto", method), sensor, method)
-
-
-def read_lights(path: Path, table: EmissionTable) -> Colours:
-    """Read linear RGB (h, w, 3) of the lights in an image, as `uplift lights texture` does, and its warnings.
-
-    Raises `TextureError` and `OptionError`.
-    """
-    converter = prepare_lights(table, threads=THREADS)
-    with open_image(path) as image:
-        part, channels = coloured_parts(image)[0]
-        channels = converter.colour_channels(channels)
-        return _decoded(image, part, channels, converter.decoder(part), converter.sensor, "clip")
-
-
-def _decoded(
-    image: Image, part: Part, channels: ColourChannels, decode: ReadColours, sensor: Sensor, method: str
-) -> Colours:
-    bands, counts = zip(*(decode(channels.straight(rows)) for _, rows in image.bands(part)), strict=True)
-    total = sum(counts, Counts())
-    return np.concatenate(bands), (*space_warnings(image, sensor), *total.warnings(method, image.path))
+        part, found = coloured_parts(image)[0]
+        channels, decode = converter.colour_channels(found), converter.decoder(part)
+        bands, counts = zip(*(decode(channels.straight(rows)) for _, rows in image.bands(part)), strict=True)
+        return np.concatenate(bands), sum(counts, Counts()), space_warnings(image, converter.sensor)
 
 
 def _read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -97,9 +75,7 @@ def _read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
         part = OpenEXR.File(str(path), separate_channels=True).parts[0]
     except (RuntimeError, IndexError) as error:
         raise TextureError(
-            "the OpenEXR file is damaged or incomplete",
-            path=path,
-            hint="write the file again",
+            "the OpenEXR file is damaged or incomplete", path=path, hint="write the file again"
         ) from error
     return part.header, part.channels
 
@@ -114,9 +90,7 @@ def _stack(path: Path, channels: dict[str, Any], names: list[str]) -> NDArray[An
     numbers = np.stack([channels[name].pixels for name in names], axis=-1).astype(np.float32)
     if not np.isfinite(numbers).all():
         raise TextureError(
-            "the numbers of a texture must be finite",
-            path=path,
-            hint="write the texture again with 'uplift texture'",
+            "the numbers of a texture must be finite", path=path, hint="write the texture again with 'uplift texture'"
         )
     return numbers
 

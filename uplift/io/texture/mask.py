@@ -10,17 +10,18 @@ the mixture of two reflectances of one colour has this colour, and stays in [0, 
 import contextlib
 import json
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
 
-from uplift.common.arrays import StrPath
+from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import ColourError, OptionError, TextureError
 from uplift.common.files import file_digest
 from uplift.io.texture.colours import Counts, Floats, colour_channels, coloured_parts
 from uplift.io.texture.image import Image, Part, Values, open_image
 from uplift.io.texture.uplifter import Converted, Converter, ConvertRows, Uplifter
+from uplift.lattice.entry_boxes import OutsideBoxes
 from uplift.lookup.cube import common_sensor
 from uplift.lookup.refine import refine_to_rgb
 
@@ -111,10 +112,20 @@ class MaskedUplifter(Converter):
     def convert(self, rgb: Floats) -> Converted:
         return self.uplifters[0].convert(rgb)
 
+    @property
+    def boxes(self) -> OutsideBoxes:
+        every = [each.boxes for each in self.uplifters]
+        return OutsideBoxes(*(np.concatenate([getattr(one, name) for one in every]) for name in ("rgb", "half_width")))
+
     def mix(self, rgb: Floats, weights: Floats) -> Converted:
-        """Uplift linear RGB (k, width, 3) in [0, 1] by the cubes, with weights (k, width, n) of sum 1."""
-        first = self.uplifters[0]
-        is_mixed = weights.max(axis=-1) < 1 if not first.is_linear else np.zeros(rgb.shape[:2], dtype=bool)
+        """Uplift linear RGB (k, width, 3) of the decoder by the cubes, with weights (k, width, n) of sum 1.
+
+        A colour in the box of an entry outside [0, 1] is answered so by the cube that has the entry, and mapped by the
+        others. The colours of these answers are mixed likewise.
+        """
+        is_mixed: Mask = np.all(weights < (1 if self.uplifters[0].model else 0), axis=-1)
+        is_outside: Mask = np.any((rgb < 0) | (rgb > 1), axis=-1)
+        answered = np.where(is_outside[..., None], 0, rgb)
         values = np.zeros((*rgb.shape[:2], len(self.channels)), dtype=np.float32)
         moments = np.zeros((np.count_nonzero(is_mixed), len(self.channels)))
         counts = Counts()
@@ -122,18 +133,21 @@ class MaskedUplifter(Converter):
             rows = weight > 0
             if not rows.any():
                 continue
-            (_, found), counted = uplifter.convert(rgb[rows])
-            counts += counted
+            requested, changed = uplifter.mapped(rgb[rows])
+            (colours, found), counted = uplifter.convert(requested)
+            counts += counted + replace(changed, pixels=0)
+            kept = is_outside[rows]
+            answered[rows & is_outside] += weight[rows & is_outside][:, None] * colours[kept]
             mixed, shared = is_mixed[rows], rows[is_mixed]
             values[rows & ~is_mixed] += weight[rows & ~is_mixed][:, None] * found[~mixed]
             if mixed.any():
                 parts = uplifter.cube.data.model.to_storage(found[mixed].astype(float))
                 moments[shared] += weight[is_mixed][shared][:, None] * parts
         if len(moments):
-            data = first.cube.data
+            data = self.uplifters[0].cube.data
             start = data.model.from_storage(moments)
-            values[is_mixed] = refine_to_rgb(data, data.model, start, rgb[is_mixed].astype(float))
-        return (rgb, values), counts
+            values[is_mixed] = refine_to_rgb(data, data.model, start, answered[is_mixed].astype(float))
+        return (answered, values), counts
 
     def multiply(self, values: tuple[Floats, ...], opacity: Floats) -> tuple[Floats, ...]:
         return self.uplifters[0].multiply(values, opacity)

@@ -20,14 +20,15 @@ from uplift.colorimetry.spaces import ImageSpace, find_space
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError
 from uplift.io import exr
-from uplift.io.texture.colours import ColourChannels, Counts, Floats, check_encoding, make_decoder
+from uplift.io.texture.colours import ColourChannels, Counts, Decoder, Floats, check_encoding, make_decoder
 from uplift.io.texture.image import Image, Part, Values
 from uplift.lattice import Status
-from uplift.lattice.entry_boxes import BoxHits
+from uplift.lattice.entry_boxes import BoxHits, OutsideBoxes
 from uplift.lookup import Cube
 from uplift.lookup.blocks import as_wavelengths, blockwise
-from uplift.lookup.interpolate import refined_multipliers
+from uplift.lookup.interpolate import extended_multipliers, refined_multipliers
 from uplift.lookup.refine import refine_to_rgb
+from uplift.models.model import Model
 
 Sampler = Callable[[Floats], Floats]
 """From linear RGB (…, 3) in [0, 1] to numbers (…, N)."""
@@ -69,9 +70,18 @@ class Converter(ABC):
         """How the colour channels that a part has are read: by default as they were found."""
         return found
 
+    @property
+    def boxes(self) -> OutsideBoxes | None:
+        """Boxes outside [0, 1] whose colours are converted as they are, if there are any."""
+        return None
+
     def decoder(self, part: Part) -> ReadColours:
-        """Conversion of the numbers of a part to linear RGB, by default in [0, 1]."""
-        return make_decoder(self.sensor, part, self.encoding, self.out_of_gamut, self.space)
+        """Conversion of the numbers of a part to linear RGB, by default in [0, 1] or in `boxes`."""
+        return make_decoder(self.sensor, part, self.encoding, self.out_of_gamut, self.space, self.boxes)
+
+    def mapped(self, rgb: Values) -> tuple[Floats, Counts]:
+        """Return linear RGB (…, 3) in [0, 1] or in `boxes`, as `decoder` does for parts, and the changed ones."""
+        return Decoder(np.asarray, False, False, None, self.sensor, self.out_of_gamut, self.boxes)(rgb)
 
     def part_header(self, part: Part) -> Mapping[str, Any]:
         """Attributes of one part in addition to ``header``, by default none."""
@@ -90,8 +100,6 @@ class PixelEncoding(ABC):
     """Name of the encoding."""
     depths: ClassVar[tuple[str, ...]]
     """Channel types that are precise enough, the default first."""
-    is_linear: ClassVar[bool] = True
-    """Whether the numbers are linear in the spectrum, and so can be filtered and multiplied by alpha."""
     header: ClassVar[dict[str, str]] = {}
     """Attributes that the layout requires."""
 
@@ -106,6 +114,10 @@ class PixelEncoding(ABC):
     @abstractmethod
     def outside(self, cube: Cube) -> Floats | None:
         """The numbers (O, N) of the entries outside the RGB space; None without any."""
+
+    def model(self, cube: Cube) -> Model | None:
+        """The model whose multipliers the numbers are; None for numbers that are linear in the spectrum."""
+        return None
 
     def describe(self, cube: Cube) -> dict[str, Any]:
         """The encoding as JSON values: ``as``, its name, and the wavelengths of a spectrum."""
@@ -180,28 +192,39 @@ class Multipliers(PixelEncoding):
     """Multipliers, from which spectra are evaluated at once. They are refined to the pixel's exact colour.
 
     Every model has them. They do not interpolate, so textures must not be filtered.
+
+    Parameters
+    ----------
+    of_entries : bool
+        As many as the spectra of entries have, instead of those of nodes.
     """
 
+    of_entries: bool = False
     name = "multipliers"
     depths = ("float",)
-    is_linear = False
+
+    def model(self, cube: Cube) -> Model:
+        return cube.data.entry_spectra.model if self.of_entries else cube.data.model
 
     def channels(self, cube: Cube) -> tuple[str, ...]:
-        return tuple(f"multiplier.{index:02}" for index in range(cube.data.model.count))
+        return tuple(f"multiplier.{index:02}" for index in range(self.model(cube).count))
 
     def make_sampler(self, cube: Cube, threads: int) -> Sampler:
-        refined = partial(refined_multipliers, cube.data)
-        width = cube.data.model.count
+        function = partial(extended_multipliers if self.of_entries else refined_multipliers, cube.data)
+        width = self.model(cube).count
 
         def sample(rgb: Floats) -> Floats:
             colours, rows = _different(rgb)  # images have few: a colour takes long, and has the same answer each time
-            return blockwise(refined, colours.astype(float), width, np.float32, threads)[rows]
+            return blockwise(function, colours.astype(float), width, np.float32, threads)[rows]
 
         return sample
 
     def outside(self, cube: Cube) -> Floats | None:
-        table = cube.data.atlas.outside
-        return None if table is None else cube.data.model.from_storage(table.coefficients).astype(np.float32)
+        table, spectra = cube.data.atlas.outside, cube.data.outside_spectra
+        if table is None or spectra is None:
+            return None
+        own = spectra.multipliers if self.of_entries else cube.data.model.from_storage(table.coefficients)
+        return own.astype(np.float32)
 
 
 PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {each.name: each for each in (Spectrum, Moments, Multipliers)}
@@ -238,24 +261,24 @@ def spectral_channels(quantity: str, wavelengths: Array) -> tuple[str, ...]:
 class Uplifter(Converter):
     """A converter of colours to spectra, made by `prepare`, for any number of images.
 
-    ``sample`` maps linear RGB (…, 3) to the numbers (…, N) of a pixel, which ``is_linear`` if they are linear in the
-    spectrum. ``rgb_error`` maps it to the largest error (…, 1) of the spectrum's colour; None without unrealisable
-    nodes. ``outside`` are the numbers (O, N) of the entries outside the RGB space, if there are any.
+    ``sample`` maps linear RGB (…, 3) to the numbers (…, N) of a pixel, the multipliers of ``model``, or linear in the
+    spectrum without one. ``rgb_error`` maps it to the largest error (…, 1) of the spectrum's colour; None without
+    unrealisable nodes. ``outside`` are the numbers (O, N) of the entries outside the RGB space, if there are any.
     """
 
     cube: Cube
     sample: Sampler
     rgb_error: Sampler | None
-    is_linear: bool
+    model: Model | None
     outside: Floats | None = None
 
-    def decoder(self, part: Part) -> ReadColours:
-        boxes = None if self.outside is None else self.cube.data.outside_boxes
-        return make_decoder(self.sensor, part, self.encoding, self.out_of_gamut, self.space, boxes)
+    @property
+    def boxes(self) -> OutsideBoxes:
+        return self.cube.data.outside_boxes
 
     def convert(self, rgb: Floats) -> Converted:
         if self.outside is not None:
-            hits = self.cube.data.outside_boxes.find(rgb.reshape(-1, 3))
+            hits = self.boxes.find(rgb.reshape(-1, 3))
             if hits.rows.size:
                 return self._convert_outside(rgb, hits, self.outside)
         is_off = 0 if self.rgb_error is None else (self.rgb_error(rgb) > self.cube.data.threshold).sum()
@@ -269,12 +292,12 @@ class Uplifter(Converter):
         map_to_gamut(requested[is_mixed], self.sensor, self.out_of_gamut)
         method = "clip" if self.out_of_gamut == "error" else self.out_of_gamut
         mapped = map_to_gamut(requested, self.sensor, method).rgb
-        mixed = weight * mapped + (1 - weight) * data.outside_boxes.rgb[hits.entry]
+        mixed = weight * mapped + (1 - weight) * self.boxes.rgb[hits.entry]
         colours[hits.rows] = mapped
         (_, found), counts = self.convert(colours.reshape(rgb.shape))
         numbers = found.reshape(len(colours), -1)
         own = weight * numbers[hits.rows] + (1 - weight) * entries[hits.entry]
-        numbers[hits.rows] = own if self.is_linear else refine_to_rgb(data, data.model, own, mixed)
+        numbers[hits.rows] = own if self.model is None else refine_to_rgb(data, self.model, own, mixed)
         colours[hits.rows] = mixed
         change = float(np.abs(mixed - requested).max(where=is_mixed[:, None], initial=0))
         counts += Counts(outside=int(is_mixed.sum()), max_change=change)
@@ -282,7 +305,7 @@ class Uplifter(Converter):
 
     def multiply(self, values: tuple[Floats, ...], opacity: Floats) -> tuple[Floats, ...]:
         rgb, numbers = values
-        return rgb * opacity, numbers * opacity if self.is_linear else numbers
+        return rgb * opacity, numbers * opacity if self.model is None else numbers
 
 
 def prepare(
@@ -347,7 +370,7 @@ def prepare(
         cube,
         sample=pixels.make_sampler(cube, threads),
         rgb_error=_rgb_error(cube, threads),
-        is_linear=pixels.is_linear,
+        model=pixels.model(cube),
         outside=pixels.outside(cube),
         space=None if space is None else find_space(space),
     )
