@@ -190,7 +190,7 @@ def test_equal_input_gives_equal_bytes(tmp_path):
     ("options", "error", "code"),
     [
         ({"dim": 1}, OptionError, "option"),
-        ({"dim": 10**400}, OptionError, "option"),
+        ({"dim": 10**400}, OptionError, "out-of-memory"),
         ({"threshold": float("nan")}, OptionError, "option"),
         ({"entry_coefficients": 8}, OptionError, "option"),
         ({"model": "moment"}, UnknownNameError, "unknown-name"),
