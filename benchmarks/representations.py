@@ -97,7 +97,7 @@ def ranking(comparison: Comparison, thesis: Mapping[tuple[str, str], Printed]) -
         yield {
             "lights": row.lights,
             "name": row.name,
-            **dict(zip(names, row.statistics.values, strict=True)),
+            **dict(zip(names, row.statistics, strict=True)),
             "thesis_mean": printed.mean if printed else None,
             "thesis_p97_5": printed.q97_5 if printed else None,
             "floats": row.floats,

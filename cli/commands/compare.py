@@ -179,7 +179,7 @@ def _print_table(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None
         title = "point sampling after the best low-pass filter of each kind"
         table = make_table(("lights", "samples", "filter", "parameters"), HEADINGS, title=title)
         for one in sorted(tuned, key=lambda one: (one.lights, one.count, one.statistics.mean)):
-            values = (f"{value:.3f}" for value in one.statistics.values)
+            values = (f"{value:.3f}" for value in one.statistics)
             table.add_row(one.lights, str(one.count), one.kind, one.parameters, *values)
         tables.append(table)
     show(*tables)

@@ -19,8 +19,8 @@ def command(file: str | None, style: str) -> None:
       uplift info macbeth-32.uplift
       uplift info macbeth-32.uplift --format json | jq .status
     """
+    from uplift.cube import summarise
     from uplift.lookup import load
-    from uplift.report.measures import summarise
 
     print_facts(file or "packaged cube", summarise(load(file).data), style)
 

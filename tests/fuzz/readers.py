@@ -24,7 +24,7 @@ from uplift.colorimetry.gamut import METHODS, map_to_gamut
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import UpliftError
 from uplift.common.files import file_digest
-from uplift.cube import CubeData, read
+from uplift.cube import CubeData, read, summarise
 from uplift.cube.file import POINTS
 from uplift.design.palette import design, matrix, read_palette, standard_model
 from uplift.io.texture import Counts, convert
@@ -34,7 +34,6 @@ from uplift.lattice import Lattice, PointTable
 from uplift.lookup import MODES, Cube, load, query
 from uplift.pipeline.options import Options
 from uplift.pipeline.rebuild import recorded_atlas
-from uplift.report.measures import summarise
 from uplift.scene.plan import read_scene_file
 from uplift.scene.plan.plan_file import FORMAT, read_plan
 

@@ -2,5 +2,6 @@
 
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
 from uplift.cube.file import contents, digest, read, write
+from uplift.cube.summary import summarise
 
-__all__ = ["AtlasTable", "CubeData", "EntrySpectra", "LeftOut", "contents", "digest", "read", "write"]
+__all__ = ["AtlasTable", "CubeData", "EntrySpectra", "LeftOut", "contents", "digest", "read", "summarise", "write"]

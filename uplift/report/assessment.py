@@ -11,7 +11,7 @@ from uplift.colorimetry import Sensor
 from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array
-from uplift.cube import CubeData
+from uplift.cube import CubeData, summarise
 from uplift.lookup import Cube
 from uplift.report import fidelity, measures
 from uplift.report.charts import Histogram, linear_edges, log_edges, make_histogram
@@ -78,7 +78,7 @@ def assess(cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequen
         name=name,
         size=size,
         data=data,
-        facts=measures.summarise(data),
+        facts=summarise(data),
         failures=measures.collect_failures(data),
         distance=make_histogram(distances, log_edges(distances, MIN_ERROR)),
         round_trips=_comparable(measures.round_trip_errors(cube), lambda values: log_edges(values, MIN_ERROR)),

@@ -1,4 +1,4 @@
-"""Facts about a cube, failures of a build, smoothness, round trips, calibration of errors."""
+"""Failures of a build, smoothness, round trips, calibration of errors."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from uplift.colorimetry import Light, delta_e_rgb, delta_e_spectra
 from uplift.colorimetry.expected_error import COVERAGE
 from uplift.common.arrays import Array, Indices
-from uplift.cube import CubeData, digest
+from uplift.cube import CubeData
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
@@ -166,32 +166,3 @@ def check_calibration(actual: Array, predicted: Array | None, bound: Array | Non
         within_error=float((actual <= predicted).mean()),
         within_bound=float((actual <= bound).mean()),
     )
-
-
-def summarise(data: CubeData) -> dict[str, Any]:
-    """Summarise a cube, most general facts first."""
-    points = data.points
-    present, errors = points.present, points.standard_error
-    return {
-        "model": data.model.describe(),
-        "coefficients": data.model.count,
-        "entry_coefficients": data.entry_spectra.model.count,
-        "dim": data.lattice.dim,
-        "points": int(np.count_nonzero(present)),
-        "lattice_points": data.lattice.size,
-        "space": data.sensor.space,
-        "illuminant": data.sensor.illuminant,
-        "observer": data.sensor.observer,
-        "threshold": data.threshold,
-        "worst_distance": float(points.distance.max()),
-        "mean_distance": float(points.distance[present].mean(dtype=np.float64)),
-        "reference": data.error_illuminant,
-        "mean_standard_error": None if errors is None else float(errors[present].mean(dtype=np.float64)),
-        "status": points.counts(),
-        "entries": list(data.atlas.names),
-        "outside": [] if data.atlas.outside is None else list(data.atlas.outside.names),
-        "debug": points.round is not None,
-        "rounds": None if points.round is None else int(points.round.max()) + 1,
-        "provenance": dict(data.provenance),
-        "digest": digest(data),
-    }

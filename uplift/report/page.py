@@ -174,7 +174,6 @@ def render_report(assessment: Assessment, worst: int) -> str:
         describe=_describe,
         histogram_chart=histogram_chart,
         spectra_chart=spectra_chart,
-        errors_by_light=list(_errors_by_light(assessment)),
         codes_by_light=lambda errors: [swatches(errors, sensor) for sensor in assessment.lights],
         compared=list(_compared(assessment, worst)),
         largest_count=max((int(each.counts.max()) for each in assessment.delta_e.values()), default=0),
@@ -204,19 +203,6 @@ def _failed_points(assessment: Assessment) -> Iterator[dict[str, Any]]:
     for row, pair in enumerate(codes):
         distance = float(data.points.distance[points[row]])
         yield {"codes": pair, "target": target[row], "actual": actual[row], "distance": distance}
-
-
-def _errors_by_light(assessment: Assessment) -> Iterator[dict[str, Any]]:
-    if (entries := assessment.entries) is None:
-        return
-    for column, (light, values) in enumerate(assessment.delta_e.items()):
-        yield {
-            "light": light,
-            "distribution": values,
-            "worst": entries.names[int(entries.answers.delta_e[:, column].argmax())],
-            "alternatives": [(other.mean[column], other.largest[column]) for other in assessment.alternatives.values()],
-            "lattice": entries.lattice and entries.lattice.delta_e[:, column],
-        }
 
 
 def _compared(assessment: Assessment, count: int) -> Iterator[dict[str, list[Swatch]]]:

@@ -146,7 +146,6 @@ def _in_gamut(sensor: Sensor, atlas: Atlas) -> Array:
 Result = TypeVar("Result")
 Uplift = Callable[[Values, Array], Values]
 """From linear sRGB (n, 3) in [0, 1] and wavelengths (N,) in nm to reflectances (n, N), in the method's data type."""
-DTYPES = ("float64", "float32")
 
 
 class NotInstalledError(Exception):

@@ -7,10 +7,10 @@ surfaces are filtered alike."""
 import math
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict, astuple, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -108,8 +108,7 @@ HEADINGS = ("mean", "σ", "median", "2.5 %", "25 %", "75 %", "97.5 %")
 """Headings of tables, in the order of `Statistics`."""
 
 
-@dataclass(frozen=True)
-class Statistics:
+class Statistics(NamedTuple):
     """Mean, standard deviation, median and quantiles of ΔE00, of 2.5, 25, 75 and 97.5 %."""
 
     mean: float
@@ -119,11 +118,6 @@ class Statistics:
     q25: float
     q75: float
     q97_5: float
-
-    @property
-    def values(self) -> tuple[float, ...]:
-        """Return all of them, in the order of `HEADINGS`."""
-        return astuple(self)
 
 
 def compute_statistics(errors: ArrayLike) -> Statistics:
@@ -287,7 +281,7 @@ def records(comparison: Comparison) -> list[dict[str, Any]]:
             "lights": result.lights,
             "representation": result.name,
             "family": result.family,
-            **asdict(result.statistics),
+            **result.statistics._asdict(),
             "floats": result.floats,
             "light_floats": result.light_floats,
             "ns": result.ns.median,
@@ -366,6 +360,6 @@ def filter_records(tuned: Iterable[TunedFilter]) -> list[dict[str, Any]]:
     """Convert tuned filters to records."""
     return [
         {"lights": each.lights, "samples": each.count, "filter": each.kind, "parameters": each.parameters}
-        | asdict(each.statistics)
+        | each.statistics._asdict()
         for each in tuned
     ]
