@@ -59,7 +59,7 @@ def test_coefficients_are_those_of_numpy(cube, count):
 
 
 def test_nodes_closer_than_bins_are_distinguished():
-    data = hand_made(lattice=Lattice(np.array([0.0, 1e-5, 2e-5, 1.0])))
+    data = hand_made(lattice=Lattice(np.array([0.0, 1e-5, 2e-5, 1.0])), distance=np.zeros(64, np.float32))
     rng = np.random.default_rng(1)
     rgb = np.concatenate([rng.random((500, 3)), 3e-5 * rng.random((500, 3)), data.lattice.points])
     found = bulk.coefficients(Cube(data))(rgb)
@@ -90,15 +90,6 @@ def test_invalid_wavelengths_counts_and_threads_are_refused(small_cube):
     for options in ({"count": 12}, {"threads": 0}):
         with raises(OptionError, "option"):
             bulk.coefficients(small_cube, **options)
-
-
-def test_rgb_errors_are_interpolated_fitting_distances(small_cube):
-    data = small_cube.data
-    found = bulk.max_rgb_error(small_cube)
-    clear = ~np.isin(np.arange(data.lattice.size), data.entry_boxes.cells[0])  # of boxes of entries
-    expected = data.points.distance[clear]
-    np.testing.assert_allclose(found(data.lattice.points[clear])[:, 0], expected, rtol=0, atol=1e-7)
-    np.testing.assert_allclose(found(data.atlas.rgb), 0, atol=1e-7)
 
 
 def test_pickled_samplers_keep_their_types(sample):

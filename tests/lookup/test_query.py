@@ -174,3 +174,13 @@ def test_the_packaged_acescg_cube_holds_more(tmp_path, monkeypatch):
     assert (wide.space, wide.illuminant) == ("ACEScg", "D65")
     xyz = colours_outside(uplift.load())
     assert wide.data.sensor.contains(xyz @ wide.data.sensor.xyz_to_rgb.T).mean() > 0.5
+
+
+def test_colours_are_realisable_if_the_solid_contains_them():
+    """Also in cells whose corners are stand-ins that were not fitted, as in cubes of cameras."""
+    cube = uplift.build(dim=6, space="camera", observer="Nikon 5100 (NPL)")
+    rgb = np.concatenate([[[0.0051, 0.1433, 0.4522]], np.random.default_rng(8).random((60, 3))])
+    expected = cube.data.solid.contains(rgb)
+    assert 0 < expected.sum() < 60
+    found = [answer.realisable for answer in uplift.lookup.query(cube, rgb)]
+    np.testing.assert_array_equal(found, expected)

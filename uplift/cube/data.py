@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.solid import Solid, solid
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.lattice import Lattice, PointTable
 from uplift.lattice.entry_boxes import EntryBoxes, OutsideBoxes
@@ -171,6 +172,11 @@ class CubeData:
             return OutsideBoxes(np.zeros((0, 3)), np.zeros(0))
         # The lattice has no steps outside [0, 1]: half widths are in those of a linear axis.
         return OutsideBoxes(outside.rgb, outside.half_width / (self.lattice.dim - 1))
+
+    @cached_property
+    def solid(self) -> Solid:
+        """The colours that reflectances have under the build illuminant."""
+        return solid(self.sensor.matrix)
 
     @cached_property
     def complete_cells(self) -> Mask | None:

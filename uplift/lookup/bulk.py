@@ -27,10 +27,16 @@ from uplift.colorimetry.sensor import Sensor, as_rgb
 from uplift.common.arrays import Array, Indices
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes, Lattice
-from uplift.lookup.blocks import as_coefficient_count, as_colours, as_thread_count, as_wavelengths, blockwise
+from uplift.lookup.blocks import (
+    Function,
+    as_coefficient_count,
+    as_colours,
+    as_thread_count,
+    as_wavelengths,
+    blockwise,
+)
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import inexact_rows, require_covered
-from uplift.lookup.interpolate import spectra as reflectances
 from uplift.lookup.node_table import NodeTable, tabulate, tabulate_coefficients
 
 __all__ = ["Sampler", "coefficients", "spectra"]
@@ -191,14 +197,14 @@ class Sampler:
         Arrays of the cube, on the device of JAX.
     threads : int
         Number of threads; each processes a chunk at a time.
-    exact : tuple of CubeData and ndarray, optional
-        The cube and wavelengths, if some nodes have not their own colours: numpy answers the colours around them.
+    exact : tuple of CubeData and function, optional
+        The cube and its values by numpy, if some nodes have not their own colours: of the colours around them.
     """
 
     sensor: Sensor
     grid: Grid
     threads: int
-    exact: tuple[CubeData, Array] | None = None
+    exact: tuple[CubeData, Function] | None = None
 
     def __repr__(self) -> str:
         return f"Sampler({self.grid.lattice.shape[1]} values per colour, {self.nbytes / 1e6:.1f} MB)"
@@ -226,11 +232,10 @@ class Sampler:
             values = np.asarray(_interpolate(self.grid, padded))[: len(colours)]
         require_covered(~np.isnan(values[:, 0]), colours)  # absent points make NaN
         if self.exact is not None:
-            data, wavelengths = self.exact
-            rows = inexact_rows(data, colours)
+            rows = inexact_rows(self.exact[0], colours)
             if rows.size:
                 values = values.copy()
-                values[rows] = reflectances(data, colours[rows], wavelengths)
+                values[rows] = self.exact[1](colours[rows])
         return values
 
 
@@ -278,21 +283,11 @@ def coefficients(cube: Cube, count: int | None = None, *, threads: int = 2) -> S
     return _sampler(tabulate_coefficients(cube.data, width, np.float32, threads), threads)
 
 
-def max_rgb_error(cube: Cube, *, threads: int = 2) -> Sampler:
-    """Prepare a cube for upper bounds (..., 1) of the ``|linear RGB|`` error, from the fitting distances of nodes."""
-    points = cube.data.points
-    entries = np.zeros((len(cube.atlas_names), 1), np.float32)
-    present = points.distance[points.present, None]
-    return _sampler(NodeTable.of_present_points(cube.data, present, entries), as_thread_count(threads))
-
-
 def _sampler(table: NodeTable, threads: int) -> Sampler:
-    exact = None
-    if table.wavelengths is not None and table.data.inexact_cells is not None:
-        exact = (table.data, table.wavelengths)
+    exact = None if table.data.inexact_cells is None else (table.data, table.exact)
     return _on_device(table.data.sensor, _make_grid(table), threads, exact)
 
 
-def _on_device(sensor: Sensor, grid: Grid, threads: int, exact: tuple[CubeData, Array] | None) -> Sampler:
+def _on_device(sensor: Sensor, grid: Grid, threads: int, exact: tuple[CubeData, Function] | None) -> Sampler:
     with jax.enable_x64(True):
         return Sampler(sensor, jax.device_put(grid), threads, exact)

@@ -1,10 +1,11 @@
 """Interpolation of coefficients and spectra between nodes, in four modes (docs/mathematics.md, 8). Needs numpy only.
 
-spectra   weighted spectra of the surrounding nodes; exact colours, as RGB is linear in the spectrum, and by steps where
-          nodes are unrealisable (section 9)
+spectra   weighted spectra of the surrounding nodes; exact colours, as RGB is linear in the spectrum
 moments   weighted coefficients; one reconstruction instead of eight
 refined   ``moments``, then minimum-norm steps to the exact colour (section 5)
 nearest   the spectrum of the node of largest weight, of another colour
+
+Where nodes have not their own colours, answers of all modes but ``nearest`` are then moved to theirs (section 9).
 
 In the box of an entry all modes but ``nearest`` mix the answer of the lattice, where the ray from the entry through the
 colour leaves the box, with the spectrum of the entry. Spectra mix exactly; lattice and entry may have different numbers
@@ -15,6 +16,7 @@ All of it in float64: the conversion from moments to multipliers amplifies round
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -24,6 +26,10 @@ from uplift.cube import CubeData
 from uplift.lattice import BoxHits, weighted_sum
 from uplift.lookup.refine import refine_to_rgb, with_colours
 from uplift.models import evaluate, reflectance
+from uplift.models.model import Model
+
+Mode = Callable[..., Array]
+"""From a cube, linear RGB (n, 3) and wavelengths (N,) in nm to reflectance (n, N)."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -97,12 +103,12 @@ def require_covered(covered: Mask, rgb: Array) -> None:
         )
 
 
-def spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) as weighted spectra of the nodes, moved to exact colours where nodes have not their own."""
-    mixed = mixed_spectra(data, rgb, wavelengths)
+def exact(mix: Mode, data: CubeData, rgb: Array, wavelengths: Array) -> Array:
+    """Reflectance (n, N) of a mixture, moved to exact colours where nodes have not their own."""
+    mixed = mix(data, rgb, wavelengths)
     rows = inexact_rows(data, rgb)
     if rows.size:
-        at_sensor = mixed_spectra(data, rgb[rows], data.sensor.wavelengths)
+        at_sensor = mix(data, rgb[rows], data.sensor.wavelengths)
         mixed[rows] = with_colours(data, mixed[rows], at_sensor, rgb[rows], wavelengths)
     return mixed
 
@@ -129,15 +135,15 @@ def inexact_rows(data: CubeData, rgb: Array) -> Indices:
     return np.flatnonzero(data.inexact_cells[cells(data, rgb)])
 
 
-def moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
+def mixed_moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the weighted coefficients of the lattice, mixed with entries."""
     nodes = around(data, rgb)
     lattice = reflectance(data.model, _lattice_coefficients(data, nodes), wavelengths)
     return _mix_entries(data, nodes, lattice, wavelengths)
 
 
-def refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) of the weighted coefficients of the lattice and of entries, moved to exact colours."""
+def mixed_refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
+    """Reflectance (n, N) of the weighted coefficients of the lattice and of entries, moved to their colours."""
     nodes = around(data, rgb)
     lattice = evaluate(data.model, _exact_lattice(data, nodes, rgb), wavelengths)
     if not nodes.hits.rows.size:
@@ -162,23 +168,38 @@ def lattice_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     return weighted_sum(values, row.reshape(corners.shape), weights)
 
 
-Mode = Callable[..., Array]
-"""From a cube, linear RGB (n, 3) and wavelengths (N,) in nm to reflectance (n, N)."""
+spectra, moments, refined = (partial(exact, mix) for mix in (mixed_spectra, mixed_moments, mixed_refined))
 MODES: dict[str, Mode] = {"spectra": spectra, "moments": moments, "refined": refined, "nearest": nearest}
 
 
 def coefficients(data: CubeData, rgb: Array) -> Array:
-    """Weighted coefficients (n, C) of the nodes around linear RGB (n, 3) in [0, 1]."""
-    return around(data, rgb).weighted_sum(data.points.coefficients, data.atlas.coefficients)
+    """Weighted coefficients (n, C) of the nodes around linear RGB (n, 3) in [0, 1], as `exact_coefficients`."""
+    return exact_coefficients(data, data.model, rgb, weighted_coefficients(data, rgb), refined_multipliers)
 
 
 def extended_coefficients(data: CubeData, rgb: Array) -> Array:
-    """Weighted coefficients (n, K) of the nodes' spectra, as many as the entries have."""
+    """Weighted coefficients (n, K) of the nodes' spectra, as many as the entries have, as `exact_coefficients`."""
     nodes = around(data, rgb)
     points, row = np.unique(nodes.points, return_inverse=True)
     lattice = extend_coefficients(data, data.points.coefficients[points])
     nodes = replace(nodes, points=row.reshape(nodes.points.shape))
-    return nodes.weighted_sum(lattice, data.entry_spectra.coefficients)
+    weighted = nodes.weighted_sum(lattice, data.entry_spectra.coefficients)
+    return exact_coefficients(data, data.entry_spectra.model, rgb, weighted, extended_multipliers)
+
+
+def exact_coefficients(
+    data: CubeData, model: Model, rgb: Array, weighted: Array, multipliers: Callable[[CubeData, Array], Array]
+) -> Array:
+    """Replace coefficients (n, K), where nodes have not their own colours, by those of exact ``multipliers``."""
+    rows = inexact_rows(data, rgb)
+    if rows.size:
+        weighted[rows] = model.to_storage(multipliers(data, rgb[rows]))
+    return weighted
+
+
+def weighted_coefficients(data: CubeData, rgb: Array) -> Array:
+    """Weighted coefficients (n, C) of the nodes around linear RGB (n, 3) in [0, 1]."""
+    return around(data, rgb).weighted_sum(data.points.coefficients, data.atlas.coefficients)
 
 
 def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
@@ -194,7 +215,7 @@ def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
 
 def refined_multipliers(data: CubeData, rgb: Array) -> Array:
     """Multipliers (n, C) that start from the weighted coefficients and have exactly the colours (n, 3)."""
-    return refine_to_rgb(data, data.model, data.model.from_storage(coefficients(data, rgb)), rgb)
+    return refine_to_rgb(data, data.model, data.model.from_storage(weighted_coefficients(data, rgb)), rgb)
 
 
 def extended_multipliers(data: CubeData, rgb: Array) -> Array:

@@ -8,8 +8,15 @@ from numpy.typing import DTypeLike
 
 from uplift.common.arrays import Array, Values
 from uplift.cube import CubeData
-from uplift.lookup.blocks import blockwise
-from uplift.lookup.interpolate import around, extend_coefficients, inexact_rows, spectra
+from uplift.lookup.blocks import Function, blockwise
+from uplift.lookup.interpolate import (
+    around,
+    coefficients,
+    extend_coefficients,
+    extended_coefficients,
+    inexact_rows,
+    spectra,
+)
 from uplift.models import reflectance
 
 
@@ -22,27 +29,21 @@ class NodeTable:
     """(dim³, K) values of the lattice points, NaN at absent points."""
     atlas: Values
     """(E, K) values of the atlas entries."""
-    wavelengths: Array | None = None
-    """(K,) wavelengths in nm of a table of reflectances; None for other values."""
+    exact: Function
+    """From linear RGB (n, 3) to values (n, K) where nodes have not their own colours."""
 
     @classmethod
-    def of_present_points(
-        cls, data: CubeData, points: Values, atlas: Values, wavelengths: Array | None = None
-    ) -> "NodeTable":
+    def of_present_points(cls, data: CubeData, points: Values, atlas: Values, exact: Function) -> "NodeTable":
         """Make a table from values (m, K) of the present points."""
         if data.complete_cells is None:
-            return cls(data, points, atlas, wavelengths)
+            return cls(data, points, atlas, exact)
         lattice = np.full((data.lattice.size, points.shape[1]), np.nan, points.dtype)
         lattice[data.points.present] = points
-        return cls(data, lattice, atlas, wavelengths)
+        return cls(data, lattice, atlas, exact)
 
     def spectra(self, rgb: Array) -> Values:
         """Reflectance (n, N) in mode ``spectra``."""
-        mixed = np.clip(self.values(rgb), 0, 1)
-        rows = inexact_rows(self.data, rgb)
-        if rows.size and self.wavelengths is not None:
-            mixed[rows] = spectra(self.data, rgb[rows], self.wavelengths)
-        return mixed
+        return np.clip(self.values(rgb), 0, 1)
 
     def nearest(self, rgb: Array) -> Values:
         """Reflectance (n, N) in mode ``nearest``."""
@@ -53,7 +54,11 @@ class NodeTable:
 
     def values(self, rgb: Array) -> Values:
         """Weighted values (n, K) of the nodes."""
-        return around(self.data, rgb).weighted_sum(self.lattice, self.atlas)
+        values = around(self.data, rgb).weighted_sum(self.lattice, self.atlas)
+        rows = inexact_rows(self.data, rgb)
+        if rows.size:
+            values[rows] = self.exact(rgb[rows])
+        return values
 
 
 def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1) -> NodeTable:
@@ -62,14 +67,16 @@ def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, 
     stored = data.points.coefficients[data.points.present]
     present = blockwise(evaluate_rows, stored, len(wavelengths), dtype, threads)
     entries = data.entry_spectra.reflectance(np.arange(len(data.atlas.names)), wavelengths)
-    return NodeTable.of_present_points(data, present, entries.astype(dtype, copy=False), wavelengths)
+    exact = partial(spectra, data, wavelengths=wavelengths)
+    return NodeTable.of_present_points(data, present, entries.astype(dtype, copy=False), exact)
 
 
 def tabulate_coefficients(data: CubeData, count: int, dtype: DTypeLike = np.float64, threads: int = 1) -> NodeTable:
     """Tabulate the coefficients of all nodes, ``count`` each: as many as the nodes or the entries have."""
     present = data.points.coefficients[data.points.present]
-    entries = data.atlas.coefficients
+    entries, exact = data.atlas.coefficients, partial(coefficients, data)
     if count != data.model.count:
         present = blockwise(partial(extend_coefficients, data), present, count, dtype, threads)
-        entries = data.entry_spectra.coefficients
-    return NodeTable.of_present_points(data, present.astype(dtype, copy=False), entries.astype(dtype, copy=False))
+        entries, exact = data.entry_spectra.coefficients, partial(extended_coefficients, data)
+    present, entries = (each.astype(dtype, copy=False) for each in (present, entries))
+    return NodeTable.of_present_points(data, present, entries, exact)

@@ -3,7 +3,6 @@
 import numpy as np
 
 from uplift.colorimetry.gamut import map_to_gamut
-from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData
@@ -24,7 +23,7 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
     which may fail close to the boundary of the solid. In the box of an entry outside [0, 1], so do those of the entry,
     and the two reflectances, of one colour, are mixed.
     """
-    possible = solid(data.sensor.matrix).contains(rgb)
+    possible = data.solid.contains(rgb)
     if not possible.all():
         raise ColourError(
             f"no reflectance has the colour of XYZ {_format_xyz(data, rgb[int(possible.argmin())])}",

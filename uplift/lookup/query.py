@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike
 
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.sensor import Light, as_rgb
-from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError, unknown_name
 from uplift.lattice import Status
@@ -148,10 +147,7 @@ def _block(
         outside_entries = dict(zip(found.rows[exact].tolist(), found.entry[exact].tolist(), strict=True))
     low, fraction = data.lattice.cell(rgb)
     statuses = data.points.status[data.lattice.cell_corners(low, fraction)[0]]
-    # Mixtures of realisable colours are realisable, so only cells with an unrealisable corner are tested.
-    realisable = outside | ~(statuses == Status.UNREALISABLE).any(axis=1)
-    if not realisable.all():
-        realisable[~realisable] = solid(sensor.matrix).contains(rgb[~realisable])
+    realisable = data.solid.contains(answered)
     for row, cell in enumerate(low.tolist()):
         own = (None, None) if errors is None or outside[row] else errors[row].tolist()
         difference = np.abs(entry_codes - codes[row]).max(axis=1)

@@ -1,17 +1,21 @@
-"""Move multipliers to exact colours by minimum-norm steps (`uplift.models.minimum_norm`). Needs numpy only.
+"""Move spectra to exact colours: multipliers by minimum-norm steps, mixtures by a convex problem. Needs numpy only.
 
-Spectra are columns here, so that all arithmetic runs along contiguous memory. A spectrum is evaluated once; later steps
-add its changes, which need no arc tangents of large numbers.
+Spectra are columns here, so that all arithmetic runs along contiguous memory. In minimum-norm steps
+(`uplift.models.minimum_norm`) a spectrum is evaluated once; later steps add its changes, which need no arc tangents of
+large numbers.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 
-from uplift.colorimetry.solid import solid, toward_grey
+from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.solid import toward_grey
 from uplift.common.arrays import Array, Indices, Values
 from uplift.cube import CubeData
-from uplift.models.arithmetic import blocked_matmul, blocked_matmul_columns
+from uplift.models.arithmetic import blocked_matmul_columns
 from uplift.models.duality import MAX_MULTIPLIER
-from uplift.models.minimum_norm import ForwardMap, forward_map, minimum_norm_step
+from uplift.models.minimum_norm import ForwardMap, forward_map, minimum_norm_step, solve_damped
 from uplift.models.model import Model
 
 TOLERANCE = 1e-8
@@ -19,6 +23,14 @@ TOLERANCE = 1e-8
 MAX_STEPS = 24
 FIRST_DAMPING = 1e-2
 """μ after a rejected full step; nearly all colours need one or two full steps and no damping."""
+MAX_PULLS = 100
+"""Steps of the convex problem; most colours need four, none of those tried more than 60."""
+TRACE = [0, 2, 5]
+"""Diagonal elements of a lower triangle, row by row."""
+MIN_CURVATURE = 0.01
+"""Least ratio of the curvatures after and before a step."""
+LEAST = 3e-4
+"""Mixtures that are moved are clipped to this distance from 0 and 1, so that programs in single precision follow."""
 BLOCK_COLUMNS = 1024
 """Spectra processed at a time: their temporary arrays fit into the cache."""
 
@@ -30,29 +42,84 @@ def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Arr
     as those of the sigmoid near white in coarse cells, start again from grey.
     """
     forward = forward_map(model, data.sensor.wavelengths, data.sensor.matrix)
-    multipliers, target, distance = _reach(data, forward, np.array(start.T, order="C"), rgb)
+    multipliers, target = np.array(start.T, order="C"), np.array(rgb.T, order="C")
+    distance = _descend(forward, multipliers, target)
     failed = np.flatnonzero(distance > data.threshold)
     if failed.size:
-        from_grey = np.zeros((len(multipliers), failed.size))
-        better = _descend(forward, from_grey, target[:, failed]) < distance[failed]
-        multipliers[:, failed[better]] = from_grey[:, better]
+        goal = within_solid(data, rgb[failed])
+        for again in (np.array(start[failed].T, order="C"), np.zeros((model.count, failed.size))):
+            before = np.abs(forward.residual(multipliers[:, failed].T, goal)).max(axis=1)
+            better = _descend(forward, again, np.array(goal.T, order="C")) < before
+            multipliers[:, failed[better]] = again[:, better]
     return multipliers.T
+
+
+class Pull(NamedTuple):
+    """The directions in which mixtures move, and the colours that they have, scaled to W Kᵀ = I."""
+
+    sensor: Array
+    """W, (3, N): from reflectances to scaled RGB."""
+    shapes: Array
+    """K, (3, N): the curves of the sensor without the power of the light, so that W = K diag(power)."""
+    scale: Array
+    """(3, 3), from linear to scaled RGB."""
+
+
+def pull(sensor: Sensor) -> Pull:
+    """Return the directions in which mixtures move to their colours."""
+    if sensor.sensitivities is None:
+        shapes = sensor.cmfs @ sensor.xyz_to_rgb.T
+    else:
+        shapes = sensor.sensitivities / (sensor.sensitivities.T @ sensor.power)
+    scale = np.linalg.inv(np.linalg.cholesky(sensor.matrix @ shapes))
+    return Pull(scale @ sensor.matrix, scale @ shapes.T, scale)
 
 
 def with_colours(data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, wavelengths: Array) -> Values:
     """Move mixtures to their colours (n, 3), or to the nearest realisable ones (docs/mathematics.md, 9).
 
     ``spectra`` (n, N) are reflectances in [0, 1] at any wavelengths (N,) in nm, ``at_sensor`` (n, M) the same at those
-    of the sensor. They need not be of the model: multipliers are added to their linear part. Those that have their
-    colour stay to the last bit, and the others change continuously.
+    of the sensor. They need not be of the model. Those that have their colour stay to the last bit.
     """
-    model = data.model
-    forward = forward_map(model, data.sensor.wavelengths, data.sensor.matrix)
-    # S(S⁻¹(g) + B Δp): the mixture g is the fixed part of the linear part, and steps find Δp.
-    linear = model.from_reflectance(np.array(at_sensor.T, order="C"))
-    change = _reach(data, forward, np.zeros((model.count, len(rgb))), rgb, linear)[0].T
-    moved = model.to_reflectance(model.from_reflectance(spectra) + blocked_matmul(change, model.basis(wavelengths).T))
-    return np.where((change != 0).any(axis=1)[:, None], moved, spectra)
+    model, pulled = data.model, pull(data.sensor)
+    moved, linear = spectra.copy(), model.from_reflectance(np.clip(at_sensor.T, LEAST, 1 - LEAST))
+    shapes = np.array([np.interp(wavelengths, data.sensor.wavelengths, shape) for shape in pulled.shapes])
+    rows = np.flatnonzero(np.abs(data.sensor.rgb(at_sensor) - rgb).max(axis=1) > TOLERANCE)
+    goal = pulled.scale @ within_solid(data, rgb[rows]).T
+    for first in range(0, rows.size, BLOCK_COLUMNS):
+        block = rows[first : first + BLOCK_COLUMNS]
+        change = _pull(model, pulled, linear[:, block], goal[:, first : first + BLOCK_COLUMNS])
+        start = model.from_reflectance(np.clip(spectra[block], LEAST, 1 - LEAST))
+        moved[block] = model.to_reflectance(start + change.T @ shapes)
+    return moved
+
+
+def _pull(model: Model, pulled: Pull, linear: Array, goal: Array) -> Array:
+    """Find y (3, n) with W S(x + Kᵀ y) = goal (3, n), from linear parts x (N, n).
+
+    As S increases, this is the minimum of a convex function Φ, whose gradient is the negative residual, and Newton's
+    steps (W diag(S') Kᵀ)⁻¹ r, shortened if need be, reach it for every colour inside the solid. A step is accepted
+    unless it goes too far: to where Φ rises more than half as steeply as it fell, or where it is much flatter.
+    """
+    products = np.array([pulled.sensor[a] * pulled.shapes[b] for a in range(3) for b in range(a + 1)])
+    found, length = np.zeros_like(goal), np.ones(goal.shape[1])
+    gram, residual = products @ model.derivative(linear), goal - pulled.sensor @ model.to_reflectance(linear)
+    for _ in range(MAX_PULLS):
+        pending = np.flatnonzero(np.abs(residual).max(axis=0) > TOLERANCE)
+        if not pending.size:
+            break
+        part, off, (g00, g10, g11, g20, g21, g22) = length[pending], residual[:, pending], gram[:, pending]
+        step = part * np.array(solve_damped([[g00], [g10, g11], [g20, g21, g22]], 0, off))
+        trial = linear[:, pending] + pulled.shapes.T @ (found[:, pending] + step)
+        trial_off = goal[:, pending] - pulled.sensor @ model.to_reflectance(trial)
+        trial_gram = products @ model.derivative(trial)
+        good = (trial_off * step).sum(axis=0) >= -0.5 * (off * step).sum(axis=0)
+        good &= trial_gram[TRACE].sum(axis=0) >= MIN_CURVATURE * (g00 + g11 + g22)
+        taken = pending[good]
+        found[:, taken] += step[:, good]
+        gram[:, taken], residual[:, taken] = trial_gram[:, good], trial_off[:, good]
+        length[pending] = np.where(good, np.minimum(4 * part, 1), part / 4)
+    return found
 
 
 def within_solid(data: CubeData, rgb: Array) -> Array:
@@ -61,46 +128,16 @@ def within_solid(data: CubeData, rgb: Array) -> Array:
     Half of the threshold inside the object-colour solid, on the line to the grey of the same luminance, as
     unrealisable points of the lattice.
     """
-    sensor = data.sensor
-    return toward_grey(solid(sensor.matrix), sensor.grey(rgb), rgb, data.threshold / 2)
+    margin = data.threshold / 2
+    return toward_grey(data.solid, np.clip(data.sensor.grey(rgb), margin, 1 - margin), rgb, margin)
 
 
-def _reach(
-    data: CubeData, forward: ForwardMap, start: Array, rgb: Array, fixed: Array | None = None
-) -> tuple[Array, Array, Array]:
-    """Move multipliers (C, n) to linear RGB (n, 3); what is not reached may be unrealisable and is moved inside.
-
-    Returns multipliers (C, n), the linear RGB (3, n) that they were moved to, and distances (n,) from it.
-    """
-    multipliers, target = start.copy(), np.array(rgb.T, order="C")
-    distance = _descend(forward, multipliers, target, fixed)
-    failed = np.flatnonzero(distance > data.threshold)
-    if failed.size and data.inexact_cells is not None:
-        # Targets outside the object-colour solid move to its boundary, on their line to grey (9).
-        inside = within_solid(data, rgb[failed])
-        moved = failed[(inside != rgb[failed]).any(axis=1)]
-        target[:, failed] = inside.T
-        again = start[:, moved].copy()
-        part = None if fixed is None else fixed[:, moved]
-        distance[moved] = _descend(forward, again, target[:, moved], part)
-        multipliers[:, moved] = again
-    return multipliers, target, distance
-
-
-def _descend(forward: ForwardMap, multipliers: Array, target: Array, fixed: Array | None = None) -> Array:
-    """Move multipliers (C, n) in place towards linear RGB (3, n) and return the final distances (n,).
-
-    A fixed linear part (N, n) may be added to that of the multipliers.
-    """
-
-    def linear_part(columns: slice | Indices) -> Array:
-        linear = blocked_matmul_columns(forward.basis, multipliers[:, columns])
-        return linear if fixed is None else linear + fixed[:, columns]
-
+def _descend(forward: ForwardMap, multipliers: Array, target: Array) -> Array:
+    """Move multipliers (C, n) in place towards linear RGB (3, n) and return the final distances (n,)."""
     residual, damping = np.empty_like(target), np.zeros(target.shape[1])
     for first in range(0, target.shape[1], BLOCK_COLUMNS):
         block = slice(first, first + BLOCK_COLUMNS)
-        linear = linear_part(block)
+        linear = blocked_matmul_columns(forward.basis, multipliers[:, block])
         # t − r with r = W S(B p); later steps subtract their own change of r.
         residual[:, block] = target[:, block] - blocked_matmul_columns(
             forward.sensor, forward.model.to_reflectance(linear)
@@ -112,7 +149,8 @@ def _descend(forward: ForwardMap, multipliers: Array, target: Array, fixed: Arra
             break
         for first in range(0, pending.size, BLOCK_COLUMNS):
             columns = pending[first : first + BLOCK_COLUMNS]
-            _move(forward, multipliers, residual, damping, columns, linear_part(columns))
+            linear = blocked_matmul_columns(forward.basis, multipliers[:, columns])
+            _move(forward, multipliers, residual, damping, columns, linear)
     return np.asarray(np.abs(residual).max(axis=0))
 
 

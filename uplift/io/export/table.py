@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
+from uplift.lookup.refine import LEAST, pull
 from uplift.models import Moments, Sigmoid
 from uplift.models.moments import WARPS, warped
 
@@ -43,7 +44,7 @@ def make_table(data: CubeData, mode: str) -> Table:
     """
     model, size = data.model, data.lattice.size
     stride = -(-(model.count + 1) // TEXEL) * TEXEL
-    lists, tags = _lists(data.entry_boxes)
+    lists, tags = _lists(data)
     stored = [data.points.coefficients, data.atlas.coefficients]
     if mode == "spectra":
         stored = [model.from_storage(coefficients) for coefficients in stored]
@@ -57,7 +58,8 @@ def make_table(data: CubeData, mode: str) -> Table:
         "LISTS": lists,
         "BOXES": _boxes(data.entry_boxes),
     }
-    numbers, offsets = concatenate({"ROWS": rows, **sections})
+    moving, how = ({}, {}) if data.inexact_cells is None else _moving(data)
+    numbers, offsets = concatenate({"ROWS": rows, **sections, **moving})
     constants = {
         "COUNT": model.count,
         "ENTRY_COUNT": data.entry_spectra.model.count,
@@ -66,6 +68,9 @@ def make_table(data: CubeData, mode: str) -> Table:
         "LATTICE": size,
         "BIN_COUNT": BIN_COUNT,
         "SPECTRA": int(mode == "spectra"),
+        "INEXACT": int(data.inexact_cells is not None),
+        "PLACE": 4 if data.inexact_cells is None else 7,
+        **how,
         **offsets,
         **_model_constants(model),
     }
@@ -87,16 +92,40 @@ def _bins(nodes: Floats) -> Floats:
     return np.clip(last, 0, len(nodes) - 2).astype(np.float32)
 
 
-def _lists(boxes: EntryBoxes) -> tuple[Floats, Floats]:
-    """Return lists of entries, each after its length, and the position of each cell's list, 0 for none."""
-    cells, entries = boxes.cells
-    tags = np.zeros(boxes.lattice.size, dtype=np.float32)
+def _lists(data: CubeData) -> tuple[Floats, Floats]:
+    """Return lists of entries, each after its length, and the position of each cell's list, 0 for none.
+
+    Positions are negative in cells with a corner that has not its own colour; the list at 1 is then empty.
+    """
+    cells, entries = data.entry_boxes.cells
+    tags = np.zeros(data.lattice.size, dtype=np.float32)
     numbers, first, count = np.unique(cells, return_index=True, return_counts=True)
-    lists = [0.0]
+    lists = [0.0] if data.inexact_cells is None else [0.0, 0.0]
     for cell, start, length in zip(numbers.tolist(), first.tolist(), count.tolist(), strict=True):
         tags[cell] = len(lists)
         lists += [length, *entries[start : start + length].tolist()]
+    if data.inexact_cells is not None:
+        tags = np.where(data.inexact_cells, -np.maximum(tags, 1), tags)
     return np.array(lists, dtype=np.float32), tags
+
+
+def _moving(data: CubeData) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
+    """Return sections and constants by which answers are moved to their colours (`uplift.lookup.refine`).
+
+    ``FACETS`` are the normals of the object-colour solid, and half its width along each, around a grey of 1/2.
+    """
+    pulled, sensor = pull(data.sensor), data.sensor
+    half = len(data.solid.normals) // 2  # the others are opposite ones
+    width = (data.solid.offsets[:half] + data.solid.offsets[half:]) / 2
+    sections = {
+        "PULL": np.concatenate([pulled.sensor, pulled.shapes]).T,
+        "SCALES": pulled.scale,
+        "LUMINANCE": sensor.rgb_to_xyz[1],
+        "FACETS": np.column_stack([data.solid.normals[:half], width]),
+    }
+    first, _, step = sensor.range
+    how = {"SAMPLES": len(sensor.wavelengths), "FIRST": first, "STEP": step, "FACET_COUNT": half}
+    return sections, how | {"MARGIN": data.threshold / 2, "LEAST": LEAST}
 
 
 def _boxes(boxes: EntryBoxes) -> Floats:

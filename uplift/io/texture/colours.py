@@ -137,7 +137,7 @@ class Counts:
     not_finite : int
         Pixels with NaN or infinity.
     unrealisable : int
-        Pixels whose spectra may miss their colour, as no reflectance in [0, 1] has it.
+        Pixels whose spectra miss their colour, as no reflectance in [0, 1] has it.
     max_change : float
         Largest change of a component of linear RGB by gamut mapping.
     painted_outside : int
@@ -185,7 +185,7 @@ class Counts:
             "not_finite": ("pixels-not-finite", "are not finite: NaN is replaced by 0, infinity is clamped"),
             "unrealisable": (
                 "pixels-unrealisable",
-                "are close to unrealisable colours: their spectra have less chroma",
+                "are unrealisable colours: their spectra have less chroma",
             ),
             "painted_outside": (
                 "painted-pixels-out-of-gamut",

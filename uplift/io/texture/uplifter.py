@@ -22,11 +22,10 @@ from uplift.common.errors import OptionError
 from uplift.io import exr
 from uplift.io.texture.colours import ColourChannels, Counts, Decoder, Floats, check_encoding, make_decoder
 from uplift.io.texture.image import Image, Part, Values
-from uplift.lattice import Status
 from uplift.lattice.entry_boxes import BoxHits, OutsideBoxes
 from uplift.lookup import Cube
 from uplift.lookup.blocks import as_wavelengths, blockwise
-from uplift.lookup.interpolate import extended_multipliers, refined_multipliers
+from uplift.lookup.interpolate import extended_multipliers, inexact_rows, refined_multipliers
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models.model import Model
 
@@ -262,13 +261,11 @@ class Uplifter(Converter):
     """A converter of colours to spectra, made by `prepare`, for any number of images.
 
     ``sample`` maps linear RGB (…, 3) to the numbers (…, N) of a pixel, the multipliers of ``model``, or linear in the
-    spectrum without one. ``rgb_error`` maps it to the largest error (…, 1) of the spectrum's colour; None without
-    unrealisable nodes. ``outside`` are the numbers (O, N) of the entries outside the RGB space, if there are any.
+    spectrum without one. ``outside`` are the numbers (O, N) of the entries outside the RGB space, if there are any.
     """
 
     cube: Cube
     sample: Sampler
-    rgb_error: Sampler | None
     model: Model | None
     outside: Floats | None = None
 
@@ -281,8 +278,10 @@ class Uplifter(Converter):
             hits = self.boxes.find(rgb.reshape(-1, 3))
             if hits.rows.size:
                 return self._convert_outside(rgb, hits, self.outside)
-        is_off = 0 if self.rgb_error is None else (self.rgb_error(rgb) > self.cube.data.threshold).sum()
-        return (rgb, self.sample(rgb)), Counts(unrealisable=int(is_off))
+        data, colours = self.cube.data, rgb.reshape(-1, 3).astype(float)
+        near = colours[inexact_rows(data, colours)]
+        is_off = data.solid.signed_distance(near) > data.threshold if near.size else near
+        return (rgb, self.sample(rgb)), Counts(unrealisable=int(np.count_nonzero(is_off)))
 
     def _convert_outside(self, rgb: Floats, hits: BoxHits, entries: Floats) -> Converted:
         """Mix the answers to mapped colours with those of entries, as their colours: t · mapped + (1 − t) · entry."""
@@ -369,7 +368,6 @@ def prepare(
         header,
         cube,
         sample=pixels.make_sampler(cube, threads),
-        rgb_error=_rgb_error(cube, threads),
         model=pixels.model(cube),
         outside=pixels.outside(cube),
         space=None if space is None else find_space(space),
@@ -384,10 +382,3 @@ def resolve_depth(depth: str | None, depths: tuple[str, ...], name: str) -> str:
             hint="other types are not precise enough",
         )
     return depth or depths[0]
-
-
-def _rgb_error(cube: Cube, threads: int) -> Sampler | None:
-    from uplift.lookup import bulk
-
-    has_unrealisable = (cube.data.points.status == Status.UNREALISABLE).any()
-    return bulk.max_rgb_error(cube, threads=threads) if has_unrealisable else None

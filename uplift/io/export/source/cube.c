@@ -18,7 +18,8 @@ void up_load_row(int index, inout float row[UP_STRIDE])
 
 #endif
 
-/* Position of the list of entries whose boxes touch the cell above a lattice point, 0 for none. */
+/* Position of the list of entries whose boxes touch the cell above a lattice point, 0 for none; it is negative where
+   points around the cell have not their own colours. */
 UP_FUNCTION float up_tag(UP_READS int index)
 {
     return up_number(UP_TABLE index * UP_STRIDE + UP_COUNT);
@@ -70,14 +71,21 @@ UP_FUNCTION float up_sine_of_turn(float x)
     return x * (3.14159264f + u * (-5.16770968f + u * series));
 }
 
-/* Weighted arctan(x) / pi, to 6e-7, by arctan |x| = pi/4 + arctan t: conditions would keep loops from vectorising. */
+/* Weighted arctan(x) / pi, to 6e-7, by arctan |x| = pi/4 + arctan t: conditions would keep loops from vectorising. To
+   6e-8 where answers are moved, which magnifies errors. */
 UP_FUNCTION float up_deviation(float weight, float x)
 {
     float size = UP_ABS(x);
     float t = (size - 1.0f) / (size + 1.0f);
     float u = t * t;
+#if UP_INEXACT
+    float high = -0.045208186f + u * (0.0338578399f + u * (-0.0238587439f
+        + u * (0.0135560565f + u * (-0.00509455944f + u * 0.000902110684f))));
+    return UP_COPYSIGN(weight, x) * (0.25f + t * (0.318309881f + u * (-0.106102447f + u * (0.0636380517f + u * high))));
+#else
     float high = 0.0616058142f + u * -0.0370596857f + u * u * (0.0167581496f + u * -0.0037303064f);
     return UP_COPYSIGN(weight, x) * (0.25f + t * (0.318302635f + u * -0.105877136f + u * u * high));
+#endif
 }
 
 /* Wavelengths, evenly or as the eye distinguishes them. */
@@ -192,13 +200,13 @@ UP_FUNCTION float up_clip(float x)
 
    In a box, x = (1 - t) e + t y, where the ray from the entry's colour e through x leaves the box at y. The lattice at y
    has weight t, the entry the rest. */
-UP_FUNCTION int up_locate(UP_READS UP_IN float rgb[3], UP_OUT float place[4])
+UP_FUNCTION int up_locate(UP_READS UP_IN float rgb[3], UP_OUT float place[UP_PLACE])
 {
     UP_ARRAY(query, 3);
     for (int axis = 0; axis < 3; ++axis) place[axis] = up_clip(rgb[axis]);
     for (int axis = 0; axis < 3; ++axis) query[axis] = place[axis];
     int entry = -1;
-    int listed = UP_INT(up_tag(UP_TABLE up_first_corner(UP_TABLE query)));
+    int listed = UP_INT(UP_ABS(up_tag(UP_TABLE up_first_corner(UP_TABLE query))));
     place[3] = 1.0f;
     if (listed > 0) {
         int last = listed + UP_INT(up_number(UP_TABLE UP_LISTS + listed));
@@ -229,7 +237,7 @@ UP_FUNCTION int up_locate(UP_READS UP_IN float rgb[3], UP_OUT float place[4])
 }
 
 /* Set the weights of the lower and upper side of each axis; return the row of the lowest corner. */
-UP_FUNCTION int up_weigh(UP_READS UP_IN float place[4], UP_OUT float sides[6])
+UP_FUNCTION int up_weigh(UP_READS UP_IN float place[UP_PLACE], UP_OUT float sides[6])
 {
     int first = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -269,7 +277,7 @@ UP_FUNCTION void up_mix(
 
 /* Add the weighted spectra of the eight lattice points around a colour. */
 UP_FUNCTION void up_add_nodes(
-    UP_READS UP_IN float place[4], UP_IN float basis[UP_COUNT * UP_WIDTH], UP_OUT float total[UP_WIDTH])
+    UP_READS UP_IN float place[UP_PLACE], UP_IN float basis[UP_COUNT * UP_WIDTH], UP_OUT float total[UP_WIDTH])
 {
     UP_ARRAY(sides, 6);
     int first = up_weigh(UP_TABLE place, sides);
@@ -281,9 +289,9 @@ UP_FUNCTION void up_add_nodes(
             }
 }
 
-/* Evaluate a colour that is located: the weighted spectra of lattice points and entry, with exact colours. */
-UP_FUNCTION void up_answer(
-    UP_READS UP_IN float place[4], int entry, UP_IN float wavelengths[UP_WIDTH],
+/* Evaluate a colour that is located: the weighted spectra of lattice points and entry. */
+UP_FUNCTION void up_blend(
+    UP_READS UP_IN float place[UP_PLACE], int entry, UP_IN float wavelengths[UP_WIDTH],
     UP_OUT float total[UP_WIDTH])
 {
     UP_ARRAY(basis, UP_COUNT * UP_WIDTH);
@@ -297,7 +305,7 @@ UP_FUNCTION void up_answer(
 #else
 
 /* Weighted coefficients of the eight lattice points around a colour. */
-UP_FUNCTION void up_sum_nodes(UP_READS UP_IN float place[4], UP_OUT float coefficients[UP_COUNT])
+UP_FUNCTION void up_sum_nodes(UP_READS UP_IN float place[UP_PLACE], UP_OUT float coefficients[UP_COUNT])
 {
     UP_ARRAY(sides, 6);
     int first = up_weigh(UP_TABLE place, sides);
@@ -313,7 +321,7 @@ UP_FUNCTION void up_sum_nodes(UP_READS UP_IN float place[4], UP_OUT float coeffi
 
 /* Weighted coefficients of the lattice and of an entry, in as many coefficients. */
 UP_FUNCTION void up_sum_coefficients(
-    UP_READS UP_IN float place[4], int entry, UP_OUT float coefficients[UP_COUNT])
+    UP_READS UP_IN float place[UP_PLACE], int entry, UP_OUT float coefficients[UP_COUNT])
 {
     up_sum_nodes(UP_TABLE place, coefficients);
     if (entry >= 0)
@@ -434,8 +442,8 @@ UP_FUNCTION UP_BOOL up_multipliers_of(UP_IN float coefficients[UP_COUNT], UP_OUT
 }
 
 /* Evaluate a colour that is located: the spectrum of the lattice's weighted coefficients, mixed with that of the entry. */
-UP_FUNCTION void up_answer(
-    UP_READS UP_IN float place[4], int entry, UP_IN float wavelengths[UP_WIDTH],
+UP_FUNCTION void up_blend(
+    UP_READS UP_IN float place[UP_PLACE], int entry, UP_IN float wavelengths[UP_WIDTH],
     UP_OUT float total[UP_WIDTH])
 {
     UP_ARRAY(coefficients, UP_COUNT);
@@ -445,6 +453,192 @@ UP_FUNCTION void up_answer(
     up_mix(UP_TABLE multipliers, place[3], entry, wavelengths, total);
 }
 
+#endif
+
+#if UP_INEXACT
+
+/* The argument x of a reflectance 1/2 + deviation(x), away from 0 and 1. */
+UP_FUNCTION float up_linear(float reflectance)
+{
+    float middle = reflectance - 0.5f;
+    float size = UP_ABS(middle) < 0.5f - UP_LEAST ? UP_ABS(middle) : 0.5f - UP_LEAST;
+#if UP_SIGMOIDS
+    float x = size / UP_SQRT((0.5f - size) * (0.5f + size));
+#else
+    float x = up_sine_of_turn(size) / up_sine_of_turn(0.5f - size);
+#endif
+    return UP_COPYSIGN(x, middle);
+}
+
+/* The requested colour; one that is not well inside the colours of reflectances moves there, towards its grey. */
+UP_FUNCTION void up_realise(UP_READS UP_OUT float rgb[3])
+{
+    UP_ARRAY(chroma, 3);
+    float grey = 0.0f, size = UP_MARGIN, reach = 2.0f;
+    for (int axis = 0; axis < 3; ++axis) grey += up_number(UP_TABLE UP_LUMINANCE + axis) * rgb[axis];
+    grey = UP_MARGIN + (1.0f - 2.0f * UP_MARGIN) * up_clip((grey - UP_MARGIN) / (1.0f - 2.0f * UP_MARGIN));
+    for (int axis = 0; axis < 3; ++axis) {
+        chroma[axis] = rgb[axis] - grey;
+        size = UP_ABS(chroma[axis]) > size ? UP_ABS(chroma[axis]) : size;
+    }
+    for (int facet = UP_FACETS; facet < UP_FACETS + 4 * UP_FACET_COUNT; facet += 4) {
+        float along = 0.0f, speed = 0.0f;
+        for (int axis = 0; axis < 3; ++axis) {
+            float normal = up_number(UP_TABLE facet + axis);
+            along += normal * (grey - 0.5f);
+            speed += normal * chroma[axis];
+        }
+        float room = up_number(UP_TABLE facet + 3) - (speed > 0.0f ? along : -along);
+        room = room > 0.0f ? room : 0.0f;
+        if (UP_ABS(speed) * reach > room) reach = room / UP_ABS(speed);
+    }
+    reach -= UP_MARGIN / size;
+    if (reach < 1.0f)
+        for (int axis = 0; axis < 3; ++axis) rgb[axis] = grey + (reach > 0.0f ? reach : 0.0f) * chroma[axis];
+}
+
+/* Set the residual, three numbers, and the derivative of the colour, six, of arguments that move by `change`. */
+UP_FUNCTION void up_residual(
+    UP_READS UP_IN float given[UP_SAMPLES], UP_IN UP_FINE goal[3], UP_IN UP_FINE change[3], UP_OUT UP_FINE found[9])
+{
+    for (int k = 0; k < 9; ++k) found[k] = k < 3 ? goal[k] : UP_EXACT(0.0f);
+    for (int row = 0; row < UP_SAMPLES; ++row) {
+        int at = UP_PULL + 6 * row;
+        UP_FINES(weight, 3);
+        UP_FINES(shape, 3);
+        UP_FINE x = UP_EXACT(given[row]);
+        for (int k = 0; k < 3; ++k) {
+            weight[k] = UP_EXACT(up_number(UP_TABLE at + k));
+            shape[k] = UP_EXACT(up_number(UP_TABLE at + 3 + k));
+            x += shape[k] * change[k];
+        }
+#if UP_SIGMOIDS
+        UP_FINE root = UP_SQUARE_ROOT(1.0f + x * x);
+        UP_FINE value = 0.5f + 0.5f * x / root, slope = 0.5f / (root * root * root);
+#else
+        UP_FINE value = 0.5f + UP_TURN(x), slope = UP_EXACT(0.318309886f) / (1.0f + x * x);
+#endif
+        for (int a = 0; a < 3; ++a) {
+            found[a] -= weight[a] * value;
+            for (int b = 0; b <= a; ++b) found[3 + a * (a + 1) / 2 + b] += weight[a] * slope * shape[b];
+        }
+    }
+}
+
+/* A part of Newton's step of residual and derivative. */
+UP_FUNCTION void up_step(UP_IN UP_FINE found[9], UP_FINE part, UP_OUT UP_FINE change[3])
+{
+    UP_FINE least = UP_TINY * (found[3] + found[5] + found[8]);
+    UP_FINE d0 = found[3] > least ? found[3] : least, l1 = found[4] / d0, l2 = found[6] / d0;
+    UP_FINE d1 = found[5] - l1 * found[4], d2, l3;
+    d1 = d1 > least ? d1 : least;
+    l3 = (found[7] - l2 * found[4]) / d1;
+    d2 = found[8] - l2 * found[6] - l3 * l3 * d1;
+    d2 = d2 > least ? d2 : least;
+    change[1] = found[1] - l1 * found[0];
+    change[2] = (found[2] - l2 * found[0] - l3 * change[1]) / d2;
+    change[1] = change[1] / d1 - l3 * change[2];
+    change[0] = found[0] / d0 - l1 * change[1] - l2 * change[2];
+    for (int k = 0; k < 3; ++k) change[k] *= part;
+}
+
+/* Set place[4] to place[6], by which arguments move along the curves of the sensor, so that the answer has its colour:
+   the minimum of a convex function [uplift.lookup.refine]. */
+UP_FUNCTION void up_pull(UP_READS UP_IN float rgb[3], int entry, UP_OUT float place[UP_PLACE])
+{
+    UP_ARRAY(colour, 3);
+    UP_ARRAY(at, UP_WIDTH);
+    UP_ARRAY(total, UP_WIDTH);
+    UP_ARRAY(given, UP_SAMPLES);
+    UP_FINES(goal, 3);
+    UP_FINES(change, 3);
+    UP_FINES(trial, 3);
+    UP_FINES(move, 3);
+    UP_FINES(found, 9);
+    UP_FINES(after, 9);
+    UP_FINE part = UP_EXACT(1.0f), off = UP_EXACT(1.0f);
+    for (int start = 0; start < UP_SAMPLES; start += UP_WIDTH) {
+        for (int w = 0; w < UP_WIDTH; ++w) at[w] = UP_FIRST + UP_STEP * UP_REAL(start + w);
+        up_blend(UP_TABLE place, entry, at, total);
+        for (int w = 0; w < UP_WIDTH && start + w < UP_SAMPLES; ++w) given[start + w] = up_linear(total[w]);
+    }
+    for (int axis = 0; axis < 3; ++axis) colour[axis] = up_clip(rgb[axis]);
+    up_realise(UP_TABLE colour);
+    for (int axis = 0; axis < 3; ++axis) {
+        goal[axis] = change[axis] = UP_EXACT(0.0f);
+        for (int k = 0; k < 3; ++k)
+            goal[axis] += UP_EXACT(up_number(UP_TABLE UP_SCALES + 3 * axis + k)) * colour[k];
+    }
+    up_residual(UP_TABLE given, goal, change, found);
+    for (int turn = 0; turn < UP_STEPS && off > UP_TOLERANCE; ++turn) {
+        UP_FINE before = UP_EXACT(0.0f), beyond = UP_EXACT(0.0f);
+        up_step(found, part, move);
+        for (int k = 0; k < 3; ++k) trial[k] = change[k] + move[k];
+        up_residual(UP_TABLE given, goal, trial, after);
+        for (int k = 0; k < 3; ++k) {
+            before += found[k] * move[k];
+            beyond += after[k] * move[k];
+        }
+        if (beyond >= -0.5f * before && after[3] + after[5] + after[8] >= 0.01f * (found[3] + found[5] + found[8])) {
+            for (int k = 0; k < 3; ++k) change[k] = trial[k];
+            for (int k = 0; k < 9; ++k) found[k] = after[k];
+            part = part < 0.25f ? 4.0f * part : UP_EXACT(1.0f);
+        } else {
+            part *= 0.25f;
+        }
+        off = UP_EXACT(0.0f);
+        for (int k = 0; k < 3; ++k) {
+            UP_FINE size = found[k] > 0.0f ? found[k] : -found[k];
+            off = size > off ? size : off;
+        }
+    }
+    for (int k = 0; k < 3; ++k) place[4 + k] = UP_REAL(change[k]);
+}
+
+/* Find the entry in whose box a colour lies, or -1; set what `up_answer` needs. */
+UP_FUNCTION int up_find(UP_READS UP_IN float rgb[3], UP_OUT float place[UP_PLACE])
+{
+    int entry = up_locate(UP_TABLE rgb, place);
+    UP_ARRAY(colour, 3);
+    for (int axis = 0; axis < 3; ++axis) {
+        colour[axis] = place[axis];
+        place[4 + axis] = 0.0f;
+    }
+    if (up_tag(UP_TABLE up_first_corner(UP_TABLE colour)) < 0.0f) up_pull(UP_TABLE rgb, entry, place);
+    return entry;
+}
+
+/* Move reflectances by what `up_find` set. */
+UP_FUNCTION void up_move(
+    UP_READS UP_IN float place[UP_PLACE], UP_IN float wavelengths[UP_WIDTH], UP_OUT float total[UP_WIDTH])
+{
+    if (place[4] != 0.0f || place[5] != 0.0f || place[6] != 0.0f)
+        for (int w = 0; w < UP_WIDTH; ++w) {
+            float position = (wavelengths[w] - UP_FIRST) / UP_STEP, x = up_linear(total[w]);
+            position = up_clip(position / UP_REAL(UP_SAMPLES - 1)) * UP_REAL(UP_SAMPLES - 1);
+            int row = UP_INT(position) < UP_SAMPLES - 1 ? UP_INT(position) : UP_SAMPLES - 2;
+            float share = position - UP_REAL(row);
+            for (int k = 0; k < 3; ++k) {
+                int shape = UP_PULL + 6 * row + 3 + k;
+                x += place[4 + k]
+                    * ((1.0f - share) * up_number(UP_TABLE shape) + share * up_number(UP_TABLE shape + 6));
+            }
+            total[w] = 0.5f + up_deviation(1.0f, x);
+        }
+}
+
+/* Evaluate a colour that is found: with exactly its colour in mode spectra. */
+UP_FUNCTION void up_answer(
+    UP_READS UP_IN float place[UP_PLACE], int entry, UP_IN float wavelengths[UP_WIDTH],
+    UP_OUT float total[UP_WIDTH])
+{
+    up_blend(UP_TABLE place, entry, wavelengths, total);
+    up_move(UP_TABLE place, wavelengths, total);
+}
+
+#else
+#define up_find up_locate
+#define up_answer up_blend
 #endif
 
 ${calls}

@@ -1,15 +1,22 @@
-/* Reflectances of multipliers, mixed with those of an entry unless it is negative, at wavelengths in nm. */
+/* Reflectances of the multipliers of a place, mixed with those of an entry unless it is negative, at wavelengths in nm. */
 UP_FUNCTION void up_mix_all(
-    const float multipliers[UP_COUNT], float lattice_weight, int entry, const float *wavelengths, int count,
+    const float multipliers[UP_COUNT], const float place[UP_PLACE], int entry, const float *wavelengths, int count,
     float *reflectances)
 {
     int start;
-    for (start = 0; start + UP_WIDTH <= count; start += UP_WIDTH)
-        up_mix(multipliers, lattice_weight, entry, wavelengths + start, reflectances + start);
+    for (start = 0; start + UP_WIDTH <= count; start += UP_WIDTH) {
+        up_mix(multipliers, place[3], entry, wavelengths + start, reflectances + start);
+#if UP_INEXACT
+        up_move(place, wavelengths + start, reflectances + start);
+#endif
+    }
     if (start < count) {
         float block[UP_WIDTH] = {0}, found[UP_WIDTH];
         memcpy(block, wavelengths + start, (count - start) * sizeof *block);
-        up_mix(multipliers, lattice_weight, entry, block, found);
+        up_mix(multipliers, place[3], entry, block, found);
+#if UP_INEXACT
+        up_move(place, block, found);
+#endif
         memcpy(reflectances + start, found, (count - start) * sizeof *found);
     }
 }
@@ -18,7 +25,8 @@ UP_FUNCTION void up_mix_all(
 UP_FUNCTION void up_evaluate(
     const float multipliers[UP_COUNT], const float *wavelengths, int count, float *reflectances)
 {
-    up_mix_all(multipliers, 1, -1, wavelengths, count, reflectances);
+    const float place[UP_PLACE] = {0, 0, 0, 1};
+    up_mix_all(multipliers, place, -1, wavelengths, count, reflectances);
 }
 
 #if UP_SPECTRA
@@ -29,8 +37,8 @@ UP_FUNCTION void up_evaluate(
        up_reflectances(rgb, wavelengths, 4, reflectances); */
 UP_FUNCTION void up_reflectances(const float rgb[3], const float *wavelengths, int count, float *reflectances)
 {
-    float place[4];
-    int start, entry = up_locate(rgb, place);
+    float place[UP_PLACE];
+    int start, entry = up_find(rgb, place);
     for (start = 0; start + UP_WIDTH <= count; start += UP_WIDTH)
         up_answer(place, entry, wavelengths + start, reflectances + start);
     if (start < count) {
@@ -54,7 +62,7 @@ UP_FUNCTION void up_reflectances_n(
 /* Coefficients of linear RGB, which are linear in the spectrum: they can be filtered. Clips RGB to [0, 1]. */
 UP_FUNCTION void up_coefficients(const float rgb[3], float coefficients[UP_COUNT])
 {
-    float place[4];
+    float place[UP_PLACE];
     int entry = up_locate(rgb, place);
     up_sum_coefficients(place, entry, coefficients);
 }
@@ -117,11 +125,11 @@ UP_FUNCTION int up_multipliers_n(const float *coefficients, int n, float *multip
        up_reflectances(rgb, wavelengths, 4, reflectances); */
 UP_FUNCTION void up_reflectances(const float rgb[3], const float *wavelengths, int count, float *reflectances)
 {
-    float place[4], coefficients[UP_COUNT], multipliers[UP_COUNT];
-    int entry = up_locate(rgb, place);
+    float place[UP_PLACE], coefficients[UP_COUNT], multipliers[UP_COUNT];
+    int entry = up_find(rgb, place);
     up_sum_nodes(place, coefficients);
     up_multipliers_of(coefficients, multipliers);
-    up_mix_all(multipliers, place[3], entry, wavelengths, count, reflectances);
+    up_mix_all(multipliers, place, entry, wavelengths, count, reflectances);
 }
 
 /* The same of n colours, each at count wavelengths of its own: faster than one by one. */
@@ -129,17 +137,17 @@ UP_FUNCTION void up_reflectances_n(
     const float *rgb, const float *wavelengths, int count, int n, float *reflectances)
 {
     for (int start = 0; start < n; start += UP_LANES) {
-        float places[4 * UP_LANES], numbers[UP_COUNT * UP_LANES], multipliers[UP_COUNT * UP_LANES];
+        float places[UP_PLACE * UP_LANES], numbers[UP_COUNT * UP_LANES], multipliers[UP_COUNT * UP_LANES];
         int entries[UP_LANES], colours = n - start < UP_LANES ? n - start : UP_LANES;
         for (int lane = 0; lane < colours; ++lane) {
-            entries[lane] = up_locate(rgb + 3 * (start + lane), places + 4 * lane);
-            up_sum_nodes(places + 4 * lane, numbers + UP_COUNT * lane);
+            entries[lane] = up_find(rgb + 3 * (start + lane), places + UP_PLACE * lane);
+            up_sum_nodes(places + UP_PLACE * lane, numbers + UP_COUNT * lane);
         }
         up_multipliers_of_lanes(numbers, colours, multipliers);
         for (int lane = 0; lane < colours; ++lane) {
             size_t first = (size_t)count * (start + lane);
             up_mix_all(
-                multipliers + UP_COUNT * lane, places[4 * lane + 3], entries[lane], wavelengths + first, count,
+                multipliers + UP_COUNT * lane, places + UP_PLACE * lane, entries[lane], wavelengths + first, count,
                 reflectances + first);
         }
     }

@@ -14,8 +14,8 @@ UP_FUNCTION void up_evaluate(
 UP_FUNCTION void up_reflectances(
     const float *table, const float rgb[3], const float wavelengths[UP_WIDTH], float reflectances[UP_WIDTH])
 {
-    float place[4];
-    int entry = up_locate(table, rgb, place);
+    float place[UP_PLACE];
+    int entry = up_find(table, rgb, place);
     up_answer(table, place, entry, wavelengths, reflectances);
 }
 
@@ -24,7 +24,7 @@ UP_FUNCTION void up_reflectances(
 /* Coefficients of linear RGB, which are linear in the spectrum: they can be filtered. Clips RGB to [0, 1]. */
 UP_FUNCTION void up_coefficients(const float *table, const float rgb[3], float coefficients[UP_COUNT])
 {
-    float place[4];
+    float place[UP_PLACE];
     int entry = up_locate(table, rgb, place);
     up_sum_coefficients(table, place, entry, coefficients);
 }

@@ -16,12 +16,12 @@ UP_VEC4 up_evaluate(float multipliers[UP_COUNT], UP_VEC4 wavelengths)
 UP_VEC4 up_reflectances(UP_VEC3 rgb, UP_VEC4 wavelengths)
 {
     UP_ARRAY(colour, 3);
-    UP_ARRAY(place, 4);
+    UP_ARRAY(place, UP_PLACE);
     UP_ARRAY(lanes, 4);
     UP_ARRAY(total, 4);
     for (int axis = 0; axis < 3; ++axis) colour[axis] = rgb[axis];
     for (int w = 0; w < 4; ++w) lanes[w] = wavelengths[w];
-    int entry = up_locate(colour, place);
+    int entry = up_find(colour, place);
     up_answer(place, entry, lanes, total);
     return UP_VEC4(total[0], total[1], total[2], total[3]);
 }
@@ -32,7 +32,7 @@ UP_VEC4 up_reflectances(UP_VEC3 rgb, UP_VEC4 wavelengths)
 void up_coefficients(UP_VEC3 rgb, inout float coefficients[UP_COUNT])
 {
     UP_ARRAY(colour, 3);
-    UP_ARRAY(place, 4);
+    UP_ARRAY(place, UP_PLACE);
     for (int axis = 0; axis < 3; ++axis) colour[axis] = rgb[axis];
     int entry = up_locate(colour, place);
     up_sum_coefficients(place, entry, coefficients);

@@ -14,6 +14,14 @@
 #define UP_SQRT sqrt
 #define UP_TANH tanh
 #define UP_COPYSIGN(size, sign) ((sign) > 0.0f ? (size) : -(size))
+#define UP_FINE float
+#define UP_FINES UP_ARRAY
+#define UP_EXACT(x) (x)
+#define UP_TURN(x) up_deviation(1.0f, x)
+#define UP_SQUARE_ROOT sqrt
+#define UP_TINY 1e-7f
+#define UP_TOLERANCE 1e-6f
+#define UP_STEPS 24
 ${constants}
 
 float up_number(int index)
