@@ -3,6 +3,7 @@
 import json
 import shutil
 import subprocess
+import sys
 import tempfile
 import warnings
 from collections.abc import Iterator
@@ -178,3 +179,9 @@ def broken(seed: int, dims: tuple[int, int] = (2, 13)) -> list[str]:
     """Return the laws that the build of a seed breaks."""
     with tempfile.TemporaryDirectory() as folder:
         return [f"build {seed}: {law}" for law in broken_laws(seed, Path(folder), dims)]
+
+
+if __name__ == "__main__":
+    failures = [law for seed in range(int(sys.argv[1])) for law in broken(seed)]
+    print(*failures, f"{len(failures)} laws broken", sep="\n")
+    sys.exit(bool(failures))
