@@ -30,8 +30,7 @@ CHOICES = (
     Choice("metric, phase and start of smooth spectra", ("rawtoaces",), (OURS, OURS_SMOOTH, ALONE, ALONE_SMOOTH)),
     Choice("weights of entries: lights, ends, curvature", CHOSEN_ON, (OURS, OURS_SMOOTH)),
     Choice("weight of smooth multipliers of entries", SHIPPED, (OURS, OURS_SMOOTH)),
-    Choice("kriging: kinds, default length and nugget", CHOSEN_ON, (OURS, OURS_SMOOTH)),
-    Choice("share of an entry in the corners of its cell", ("rawtoaces", "cie2017", "munsell"), (OURS, OURS_SMOOTH)),
+    Choice("kriging: metric, noise, median, default, corners", (*SHIPPED, "munsell"), (OURS, OURS_SMOOTH)),
     Choice("learnt prior: length, spreads, noise, bounds, relevance", (*SHIPPED, "munsell"), (OURS, ALONE)),
     Choice(
         "local-linear regression: regressors, criterion and ridge",

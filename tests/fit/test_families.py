@@ -12,10 +12,8 @@ from uplift.colorimetry import observer
 from uplift.fit.families import (
     FILE,
     LENGTH,
-    MAX_POINTS,
     NUGGET,
     FamilySamples,
-    average_close,
     families_with,
     krige_families,
     learn_relevance,
@@ -87,19 +85,6 @@ def test_it_is_the_conditional_mean(sizes):
     relevance = RNG.uniform(0, 2, len(sizes))
     expected = np.einsum("f,fnk->nk", relevance, kriging.contributions(lab))
     np.testing.assert_allclose(kriging(lab, relevance), expected, atol=1e-12)
-
-
-def test_close_spectra_are_averaged_where_there_are_many():
-    few = samples(20)
-    locations, deviations, counts = average_close(few.locations, few.deviations)
-    assert locations is few.locations
-    assert deviations is few.deviations
-    np.testing.assert_array_equal(counts, 1)
-    many = samples(20 * MAX_POINTS)
-    locations, deviations, counts = average_close(many.locations, many.deviations)
-    assert len(locations) <= MAX_POINTS
-    assert counts.sum() == len(many.locations)
-    np.testing.assert_allclose(counts @ deviations, many.deviations.sum(axis=0), atol=1e-9)
 
 
 def learn(measured, rows=slice(None)):

@@ -11,70 +11,123 @@ from tests.conftest import MACBETH
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.fit import kriging
 from uplift.fit.base import smooth
-from uplift.fit.kriging import DEFAULT, JITTER, MIN_ENTRIES, REACH, Kernel, krige, learn_kernel, visible_change
+from uplift.fit.kriging import (
+    CELLS,
+    DEFAULT,
+    MAX_POINTS,
+    METRIC,
+    MIN_ENTRIES,
+    REACH,
+    WHITE,
+    Kernel,
+    average_close,
+    krige,
+    learn_kriging,
+    visible_change,
+)
 from uplift.fit.problem import Problem
 from uplift.fit.solver import solve
 from uplift.models import Moments
 
 RNG = np.random.default_rng(5)
-PLACES = RNG.uniform(-20, 60, (12, 3))
-DEVIATIONS = RNG.normal(size=(12, 4))
-KERNEL = Kernel(length=10.0, nugget=0.5)
+PLACES = RNG.uniform(-20, 60, (30, 3))
+DEVIATIONS = RNG.normal(size=(30, 4))
+VARIANCES = RNG.uniform(0.3, 3, 30)
+KERNEL = Kernel(length=10.0, noise=0.5)
 
 
-def covariance(first, second):
-    apart = np.linalg.norm(first[:, None] - second[None], axis=-1)
+def covariance(first, second, variances=1.0, kernel=KERNEL):
+    """Covariance of materials at L*a*b*, the white noise of a material left out."""
+    apart = np.linalg.norm((first[:, None] - second[None]) * METRIC, axis=-1)
     own = np.where(apart < REACH, (1 - apart / REACH) ** 4 * (1 + 4 * apart / REACH), 0)
-    return np.exp(-apart / 10) + 0.5 * own
+    return np.exp(-apart / kernel.length) + kernel.noise * (1 - WHITE) * own * variances
 
 
-def test_leave_one_out_equals_kriging_of_the_other_entries():
-    _, errors = krige(PLACES, DEVIATIONS, KERNEL)
+def predicted(places, deviations, at, variances, at_variance=1.0, kernel=KERNEL):
+    """The conditional mean of a Gaussian process at L*a*b* (3)."""
+    within = covariance(places, places, np.sqrt(np.outer(variances, variances)), kernel)
+    within += WHITE * kernel.noise * np.diag(variances)
+    return covariance(at[None], places, np.sqrt(at_variance * variances), kernel)[0] @ np.linalg.solve(
+        within, deviations
+    )
+
+
+def test_it_is_the_conditional_mean():
+    found, _ = krige(PLACES, DEVIATIONS, KERNEL, VARIANCES)
+    for at in RNG.uniform(-20, 60, (5, 3)):
+        np.testing.assert_allclose(found(at[None])[0], predicted(PLACES, DEVIATIONS, at, VARIANCES), atol=1e-9)
+
+
+@pytest.mark.parametrize("points", [30, 20])
+def test_leave_one_out_equals_kriging_of_the_other_entries(monkeypatch, points):
+    """Also where close entries are averaged, which is the same as moving them to their mean."""
+    monkeypatch.setattr(kriging, "MAX_POINTS", points)
+    monkeypatch.setattr(kriging, "CELLS", (20.0,))
+    means = average_close(PLACES * METRIC, DEVIATIONS)
+    assert (len(means.counts) < 30) == (points < 30)
+    places = means.locations[means.point] / METRIC
+    variances = (np.bincount(means.point, VARIANCES) / means.counts)[means.point]
+    _, errors = krige(PLACES, DEVIATIONS, KERNEL, VARIANCES)
     for row in range(len(PLACES)):
         others = np.arange(len(PLACES)) != row
-        again, _ = krige(PLACES[others], DEVIATIONS[others], KERNEL)
-        np.testing.assert_allclose(DEVIATIONS[row] - errors[row], again(PLACES[row : row + 1])[0], atol=1e-9)
-
-
-def test_deviations_agree_with_the_closed_form():
-    found, _ = krige(PLACES, DEVIATIONS, KERNEL)
-    queried = RNG.uniform(-20, 60, (5, 3))
-    weights = np.linalg.solve(covariance(PLACES, PLACES) + JITTER * np.eye(12), DEVIATIONS)
-    np.testing.assert_allclose(found(queried), covariance(queried, PLACES) @ weights, atol=1e-9)
+        again = predicted(places[others], DEVIATIONS[others], places[row], variances[others], variances[row])
+        np.testing.assert_allclose(DEVIATIONS[row] - errors[row], again, atol=1e-9)
 
 
 @given(st.floats(3, 60), st.floats(0, 4), st.integers(0, 1000))
-def test_kernels_are_positive_definite(length, nugget, seed):
+def test_kernels_are_positive_definite(length, noise, seed):
     places = np.random.default_rng(seed).uniform(0, 30, (30, 3))
-    apart = np.linalg.norm(places[:, None] - places[None], axis=-1)
-    assert np.linalg.eigvalsh(Kernel(length, nugget)(apart)).min() > 0
+    assert np.linalg.eigvalsh(covariance(places, places, kernel=Kernel(length, noise))).min() > 0
+
+
+def test_close_spectra_are_averaged_where_there_are_many():
+    few = average_close(PLACES, DEVIATIONS)
+    assert few.locations is PLACES
+    np.testing.assert_array_equal(few.counts, 1)
+    places, deviations = RNG.uniform(0, 60, (20 * MAX_POINTS, 3)), RNG.normal(size=(20 * MAX_POINTS, 4))
+    many = average_close(places, deviations)
+    assert len(many.locations) <= MAX_POINTS
+    np.testing.assert_array_equal(many.counts, np.bincount(many.point))
+    np.testing.assert_allclose(many.counts @ many.deviations, deviations.sum(axis=0), atol=1e-9)
+    assert np.abs(many.locations[many.point] - places).max() <= CELLS[-1]
 
 
 LEARNING = np.random.default_rng(8)
 MANY = LEARNING.uniform(0, 60, (150, 3))
-DISTANCES = np.linalg.norm(MANY[:, None] - MANY[None], axis=-1)
 ALL_VISIBLE = np.broadcast_to(np.eye(3), (150, 1, 3, 3))
 
 
 def drawn_from(kernel):
-    return np.linalg.cholesky(kernel(DISTANCES) + 1e-9 * np.eye(150)) @ LEARNING.normal(size=(150, 3))
+    drawn = covariance(MANY, MANY, kernel=kernel) + (WHITE * kernel.noise + 1e-9) * np.eye(150)
+    return np.linalg.cholesky(drawn) @ LEARNING.normal(size=(150, 3))
 
 
 @pytest.mark.parametrize("truth", [Kernel(48.0, 0.01), Kernel(24.0, 1.0), Kernel(6.0, 0.03)])
 def test_a_large_atlas_tells_its_kernel(truth):
-    learnt = learn_kernel(MANY, drawn_from(truth), ALL_VISIBLE)
+    learnt = learn_kriging(MANY, drawn_from(truth), ALL_VISIBLE)[0].kernel
     assert truth.length / 2 <= learnt.length <= truth.length * 2
-    assert truth.nugget / 10 <= learnt.nugget <= truth.nugget * 10
+    assert truth.noise / 10 <= learnt.noise <= truth.noise * 10
 
 
 def test_without_evidence_the_default_is_kept():
     few = slice(0, MIN_ENTRIES - 1)
     deviations = LEARNING.normal(size=(150, 3))
-    assert learn_kernel(MANY[few], deviations[few], ALL_VISIBLE[few]) == DEFAULT
+    assert learn_kriging(MANY[few], deviations[few], ALL_VISIBLE[few])[0].kernel == DEFAULT
     # nor are invisible deviations evidence for another kernel
-    assert learn_kernel(MANY, deviations, 0 * ALL_VISIBLE) == DEFAULT
-    assert learn_kernel(MANY, np.zeros((150, 3)), ALL_VISIBLE) == DEFAULT
+    assert learn_kriging(MANY, deviations, 0 * ALL_VISIBLE)[0].kernel == DEFAULT
+    assert learn_kriging(MANY, np.zeros((150, 3)), ALL_VISIBLE)[0].kernel == DEFAULT
+
+
+def test_what_deviates_from_all_others_hardly_counts():
+    """A sixth of the materials is of another kind: the means of the kinds are 0 and 1."""
+    other = LEARNING.random(150) < 1 / 6
+    deviations = 0.1 * LEARNING.normal(size=(150, 3)) + other[:, None]
+    found, _ = learn_kriging(MANY, deviations, ALL_VISIBLE)
+    plain, _ = krige(MANY, deviations, found.kernel)
+    away = LEARNING.uniform(10, 50, (200, 3))
+    assert found(away).mean() < 0.6 * plain(away).mean()
 
 
 def test_visible_change_ranks_metameric_changes_by_delta_e(sensor):

@@ -89,7 +89,7 @@ def test_the_prior_follows_looks_nearby_only(sensor, materials):
     plain = fit_prior(problem, entries)
     goal = goal_of(sensor, [light], 0.9 * expected[7] + 0.05, sensor.rgb(expected[7]))
     look = fit_designs(problem, [goal], design_reflectance(sensor, goal, expected[7])[None])
-    changed = plain.with_entries(join_entries(entries, look))
+    changed = plain.with_entries(join_entries(entries, look), 1)
     assert changed.errors is plain.errors
     assert changed.kriging.kernel == plain.kriging.kernel
     near, far = goal.rgb[None] * 1.01, np.array([[0.9, 0.9, 0.2]])

@@ -21,18 +21,17 @@ from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.fit.base import learn_base
 from uplift.fit.entries import fit_entries
 from uplift.fit.families import shipped_library
-from uplift.fit.kriging import Kernel, Kriging
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem
 from uplift.fit.seeds import (
     DIMS,
     FAR,
     FULL_ENTRY,
+    HALF_ENTRY,
     NEAR,
     choose_lattice,
     initial_guess,
     lattice_error,
-    learnt_blend,
     seed,
 )
 from uplift.lattice import Lattice
@@ -109,13 +108,6 @@ def test_all_other_points_start_from_the_prior(prior):
     np.testing.assert_array_equal(start, prior(LATTICE.points[points]))
 
 
-@pytest.mark.parametrize(("nugget", "share"), [(0.0, 0.5), (0.03, 0.55), (0.3, 1.0), (2.0, 1.0)])
-def test_the_share_of_entries_follows_the_nugget(prior, nugget, share):
-    kriging = Kriging(np.zeros((1, 3)), np.zeros((1, 5)), Kernel(12.0, nugget))
-    learnt = Prior(MODEL, prior.sensor, prior.base, kriging)
-    assert learnt_blend(learnt) == pytest.approx((share, 0))
-
-
 @pytest.fixture(scope="module")
 def stage(sensor):
     """Problem, prior and the entries of the ColorChecker."""
@@ -128,14 +120,13 @@ def stage(sensor):
 
 
 @pytest.mark.parametrize("seed_corners", [True, False])
-def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, monkeypatch, seed_corners):
+def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, seed_corners):
     """The lattice of the cube is evaluated at the entries without their boxes."""
-    monkeypatch.setattr("uplift.pipeline.build.learnt_blend", lambda prior: (0.6, 0.0))
     problem, prior, entries = stage
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         data = uplift.build(MACBETH, dim=16, seed_corners=seed_corners).data
-    trial = lattice_error(problem, data.lattice, prior, FULL_ENTRY if seed_corners else (0.6, 0.0), entries)
+    trial = lattice_error(problem, data.lattice, prior, FULL_ENTRY if seed_corners else HALF_ENTRY, entries)
     corners, weights = data.lattice.corners(entries.rgb)
     spectra = reflectance(data.model, data.points.coefficients, sensor.wavelengths)
     answered = (weights[..., None] * spectra[corners]).sum(axis=1)
@@ -146,12 +137,11 @@ def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, monkeypatch
 
 def test_the_smallest_lattice_that_keeps_all_entries_is_chosen(stage):
     problem, prior, entries = stage
-    blend = learnt_blend(prior)
-    _, dim, lost = choose_lattice(problem, prior, blend, entries, 0.5)
+    _, dim, lost = choose_lattice(problem, prior, HALF_ENTRY, entries, 0.5)
     assert lost == 0
     for axis in observer.AXES:
         smaller = Lattice(observer.axis_nodes(axis, DIMS[DIMS.index(dim) - 1]))
-        assert lattice_error(problem, smaller, prior, blend, entries).max() > 0.5
+        assert lattice_error(problem, smaller, prior, HALF_ENTRY, entries).max() > 0.5
 
 
 def test_without_an_atlas_the_smallest_lattice_is_chosen():

@@ -95,7 +95,7 @@ PROVENANCE = {
     "looks?": [{"name": str, "rgb": RGB, "weight": (0, 1), "lights": [LIGHT, MAX_LIGHTS]}, MAX_FILES],
     "left_out?": ENTRIES,
     "skipped?": ENTRIES,
-    "prior?": {"length?": POSITIVE, "nugget?": POSITIVE, "error_bound?": POSITIVE, "*": None},
+    "prior?": {"length?": POSITIVE, "nugget?": POSITIVE, "noise?": POSITIVE, "error_bound?": POSITIVE, "*": None},
     "improvements?": [{"step": str, "tried": int, "mended": int}, MAX_FILES],
     "scene?": [{"*": None}, MAX_FILES],
     "filled?": {"points": int, "cube": str},

@@ -18,7 +18,8 @@ from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, blocks
 from uplift.fit.batch import to_storage
 from uplift.fit.entries import FittedEntries
-from uplift.fit.families import Family, FamilySamples, average_close, krige_families, learn_relevance
+from uplift.fit.families import Family, FamilySamples, krige_families, learn_relevance
+from uplift.fit.kriging import average_close
 from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.solver import solve
 from uplift.lattice import Lattice, weighted_sum
@@ -159,7 +160,7 @@ def _samples(plain: Base, problem: Problem, family: Family, entries: FittedEntri
         rgb, measured, locations = rgb[new], measured[new], locations[new]
     expected = reflectance(plain.model, plain.coefficients(rgb), sensor.wavelengths)
     deviations = (measured - expected) / plain.brightness(rgb)
-    return FamilySamples(*average_close(locations, deviations), family.spread, family.related)
+    return FamilySamples(*average_close(locations, deviations)[:3], family.spread, family.related)
 
 
 def match_spectra(model: Moments, wavelengths: Array, reflectances: Array, lights: Sequence[Light]) -> Array:

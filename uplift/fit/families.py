@@ -23,7 +23,7 @@ from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.errors import unknown_name
 from uplift.fit.entries import LIGHTS_WEIGHT
-from uplift.fit.kriging import JITTER, Kernel
+from uplift.fit.kriging import Kernel
 from uplift.models.arithmetic import distances
 
 FILE = "library.npz"
@@ -38,13 +38,9 @@ NUGGET = 0.3
 """Variance of the noise of a material, relative to that of the shared deviation."""
 BLOCK_NUMBERS = 1 << 17
 """Numbers of the kernel matrix held at a time."""
-MAX_POINTS = 1200
-"""Points of a family. More spectra are averaged in cubes of L*a*b*."""
-CELLS = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
-"""Edges of these cubes in L*a*b*; the smallest that suffices is taken."""
 VARIANCE = 0.5
 """Assumed variance of relevances about 1. Halves of ColorCheckers prefer 1 or more, those of mixed sets less."""
-CORRELATED = Kernel(length=24.0, nugget=1.0)
+CORRELATED = Kernel(length=24.0, noise=1.0)
 """Covariance of the deviations of entries that no family explains: that of close colours is left to the kriging."""
 MAX_RELEVANCE = 4.0
 
@@ -144,22 +140,6 @@ def krige_families(families: Sequence[FamilySamples]) -> FamilyKriging:
     return FamilyKriging(locations, weights, number, len(families))
 
 
-def average_close(locations: Array, deviations: Array) -> tuple[Array, Array, Array]:
-    """Average deviations (E, N) of close L*a*b* (E, 3), so that at most `MAX_POINTS` remain, and count them."""
-    if len(locations) <= MAX_POINTS:
-        return locations, deviations, np.ones(len(locations))
-    for edge in CELLS:
-        _, cell, counts = np.unique(np.floor(locations / edge), axis=0, return_inverse=True, return_counts=True)
-        if len(counts) <= MAX_POINTS:
-            break
-    order = np.argsort(cell.ravel(), kind="stable")
-    starts = np.cumsum(counts) - counts
-    mean_location, mean_deviation = (
-        np.add.reduceat(each[order], starts) / counts[:, None] for each in (locations, deviations)
-    )
-    return mean_location, mean_deviation, counts.astype(float)
-
-
 def _kernel_sum(lab: Array, locations: Array, weights: Array) -> Array:
     """Sums (n, N) of weights (E, N) at L*a*b* (n, 3)."""
     sums = np.zeros((len(lab), weights.shape[1]))
@@ -190,8 +170,9 @@ def learn_relevance(lights: Sequence[Light], locations: Array, plain: Array, par
     matrices, whites = (np.stack([getattr(light, name) for light in lights]) for name in ("xyz", "white"))
     expected = np.clip(plain + parts.sum(axis=0), 0, 1)
     to_lab = LIGHTS_WEIGHT * lab_jacobian((expected @ matrices.mT).swapaxes(0, 1), whites)
-    covariance = CORRELATED(distances(locations, locations)) / CORRELATED(np.zeros(()))
-    root = np.linalg.cholesky(covariance + JITTER * np.eye(len(covariance)))
+    shared = np.exp(distances(locations, locations) / -CORRELATED.length)
+    covariance = shared + CORRELATED.noise * np.eye(len(locations))
+    root = np.linalg.cholesky(covariance / (1 + CORRELATED.noise))
 
     def independent(change: Array) -> Array:
         """Weighted differences (n, N + 3 L) of spectra as in the objective of entries, made independent by L⁻¹."""

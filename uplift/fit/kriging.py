@@ -1,125 +1,184 @@
 """Kriging of the deviation of atlas entries from a base predictor over CIE L*a*b* (docs/mathematics.md, 7).
 
-Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25, and eq. 5.12 for leave-one-out.
+Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25, and 5.4.2 for leave-one-out.
 """
 
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
-from uplift.common.arrays import Array, blocks
+from uplift.common.arrays import Array, Indices, blocks
 from uplift.fit.problem import Problem
 from uplift.models.arithmetic import distances
 
-REACH = 12.0
-"""ΔE*ab within which a deviation that belongs to one entry alone fades away."""
-JITTER = 1e-3
-"""Relative variance of noise: entries of the same colour and different spectra are averaged."""
+METRIC = np.array([0.5, 1.0, 1.0])
+"""Weights of differences of L*, a* and b*: materials of one hue are more alike than those of one lightness."""
+REACH, WHITE = 10.0, 0.1
+"""Distance within which the noise of an entry fades away, and the part of it that is white."""
 BLOCK_NUMBERS, BLOCK_ROWS = 1 << 20, 1 << 13
 """Numbers and rows of the kernel matrix that are held at a time, at most."""
-LENGTHS = (6.0, 12.0, 24.0, 48.0)
-NUGGETS = (0.01, 0.03, 0.1, 0.3, 1.0, 2.0)
-DOUBT = 0.25
-"""Entries' worth of the preference for `DEFAULT`, per squared doubling of the length or quadrupling of the nugget."""
+DOUBT = 0.5
+"""Entries' worth of the preference for `DEFAULT`, per squared doubling of the length or quadrupling of the noise."""
 MIN_ENTRIES = 8
 """Entries needed to learn a kernel."""
+MEDIAN_STEPS, DOUBTFUL = 3, 0.2
+"""Steps towards the median, and the part of the mean error that is added to each."""
 INVISIBLE = 1e-3
 """ΔE00 below which errors do not matter."""
-MAX_ENTRIES = 200
-"""Entries that are used: the kernel changes little with more, and its cost grows with their cube."""
+MAX_POINTS = 1200
+"""Points of a kriging. More spectra are averaged in cubes of L*a*b*."""
+CELLS = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
+"""Edges of these cubes; the smallest that suffices is taken."""
 
 
-@dataclass(frozen=True)
-class Kernel:
-    """Covariance of the deviations of two colours: exp(−d / length) + nugget · (1 − d / 12)⁴ (1 + 4 d / 12), d = ΔE*ab.
+class Kernel(NamedTuple):
+    """Covariance exp(−d / l) + ν √(v v′) ((1 − w) (1 − d / r)⁴ (1 + 4 d / r) + w [same material]); r, w: see above.
 
-    The first term is common to the materials of an atlas. The second, the nugget, belongs to one entry: kriging keeps
-    it at the colour of the entry and near it, and averages it elsewhere. It is the function of Wendland 1995,
+    The first term is common to the materials of an atlas. The noise ν v belongs to one of them: kriging keeps most of
+    it at the colour of an entry and near it, and averages it elsewhere. The function of d / r is that of Wendland 1995,
     "Piecewise polynomial, positive definite and compactly supported radial functions of minimal degree".
     """
 
-    length: Any
-    nugget: Any
-
-    def __call__(self, distance: Any) -> Any:
-        """Evaluate the covariance at ΔE*ab, an array of numpy or JAX."""
-        xp = distance.__array_namespace__()
-        relative = xp.minimum(distance / REACH, 1.0)
-        fade = (1 - relative) ** 2
-        return xp.exp(distance / -self.length) + self.nugget * fade * fade * (1 + 4 * relative)
+    length: float
+    noise: float
 
 
-DEFAULT = Kernel(length=12.0, nugget=0.3)
+DEFAULT = Kernel(length=12.0, noise=0.3)
 """Kernel of atlases that are too small to learn one."""
+KERNELS = tuple(Kernel(*pair) for pair in product((6.0, 12.0, 24.0, 48.0), (0.01, 0.03, 0.1, 0.3, 1.0, 3.0)))
+
+
+class Points(NamedTuple):
+    """Mean deviations (P, C) of spectra whose mean locations are (P, 3), their counts (P,), and the point of each."""
+
+    locations: Array
+    deviations: Array
+    counts: Array
+    point: Indices
+
+
+def average_close(locations: Array, deviations: Array) -> Points:
+    """Average deviations (E, C) of close locations (E, 3), so that at most `MAX_POINTS` remain, and count them."""
+    if len(locations) <= MAX_POINTS:
+        return Points(locations, deviations, np.ones(len(locations)), np.arange(len(locations)))
+    for edge in CELLS:
+        _, point, counts = np.unique(np.floor(locations / edge), axis=0, return_inverse=True, return_counts=True)
+        if len(counts) <= MAX_POINTS:
+            break
+    point = point.ravel()
+    order = np.argsort(point, kind="stable")
+    starts = np.cumsum(counts) - counts
+    means = (np.add.reduceat(each[order], starts) / counts[:, None] for each in (locations, deviations))
+    return Points(*means, counts.astype(float), point)
 
 
 @dataclass(frozen=True, eq=False)
 class Kriging:
-    """Interpolated deviation d(x) = k(x)ᵀ w, from the L*a*b* (E, 3) and weights (E, C) of the entries."""
+    """Expected deviation d(x) = k(x)ᵀ w of E entries, from the locations (P, 3) and weights (P, C) of points.
 
+    ``noise`` (P,) are the variances ν v of the points, and ``variances`` (E,) the v of the entries.
+    """
+
+    kernel: Kernel
     locations: Array
     weights: Array
-    kernel: Kernel
+    noise: Array
+    variances: Array
 
     def __call__(self, lab: Array) -> Array:
         """Deviation (n, C) at L*a*b* (n, 3)."""
-        return kernel_sums(lab, self.locations, self.weights, self.kernel)[0]
+        own = np.sqrt(self.kernel.noise * self.noise)
+        return kernel_sums(lab * METRIC, self.locations, self.weights, self.kernel.length, own)[0]
 
 
-def krige(locations: Array, deviations: Array, kernel: Kernel) -> tuple[Kriging, Array]:
-    """Fit the kriging of deviations (E, C) at L*a*b* (E, 3); with it, return its leave-one-out errors (E, C)."""
-    # w = (K + 10⁻³ I)⁻¹ D, and the error of entry i without itself is w_i / [(K + 10⁻³ I)⁻¹]_ii.
-    precision = np.linalg.inv(kernel(distances(locations, locations)) + JITTER * np.eye(len(locations)))
-    weights = precision @ deviations
-    return Kriging(locations, weights, kernel), weights / np.diag(precision)[:, None]
+def krige(lab: Array, deviations: Array, kernel: Kernel, variances: Array | None = None) -> tuple[Kriging, Array]:
+    """Fit the kriging of deviations (E, C) at L*a*b* (E, 3); with it, return its leave-one-out errors (E, C).
+
+    ``variances`` (E,) are those of the noise of the entries, relative to that of the kernel, 1 by default.
+    """
+    points = average_close(lab * METRIC, deviations)
+    variances = np.ones(len(lab)) if variances is None else variances
+    noise = kernel.noise * np.bincount(points.point, variances) / points.counts
+    distance, spread = distances(points.locations, points.locations), np.sqrt(noise)
+    white = WHITE * noise / points.counts
+    own = spread * _own(distance) * spread[:, None]
+    precision = np.linalg.inv(_shared(distance, kernel.length) + own + np.diag(white))
+    weights = precision @ points.deviations
+    # A point of n entries answers its mean less w ν v u / n, where u is its weight, and gives the part h / n of its own
+    # deviation to an entry of it, h = 1 − w ν v K⁻¹_ii / n: without itself, the error of an entry is r / (1 − h / n).
+    residuals = deviations - (points.deviations - white[:, None] * weights)[points.point]
+    others = 1 - (1 - white * np.diag(precision)) / points.counts
+    return Kriging(kernel, points.locations, weights, noise, variances), residuals / others[points.point, None]
 
 
-def kernel_sums(lab: Array, locations: Array, columns: Array, kernel: Kernel) -> tuple[Array, Array]:
-    """Sums (n, K) of the entries' columns (E, K) weighted by the kernel at L*a*b* (n, 3), and its maximum (n,)."""
+def learn_kriging(lab: Array, deviations: Array, visible: Array) -> tuple[Kriging, Array]:
+    """Return the kriging with the least mean visible error of left-out entries, and its errors, as `krige` does.
+
+    The entries have L*a*b* (E, 3) and deviations (E, C), whose `visible_change` is (E, L, 3, C). Few entries lean
+    towards `DEFAULT`.
+    """
+    if len(lab) < MIN_ENTRIES:
+        return krige(lab, deviations, DEFAULT)
+
+    def changes(errors: Array) -> Array:
+        return np.linalg.norm(np.einsum("elkc,ec->elk", visible, errors), axis=-1).mean(axis=1) + INVISIBLE
+
+    def loss(kernel: Kernel) -> float:
+        # Visible leave-one-out error, and the surprise at a kernel that is not the default
+        doublings, quadruplings = np.log2(np.divide(kernel, DEFAULT)) / (1, 2)
+        error = changes(krige(lab, deviations, kernel)[1]).mean()
+        return float(np.log(error) + DOUBT / len(lab) * (doublings**2 + quadruplings**2))
+
+    # Entries vary as they deviate: weights 1 / v of squares |e|² with v = |e| minimise the sum of |e|, a median.
+    kernel = min(KERNELS, key=loss)
+    kriging, errors = krige(lab, deviations, kernel)
+    for _ in range(MEDIAN_STEPS):
+        missed = changes(errors)
+        missed += DOUBTFUL * missed.mean()
+        kriging, errors = krige(lab, deviations, kernel, missed / np.exp(np.log(missed).mean()))
+    return kriging, errors
+
+
+def kernel_sums(at: Array, locations: Array, columns: Array, length: float, own: Array) -> tuple[Array, Array]:
+    """Sums (n, K) of columns (P, K) weighted by the kernel at locations (n, 3), and the largest weight (n,).
+
+    ``own`` (P,) weigh the part of the noise that is not white.
+    """
     rows = max(min(BLOCK_NUMBERS // max(len(locations), 1), BLOCK_ROWS), 1)
-    sums, nearest = np.empty((len(lab), columns.shape[1])), np.empty(len(lab))
+    sums, nearest = np.empty((len(at), columns.shape[1])), np.empty(len(at))
     with jax.enable_x64(True):
-        for block in blocks(len(lab), rows):
+        for block in blocks(len(at), rows):
             count = block.stop - block.start
-            some = lab[block] if count == rows else np.resize(lab[block], (rows, 3))  # one shape is compiled
-            arrays = _kernel_block(kernel.length, kernel.nugget, some, locations, columns)
+            some = at[block] if count == rows else np.resize(at[block], (rows, 3))  # one shape is compiled
+            arrays = _kernel_block(length, own, some, locations, columns)
             sums[block], nearest[block] = (np.asarray(array)[:count] for array in arrays)
     return sums, nearest
 
 
 @jax.jit
 def _kernel_block(
-    length: float, nugget: float, lab: jax.Array, locations: jax.Array, columns: jax.Array
+    length: float, own: jax.Array, at: jax.Array, locations: jax.Array, columns: jax.Array
 ) -> tuple[jax.Array, jax.Array]:
-    squared = ((lab[:, None] - locations[None]) ** 2).sum(axis=-1)
-    weights = Kernel(length, nugget)(jnp.sqrt(squared))
+    distance = jnp.sqrt(((at[:, None] - locations[None]) ** 2).sum(axis=-1))
+    weights = _shared(distance, length) + own * _own(distance)
     return weights @ columns, weights.max(axis=1)
 
 
-def learn_kernel(locations: Array, deviations: Array, visible: Array) -> Kernel:
-    """Choose the kernel with the least mean visible error of left-out entries; few entries lean towards `DEFAULT`.
+def _shared(distance: Any, length: float) -> Any:
+    """Covariance that the materials share at distances, an array of numpy or JAX."""
+    return distance.__array_namespace__().exp(distance / -length)
 
-    The entries have L*a*b* (E, 3) and deviations (E, C), whose `visible_change` is (E, L, 3, C).
-    """
-    if len(locations) < MIN_ENTRIES:
-        return DEFAULT
-    rows = np.linspace(0, len(locations) - 1, min(len(locations), MAX_ENTRIES)).astype(np.int64)
 
-    def loss(kernel: Kernel) -> float:
-        # Visible leave-one-out error, and the surprise at a kernel that is not the default
-        _, errors = krige(locations[rows], deviations[rows], kernel)
-        changes = np.linalg.norm(np.einsum("elkc,ec->elk", visible[rows], errors), axis=-1)
-        doublings = np.log2(kernel.length / DEFAULT.length)
-        quadruplings = np.log2(kernel.nugget / DEFAULT.nugget) / 2
-        surprise = float(doublings**2 + quadruplings**2)
-        return float(np.log(changes.mean() + INVISIBLE)) + DOUBT / len(rows) * surprise
-
-    return min((Kernel(*pair) for pair in product(LENGTHS, NUGGETS)), key=loss)
+def _own(distance: Any) -> Any:
+    """Covariance of the noise that is not white, of variance 1, likewise."""
+    relative = distance.__array_namespace__().minimum(distance / REACH, 1.0)
+    fade = (1 - relative) ** 2
+    return (1 - WHITE) * fade * fade * (1 + 4 * relative)
 
 
 def visible_change(problem: Problem, measured: Array) -> Array:

@@ -1,10 +1,10 @@
 """The prior: the spectrum expected at a colour before it is fitted, and the standard error of that expectation.
 
-p(x) = s(x) + d(x), the base spectrum and the kriged deviation of the atlas entries from it (docs/mathematics.md, 7).
+p(x) = s(x) + k(x) d(x), the base spectrum and the kriged deviation of the entries from it (docs/mathematics.md, 7).
 Moments are linear in the spectrum, and so is the colour under another light: deviations are those of coefficients.
 """
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,16 +14,16 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.fit.base import NO_FREEDOM, Base, learn_base
 from uplift.fit.entries import FittedEntries
-from uplift.fit.kriging import DEFAULT, MIN_ENTRIES, Kernel, Kriging, kernel_sums, krige, learn_kernel, visible_change
+from uplift.fit.kriging import DEFAULT, MIN_ENTRIES, Kernel, Kriging, kernel_sums, krige, learn_kriging, visible_change
 from uplift.fit.problem import Problem
 from uplift.models import evaluate
 from uplift.models.model import Model
 
 MAX_PASSES = 32
-DETERMINED = Kernel(length=6.0, nugget=0.0)
+DETERMINED = Kernel(length=6.0, noise=1e-3)
 """Kernel where the colour alone determines the spectrum: it only chooses among solutions."""
-NEIGHBOURHOOD = Kernel(length=LENGTH, nugget=0.0)
-"""Weights of `ExpectedError`."""
+LOOK_VARIANCE = 0.01
+"""Variance of the noise of a look relative to that of entries."""
 SHRINK = 0.7
 """Factor of a deviation that leaves the space of valid coefficients or is `STEEP`, repeated until neither holds."""
 MAX_SHRINKS = 16
@@ -48,17 +48,18 @@ class Prior:
     left_out: Array | None = None
 
     def __call__(self, rgb: Array) -> Array:
-        """Multipliers (n, C) expected at linear RGB (n, 3); at an entry, nearly those of the entry."""
+        """Multipliers (n, C) expected at linear RGB (n, 3)."""
         coefficients = self.base.coefficients(rgb)
         if self.kriging is None:
             return self.model.from_storage(coefficients)
-        # c = s(x) + d(x), as multipliers
-        return _bounded(self.model, coefficients, self.kriging(rgb_to_lab(self.sensor, rgb)))
+        # c = s(x) + k d(x), as multipliers
+        deviation = self.base.brightness(rgb) * self.kriging(rgb_to_lab(self.sensor, rgb))
+        return _bounded(self.model, coefficients, deviation)
 
     def describe(self) -> dict[str, float]:
         """Return the learnt parameters of the kriging, for the provenance of cubes; empty without an atlas."""
         bound = {} if self.errors is None else {"error_bound": self.errors.radii.bound / self.errors.radii.standard}
-        return {} if self.kriging is None else asdict(self.kriging.kernel) | bound
+        return {} if self.kriging is None else self.kriging.kernel._asdict() | bound
 
     def standard_error(self, rgb: Array) -> Array | None:
         """ΔE00 (n,) within which 68 % of measurements are expected to lie from answers to linear RGB (n, 3).
@@ -68,17 +69,23 @@ class Prior:
         if self.errors is None:
             return None
         lab = rgb_to_lab(self.sensor, rgb)
-        sums = kernel_sums(lab, self.errors.locations, self.errors.columns, NEIGHBOURHOOD)
+        none = np.zeros(len(self.errors.locations))
+        sums = kernel_sums(lab, self.errors.locations, self.errors.columns, LENGTH, none)
         # Expected square v(x) Σ k e² / Σ k + f, and the learnt radius of 68 % in its root
         squares = self.errors.combine(*sums)[:, 0] + self.errors.floor
         return np.asarray(self.errors.radii.standard * np.sqrt(squares))
 
-    def with_entries(self, entries: FittedEntries) -> "Prior":
-        """Krige the deviations of other entries with the same kernel; the standard errors stay."""
-        entries = entries.rows(np.lexsort(entries.rgb.T))  # of the same entries in any order, sums round alike
-        deviations = self.model.to_storage(entries.multipliers) - self.base.coefficients(entries.rgb)
-        kernel = DEFAULT if self.kriging is None else self.kriging.kernel
-        kriging, _ = krige(rgb_to_lab(self.sensor, entries.rgb), deviations, kernel)
+    def with_entries(self, entries: FittedEntries, looks: int) -> "Prior":
+        """Krige entries and then looks, which are certain, with the same kernel; the standard errors stay."""
+        measured = len(entries.rgb) - looks
+        # Of the same entries in any order, sums round alike.
+        order = np.lexsort([*entries.rgb.T, np.arange(len(entries.rgb)) >= measured])
+        deviations, _ = _deviations(self.model, self.base, entries.rows(order))
+        kernel, variances = DEFAULT, np.zeros(0)
+        if self.kriging is not None:
+            kernel, variances = self.kriging.kernel, self.kriging.variances
+        variances = np.append(variances, np.full(looks, LOOK_VARIANCE))
+        kriging, _ = krige(rgb_to_lab(self.sensor, entries.rgb[order]), deviations, kernel, variances)
         return replace(self, kriging=kriging)
 
 
@@ -93,22 +100,28 @@ def fit_prior(problem: Problem, entries: FittedEntries, base: Base | None = None
         return Prior(model, sensor, base)
     order = np.lexsort(entries.rgb.T)
     entries = entries.rows(order)
-    # Deviations d_i = c_i − s(x_i) of coefficients.
-    locations, expected = rgb_to_lab(sensor, entries.rgb), base.coefficients(entries.rgb)
-    deviations = model.to_storage(entries.multipliers) - expected
-    kernel = DETERMINED
-    if model.count != NO_FREEDOM:
-        kernel = learn_kernel(locations, deviations, visible_change(problem, entries.measured))
-    kriging, errors = krige(locations, deviations, kernel)
+    locations, (deviations, expected) = rgb_to_lab(sensor, entries.rgb), _deviations(model, base, entries)
+    if model.count == NO_FREEDOM:
+        kriging, errors = krige(locations, deviations, DETERMINED)
+    else:
+        brightness = base.brightness(entries.rgb)
+        visible = visible_change(problem, entries.measured) * brightness[:, None, None]
+        kriging, errors = learn_kriging(locations, deviations, visible)
     if len(entries.rgb) < MIN_ENTRIES:
         return Prior(model, sensor, base, kriging)
     # Each entry as the others predict it: its deviation less its leave-one-out error, moved to its exact colour.
-    start = _bounded(model, expected, deviations - errors)
+    start = _bounded(model, expected, base.brightness(entries.rgb) * (deviations - errors))
     left_out = problem.solve(entries.rgb, start, MAX_PASSES).multipliers
     spectra = evaluate(model, left_out, sensor.wavelengths)
     missed = delta_e_spectra(problem.error_light or problem.sensor.light, spectra, entries.measured)
     expected_errors = expected_error(locations, missed, entries.error)
     return Prior(model, sensor, base, kriging, expected_errors, spectra[np.argsort(order)])
+
+
+def _deviations(model: Model, base: Base, entries: FittedEntries) -> tuple[Array, Array]:
+    """Deviations d_i = (c_i − s(x_i)) / k(x_i) (E, C), relative to the brightening as those of families, and s(x_i)."""
+    expected = base.coefficients(entries.rgb)
+    return (model.to_storage(entries.multipliers) - expected) / base.brightness(entries.rgb), expected
 
 
 def _bounded(model: Model, expected: Array, deviation: Array) -> Array:

@@ -12,7 +12,6 @@ from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.observer import AXES, axis_nodes
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.fit.entries import FittedEntries
-from uplift.fit.kriging import DEFAULT
 from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
 from uplift.lattice import CORNERS, Lattice, weighted_sum
@@ -103,19 +102,14 @@ Blend = tuple[float, float]
 
 The weight changes linearly between them; the rest is the prior.
 """
+HALF_ENTRY: Blend = (0.5, 0.0)
+"""The default: shades of an entry, paint of nearly its colour, are like it, other materials near it like the prior.
+
+More of the entry is worse for other materials, and less is worse for shades (docs/fidelity.md). Corners of coarse
+lattices whose colour is another one start from the prior alone.
+"""
 FULL_ENTRY: Blend = (1.0, 1.0)
 """Tódová 2020, section 3.1.2."""
-
-
-def learnt_blend(prior: Prior) -> Blend:
-    """Return the blend of ½ + ½ min(ν / 0.3, 1) near an entry, with the learnt nugget ν, and 0 far from it.
-
-    Entries of an atlas with a small nugget are predicted by others. Materials of such an atlas between its entries are
-    nearer to the prior, and only half of an entry's own deviation is expected at the corners. Corners of coarse
-    lattices whose colour is another one start from the prior alone.
-    """
-    nugget = DEFAULT.nugget if prior.kriging is None else prior.kriging.kernel.nugget
-    return (1 + min(nugget / DEFAULT.nugget, 1)) / 2, 0.0
 
 
 def initial_guess(points: Indices, rgb: Array, prior: Prior, seeds: Seeds, entries: Array, blend: Blend) -> Array:

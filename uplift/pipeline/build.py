@@ -31,11 +31,11 @@ from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.seeds import (
     DIMS,
     FULL_ENTRY,
+    HALF_ENTRY,
     Blend,
     choose_lattice,
     half_widths,
     initial_guess,
-    learnt_blend,
     outside_half_widths,
     seed,
 )
@@ -162,8 +162,8 @@ def build(
         With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and the lattice.
     seed_corners : bool, default False
         Start all eight corners of the cell of each atlas entry from the entry, as Tódová 2020 does. By default, seven
-        of them start between entry and prior, with a weight of the entry from ½ to 1 that the nugget of the atlas
-        determines, and less, down to 0, at colours unlike the entry's. ``growth="neighbours"`` always does.
+        of them start half-way between entry and prior, and at colours unlike the entry's nearer to the prior.
+        ``growth="neighbours"`` always does.
     growth : {"outward", "coarse-to-fine", "neighbours"}, default "outward"
         Order in which lattice points are fitted: outward from the atlas entries, in shells, or from a coarse lattice to
         finer ones. Both start from the spectrum that the atlas lets expect at a colour, and have the same answers.
@@ -322,7 +322,7 @@ def _build(
         targets, constraints, prior = targets.fit(problem, constraints, prior)
 
     # The lattice, the boxes of the entries in it (8), and the nodes that start from entries: c = w c_i + (1 − w) c(x).
-    blend = FULL_ENTRY if options.seed_corners or neighbours else learnt_blend(prior)
+    blend = FULL_ENTRY if options.seed_corners or neighbours else HALF_ENTRY
     if options.dim == AUTO:
         options = _choose_lattice(options, problem, constraints, prior, blend)
     lattice, rgb = Lattice(observers.axis_nodes(options.axis, int(options.dim))), constraints.at_nodes.rgb
@@ -357,7 +357,7 @@ def _build(
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
         **spectra.describe_atlas(atlas, measured.names),
-        "prior": prior.describe() and {**prior.describe(), "corner_share": blend[0]},
+        "prior": prior.describe(),
         "improvements": [{"step": step, "tried": tried, "mended": fixed} for step, tried, fixed in improvements],
         **({} if scene is None else {"scene": scene.describe()}),
         "libraries": [{"name": library.name, "digest": library.digest} for library in libraries],

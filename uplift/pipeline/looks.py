@@ -70,7 +70,7 @@ class LookTargets:
             at_entries = join_entries(entries.at_entries, fitted._replace(error=errors))
         names = (*entries.names, *(look.name for look in self.looks))
         constraints = Constraints(names, entries.entry_model, at_nodes, at_entries, len(self.looks))
-        return replace(self, goals=goals, designs=designs), constraints, prior.with_entries(at_nodes)
+        return replace(self, goals=goals, designs=designs), constraints, prior.with_entries(at_nodes, len(self.looks))
 
     def describe(self, table: AtlasTable, model: Model, sensor: Sensor) -> dict[str, Any]:
         """Return what a cube records of its looks, in JSON values, and warn of those that its answers miss."""
