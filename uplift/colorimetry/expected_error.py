@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, blocks
 
 LENGTH = 6.0
 """Length in CIE L*a*b* of the weights exp(−ΔE / length) of the errors of entries around a colour."""
@@ -85,20 +85,28 @@ def expected_products(
 
     Shapes: ``locations`` (E, 3), ``left_out``, ``kept`` (E,), ``left_out_products``, ``kept_products`` (E, K).
     """
+
     # Weights k = exp(−ΔE / length) of the other entries, and the variance v = 1 − k² that a left-out entry has.
-    weights = np.exp(_distances(locations, locations) / -LENGTH)
-    np.fill_diagonal(weights, 0)
-    variance = np.maximum(1 - weights.max(axis=1) ** 2, MIN_VARIANCE)
+    def weighted(columns: Array) -> tuple[Array, Array]:
+        sums, nearest = np.empty((len(locations), columns.shape[1])), np.empty(len(locations))
+        for part in blocks(len(locations), max(BLOCK_NUMBERS // len(locations), 1)):
+            weights = np.exp(_distances(locations[part], locations) / -LENGTH)
+            weights[np.arange(len(weights)), np.arange(part.start, part.start + len(weights))] = 0
+            sums[part], nearest[part] = weights @ columns, weights.max(axis=1)
+        return sums, nearest
+
+    total, nearest = (each.ravel() for each in weighted(np.ones((len(locations), 1))))
+    variance = np.maximum(1 - nearest**2, MIN_VARIANCE)
     floor = (kept**2).mean()
     # Part of each square that the other entries explain, per unit of variance: (e² − f) / v e².
     share = np.maximum(1 - floor / np.maximum(left_out**2, TINY), 0) / variance
     products, product_floor = left_out_products * share[:, None], kept_products.mean(axis=0)
 
     def expected(squares: Array, remaining: Array) -> Array:
-        sums = (weights @ squares).T + PRIOR_COUNT * squares.mean(axis=0)[..., None]
-        return (variance * (sums / (weights.sum(axis=1) + PRIOR_COUNT))).T + remaining
+        sums = weighted(squares)[0] + PRIOR_COUNT * squares.mean(axis=0)
+        return variance[:, None] * sums / (total + PRIOR_COUNT)[:, None] + remaining
 
-    roots = np.sqrt(expected(left_out**2 * share, floor))
+    roots = np.sqrt(expected((left_out**2 * share)[:, None], floor))[:, 0]
     radii = Radii(*learn_radii(left_out / np.maximum(roots, TINY), COVERAGE))
     columns = np.concatenate([products, np.ones((len(products), 1))], axis=1)
     return ExpectedError(locations, columns, product_floor, expected(products, product_floor), radii)
@@ -149,8 +157,6 @@ def familiar_distance(locations: Array) -> float:
 
 def _distances(first: Array, second: Array) -> Array:
     """ΔE*ab (n, m) by components, as sums of squares would cancel."""
-    squares = np.zeros((len(first), len(second)))
-    for axis in range(3):
-        difference = first[:, axis, None] - second[None, :, axis]
-        squares += difference * difference
-    return np.sqrt(squares)
+    from scipy.spatial.distance import cdist
+
+    return np.asarray(cdist(first, second))

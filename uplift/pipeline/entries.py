@@ -125,9 +125,14 @@ def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, Measu
 
 def fit_constraints(problem: Problem, entry_model: Model, entries: MeasuredEntries) -> Constraints:
     """Fit measured entries by the models of nodes and of entries, which may be the same."""
-    at_nodes = at_entries = fit_entries(problem, entries.reflectances, entries.rgb)
-    if entry_model != problem.model:
-        at_entries = fit_entries(replace(problem, model=entry_model), entries.reflectances, entries.rgb)
+    order = np.lexsort(entries.rgb.T)  # in one order, whatever that of the atlas: rounding depends on it
+
+    def fitted(model: Model) -> FittedEntries:
+        found = fit_entries(replace(problem, model=model), entries.reflectances[order], entries.rgb[order])
+        return found.rows(np.argsort(order))
+
+    at_nodes = fitted(problem.model)
+    at_entries = at_nodes if entry_model == problem.model else fitted(entry_model)
     return Constraints(entries.names, entry_model, at_nodes, at_entries)
 
 
