@@ -73,8 +73,8 @@ def average_close(locations: Array, deviations: Array) -> Points:
     point = point.ravel()
     order = np.argsort(point, kind="stable")
     starts = np.cumsum(counts) - counts
-    means = (np.add.reduceat(each[order], starts) / counts[:, None] for each in (locations, deviations))
-    return Points(*means, counts.astype(float), point)
+    location, deviation = (np.add.reduceat(each[order], starts) / counts[:, None] for each in (locations, deviations))
+    return Points(location, deviation, counts.astype(float), point)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,8 +109,8 @@ def krige(lab: Array, deviations: Array, kernel: Kernel, variances: Array | None
     own = spread * _own(distance) * spread[:, None]
     precision = np.linalg.inv(_shared(distance, kernel.length) + own + np.diag(white))
     weights = precision @ points.deviations
-    # A point of n entries answers its mean less w ν v u / n, where u is its weight, and gives the part h / n of its own
-    # deviation to an entry of it, h = 1 − w ν v K⁻¹_ii / n: without itself, the error of an entry is r / (1 − h / n).
+    # A point of n entries answers its mean less w ν v u / n, where u is its weight, and gives the part h / n of the
+    # deviation of an entry to this entry, h = 1 − w ν v K⁻¹_ii / n: without itself, the error of an entry is r / (1 − h / n).
     residuals = deviations - (points.deviations - white[:, None] * weights)[points.point]
     others = 1 - (1 - white * np.diag(precision)) / points.counts
     return Kriging(kernel, points.locations, weights, noise, variances), residuals / others[points.point, None]

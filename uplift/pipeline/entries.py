@@ -125,7 +125,7 @@ def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, Measu
 
 def fit_constraints(problem: Problem, entry_model: Model, entries: MeasuredEntries) -> Constraints:
     """Fit measured entries by the models of nodes and of entries, which may be the same."""
-    order = np.lexsort(entries.rgb.T)  # in one order, whatever that of the atlas: rounding depends on it
+    order = np.lexsort(entries.rgb.T)  # not in that of the atlas, on which rounding would depend
 
     def fitted(model: Model) -> FittedEntries:
         found = fit_entries(replace(problem, model=model), entries.reflectances[order], entries.rgb[order])
