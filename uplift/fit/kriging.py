@@ -110,7 +110,7 @@ def krige(lab: Array, deviations: Array, kernel: Kernel, variances: Array | None
     precision = np.linalg.inv(_shared(distance, kernel.length) + own + np.diag(white))
     weights = precision @ points.deviations
     # A point of n entries answers its mean less w ν v u / n, where u is its weight, and gives the part h / n of the
-    # deviation of an entry to this entry, h = 1 − w ν v K⁻¹_ii / n: without itself, the error of an entry is r / (1 − h / n).
+    # deviation of an entry to this entry, h = 1 − w ν v K⁻¹_ii / n: without itself, its error is r / (1 − h / n).
     residuals = deviations - (points.deviations - white[:, None] * weights)[points.point]
     others = 1 - (1 - white * np.diag(precision)) / points.counts
     return Kriging(kernel, points.locations, weights, noise, variances), residuals / others[points.point, None]
