@@ -157,6 +157,8 @@ def familiar_distance(locations: Array) -> float:
 
 def _distances(first: Array, second: Array) -> Array:
     """ΔE*ab (n, m) by components, as sums of squares would cancel."""
-    from scipy.spatial.distance import cdist
-
-    return np.asarray(cdist(first, second))
+    squares = np.zeros((len(first), len(second)))
+    for axis in range(3):
+        difference = first[:, axis, None] - second[None, :, axis]
+        squares += difference * difference
+    return np.sqrt(squares)
