@@ -98,7 +98,7 @@ def test_verbose_prints_every_round_and_storing(run, home):
         ("-o .", "output"),
         ("-o mine", "file-exists"),
         ("--dim 1", "option"),
-        ("--dim 1000000000000", "option"),
+        ("--dim 1000000000000", "out-of-memory"),
         ("--illuminant D66", "unknown-name"),
         ("--space no/where", "unknown-name"),
         ("--observer CIE", "unknown-name"),

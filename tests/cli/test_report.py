@@ -19,7 +19,7 @@ def cube(home, cubes, macbeth):
 
 def test_page_is_written_to_the_working_folder(run, home, cube):
     result = run("report", cube)
-    assert result.stdout.startswith("macbeth-8.html: 0 nodes over the threshold, 23 entries, ")
+    assert result.stdout.startswith("macbeth-8.html: 0 nodes over the threshold, 24 entries, ")
     assert result.stdout.count("\n") == 1
     assert result.stderr == ""
     text = (home / "macbeth-8.html").read_text(encoding="utf-8")
@@ -33,7 +33,7 @@ def test_json_goes_to_standard_output_or_to_a_file(run, ask, home, cube):
     assert found["cube"] == cube
     assert found["lights"] == ["D65", "A"]
     assert found["bytes"] == (home / cube).stat().st_size
-    assert len(found["entries"]) == 23
+    assert len(found["entries"]) == 24
     run("report", cube, *SMALL, "--format", "json", "-o", "numbers.json")
     assert json.loads((home / "numbers.json").read_text(encoding="utf-8")) == found
     assert not (home / "macbeth-8.html").exists()

@@ -42,7 +42,7 @@ def test_sequences_continue_after_an_invalid_image(run, shown, frames, cubes):
     (warning,) = warning_lines(result)
     assert re.search(r"shot\.1\.exr: \d+ of 30 pixels .* by up to 0\.9", warning)
     error = shown.pop().error
-    assert (error.code, error.path.name) == ("file-unreadable", "shot.2.exr")
+    assert (error.code, error.path.name) == ("texture", "shot.2.exr")
     assert sorted(path.name for path in (frames / "out").iterdir()) == ["shot.0.exr", "shot.1.exr"]
 
 

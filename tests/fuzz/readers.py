@@ -169,16 +169,16 @@ def use_palette(path: Path) -> None:
 
 
 ATLAS, TEXTURE = ROOT / "atlases" / "macbeth.txt", ROOT / "docs" / "plan" / "page.png"
-SCENE_FILE = f"""# a kitchen
-textures = ["{TEXTURE}", "{TEXTURE.parent}/*.png"]
-atlases = "{ATLAS}"
+SCENE_FILE = b"""# a kitchen
+textures = ["texture.png", "*.png"]
+atlases = "atlas.txt"
 lights = ["D65", "FL11"]
 tolerance = 0.5
 quantile = 0.9
 encoding = "auto"
 space = "sRGB"
 illuminant = "D65"
-""".encode()
+"""
 
 
 @functools.cache
@@ -344,6 +344,14 @@ def use_image(path: Path) -> None:
         convert(_Same(observer.sensor(), "half", "auto", "clip", (), {}), path, Path(out) / "out.exr")
 
 
+def use_scene(path: Path) -> None:
+    """Read a scene file next to its texture and atlas."""
+    for name, file in (("texture.png", TEXTURE), ("atlas.txt", ATLAS)):
+        if not path.with_name(name).exists():
+            path.with_name(name).symlink_to(file)
+    read_scene_file(path).light_sources()
+
+
 TARGETS = (
     mutated("atlas text", use_atlas, lambda: ART_SEEDS),
     mutated("atlas table", use_atlas, lambda: TABLE_SEEDS),
@@ -351,7 +359,7 @@ TARGETS = (
     mutated("colour table", use_colours, lambda: COLOUR_SEEDS),
     mutated("chart table", use_chart, _chart),
     mutated("palette", use_palette, lambda: PALETTE_SEEDS),
-    mutated("scene file", lambda path: read_scene_file(path).light_sources(), lambda: (SCENE_FILE,)),
+    mutated("scene file", use_scene, lambda: (SCENE_FILE,)),
     mutated("plan", read_plan, _plan),
     Target("cube, corrupted bytes", _corrupted, use_cube),
     Target("cube, valid digest", _forged, use_cube),

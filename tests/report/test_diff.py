@@ -44,7 +44,7 @@ def test_a_cube_does_not_differ_from_itself(small_cube):
     assert found.largest == 0
     assert found.is_within(0)
     assert not any(each.worst(5).size for each in found.sets)
-    assert found.pairs.names == small_cube.data.atlas.names
+    assert found.pairs.names == small_cube.data.atlas.with_outside.names
 
 
 def test_the_node_that_changed_is_the_worst(small_cube, changed):
@@ -60,16 +60,18 @@ def test_the_node_that_changed_is_the_worst(small_cube, changed):
 
 def test_entries_are_compared_by_name(small_cube, plain_cube):
     found = diff_cubes({"a": small_cube, "b": plain_cube}, LIGHTS)
-    assert found.pairs.removed == small_cube.data.atlas.names
+    names = small_cube.data.atlas.with_outside.names
+    assert found.pairs.removed == names
     assert not found.is_within(100)
-    assert diff_cubes({"a": plain_cube, "b": small_cube}, LIGHTS).pairs.added == small_cube.data.atlas.names
+    assert diff_cubes({"a": plain_cube, "b": small_cube}, LIGHTS).pairs.added == names
     # Renamed entries are compared with those that now have their names.
     names = (*reversed(small_cube.data.atlas.names),)
     renamed = Cube(replace(small_cube.data, atlas=replace(small_cube.data.atlas, names=names)))
     found = diff_cubes({"a": small_cube, "b": renamed}, LIGHTS)
+    assert found.pairs.names[-1] == "cyan"  # outside the space, and not renamed
     nm = small_cube.data.sensor.wavelengths
     spectra = small_cube.data.entry_spectra.reflectance(np.arange(len(names)), nm)
-    np.testing.assert_allclose(found.entries.delta_e[:, 0], delta_e_spectra(light("D65"), spectra, spectra[::-1]))
+    np.testing.assert_allclose(found.entries.delta_e[:-1, 0], delta_e_spectra(light("D65"), spectra, spectra[::-1]))
 
 
 def test_entries_outside_the_space_are_compared(cyan_cube):

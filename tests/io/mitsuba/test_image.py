@@ -106,9 +106,9 @@ def test_only_encoded_files_are_decoded_and_layers_are_read(mi, spectrum, small_
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"wrap_mode": "round"}, "unknown wrap_mode 'round'; use one of repeat, mirror, clamp"),
+        ({"wrap_mode": "round"}, "unknown wrap_mode 'round'"),
         ({"image": 2 * IMAGE, "out_of_gamut": "error"}, "set the property out_of_gamut to clip"),
-        ({"out_of_gamut": "ignore"}, "set the property out_of_gamut to error, clip"),
+        ({"out_of_gamut": "ignore"}, "unknown .*'ignore'"),
     ],
 )
 def test_invalid_properties_raise(texture, options, message):

@@ -40,7 +40,7 @@ def test_processes_and_a_dask_cluster(workers, jobs, small_cube, colours):
         results = sorted(texture.convert_all(jobs, **options), key=lambda result: result.source)
     assert [result.source for result in results] == [job.source for job in jobs]
     assert isinstance(results[1], texture.Failure)
-    assert (results[1].error.code, results[1].error.path) == ("file-unreadable", jobs[1].source)
+    assert (results[1].error.code, results[1].error.path) == ("texture", jobs[1].source)
     assert not jobs[1].target.exists()
     names = [f"moment.{index:02}" for index in range(9)]
     for frame in (0, 2):
