@@ -20,7 +20,6 @@ from uplift.lab.study.held_out import (
     local_linear,
     split_records,
 )
-from uplift.lookup.refine import with_colours
 from uplift.pipeline.build import build
 
 GRID = observer.grid()
@@ -97,12 +96,12 @@ def test_local_linear_has_the_least_leave_one_out_error_and_the_queried_colours(
     """Compared with leaving out one by one."""
     monkeypatch.setattr(held_out, "BANDWIDTHS", (10.0, 40.0))
     monkeypatch.setattr(held_out, "RIDGES", (1e-6, 1e-2))
-    some, wavelengths = known[:20], data.sensor.wavelengths
+    some = known[:20]
     colours = data.sensor.rgb(some)
 
     def predict(known, rgb, smoothing):
         spectra = np.clip(held_out.regress(data.sensor, known, rgb, *smoothing), 1e-4, 1 - 1e-4)
-        return with_colours(data, spectra, spectra, rgb, wavelengths)
+        return held_out.with_least_change(data, spectra, rgb)
 
     def slow(smoothing):
         found = [

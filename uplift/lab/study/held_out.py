@@ -19,7 +19,8 @@ from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.cube import CubeData
 from uplift.fit.families import families_with
 from uplift.lookup import Cube
-from uplift.lookup.refine import with_colours
+from uplift.lookup.refine import FIRST_DAMPING, MAX_STEPS
+from uplift.models.minimum_norm import forward_map, minimum_norm_step
 from uplift.pipeline.build import build
 from uplift.report.measures import check_calibration
 
@@ -152,13 +153,30 @@ def local_linear(data: CubeData, known: Array, rgb: Array) -> Array:
 
     def predict(queries: Array, width: float, ridge: float, leave_out: bool = False) -> Array:
         spectra = np.clip(regress(data.sensor, known, queries, width, ridge, leave_out), LOWEST, 1 - LOWEST)
-        return with_colours(data, spectra, spectra, queries, data.sensor.wavelengths)
+        return with_least_change(data, spectra, queries)
 
     def error(smoothing: tuple[float, float]) -> float:
         spectra = predict(colours, *smoothing, leave_out=True)
         return float(np.mean([delta_e_spectra(light, spectra, known) for light in lights]))
 
     return predict(rgb, *min(product(BANDWIDTHS, RIDGES), key=error))
+
+
+def with_least_change(data: CubeData, spectra: Array, rgb: Array) -> Array:
+    """Move spectra (n, N) to linear RGB (n, 3) by multipliers that are added to them and change them least."""
+    model, sensor = data.model, data.sensor
+    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
+    linear, damping = model.from_reflectance(spectra.T), np.zeros(len(rgb))
+    missed = rgb.T - sensor.matrix @ spectra.T
+    for _ in range(MAX_STEPS):
+        with np.errstate(over="ignore", invalid="ignore"):  # overflowing steps are rejected
+            trial = linear + forward.basis @ minimum_norm_step(forward, linear, missed, damping)
+            left = rgb.T - sensor.matrix @ model.to_reflectance(trial)
+        # As by Levenberg and Marquardt: the damping falls after a step that helped, and rises after one that did not.
+        better = (left**2).sum(axis=0) < (missed**2).sum(axis=0)
+        linear, missed = np.where(better, trial, linear), np.where(better, left, missed)
+        damping = np.where(better, damping / 10, np.maximum(10 * damping, FIRST_DAMPING))
+    return np.asarray(model.to_reflectance(linear).T)
 
 
 def regress(sensor: Sensor, known: Array, rgb: Array, width: float, ridge: float, leave_out: bool = False) -> Array:
