@@ -10,7 +10,7 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.observer import AXES, axis_nodes
-from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.arrays import Array, Indices, Mask, blocks
 from uplift.fit.entries import FittedEntries
 from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
@@ -26,6 +26,8 @@ SAME_COLOUR = 1e-6
 DIMS = (8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128)
 """Lattices that `choose_lattice` tries."""
 MAX_PASSES = 32
+BLOCK = 64
+"""Entries whose distances from all others are in memory at once."""
 
 
 def half_widths(lattice: Lattice, rgb: Array) -> Array:
@@ -48,14 +50,27 @@ def outside_half_widths(lattice: Lattice, rgb: Array) -> Array:
 
 def _half_widths(steps: Array) -> Array:
     """Half widths (E,) of the boxes around positions (E, 3) in lattice steps."""
-    widths, apart = np.zeros(len(steps)), np.zeros((len(steps), len(steps)))
-    for row, step in zip(apart, steps, strict=True):
-        row[:] = np.abs(steps - step).max(axis=1)
-    unique = ~np.tril(apart <= SAME_COLOUR, -1).any(axis=1)
-    np.fill_diagonal(apart, np.inf)
-    nearest = apart[np.ix_(unique, unique)].min(axis=1, initial=np.inf)
+    unique = np.ones(len(steps), dtype=bool)
+    for rows in blocks(len(steps), BLOCK):
+        same = _apart(steps[rows], steps) <= SAME_COLOUR
+        unique[rows] = ~np.tril(same, rows.start - 1).any(axis=1)  # no earlier entry
+    widths, own = np.zeros(len(steps)), steps[unique]
+    nearest = np.empty(len(own))
+    for rows in blocks(len(own), BLOCK):
+        apart = _apart(own[rows], own)
+        np.fill_diagonal(apart[:, rows], np.inf)
+        nearest[rows] = apart.min(axis=1, initial=np.inf)
     widths[unique] = np.minimum(MAX_HALF_WIDTH, nearest / 2)
     return widths
+
+
+def _apart(some: Array, others: Array) -> Array:
+    """Largest differences (n, m) of a component between positions (n, 3) and (m, 3)."""
+    apart = np.zeros((len(some), len(others)))
+    for one, other in zip(some.T, others.T, strict=True):  # faster than a maximum over an axis of three
+        difference = np.subtract.outer(one, other)
+        np.maximum(apart, np.abs(difference, out=difference), out=apart)
+    return apart
 
 
 @dataclass(frozen=True, eq=False, repr=False)
