@@ -52,8 +52,8 @@ class Language:
 
 
 LANGUAGES = {
-    "c": Language(".h", ("c.h",), ".c", 16, ("header", "file")),
-    "cuda": Language(".cuh", ("cuda.cuh",), ".cuh"),
+    "c": Language(".h", ("c.h", "host.c"), ".c", 16, ("header", "file")),
+    "cuda": Language(".cuh", ("cuda.cuh", "host.c"), ".cuh"),
     "glsl": Language(".glsl", ("glsl.glsl", "shader.glsl"), ".glsl", vector="vec"),
     "hlsl": Language(".hlsl", ("hlsl.hlsl", "shader.glsl"), ".glsl", vector="float"),
 }
