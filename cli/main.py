@@ -17,18 +17,42 @@ from .output.diagnostics import BAD_INPUT, INTERNAL_ERROR, CommandFailure, show_
 from .startup import hide_drawing_notes
 
 GROUPS = {
-    "First steps": ("relight", "samples"),
-    "Cubes": ("build", "query", "bounds", "texture", "mix", "export", "lights"),
-    "Inspection": ("info", "slices", "report", "check", "diff", "atlas"),
-    "Scenes": ("plan", "wavelengths", "compare", "palette"),
-    "Measurements": ("chart", "study"),
+    "Every day": {
+        "relight": "Show images under other lights, as RGB and as spectra.",
+        "build": "Build a cube from measured spectra.",
+        "query": "Query the spectrum of a colour.",
+        "texture": "Convert images to spectral textures (OpenEXR).",
+        "export": "Write a cube in a format that other tools read.",
+        "report": "Assess a cube: failures, errors, and every atlas entry.",
+    },
+    "Cubes": {
+        "info": "Show the contents and provenance of a cube.",
+        "slices": "Write the blue slices of a cube as images.",
+        "check": "Rebuild stored cubes and compare the results.",
+        "diff": "Compare the answers of two cubes.",
+    },
+    "Materials": {
+        "atlas": "List the entries of atlas files.",
+        "bounds": "Compute the bounds of all reflectances of a colour.",
+        "mix": "Mix colours as spectra: paints, dyes, filters, lights.",
+        "palette": "Design the unknown spectra of a palette.",
+    },
+    "Scenes and lights": {
+        "plan": "Choose the cheapest spectra that a scene's tolerance allows.",
+        "wavelengths": "Choose the wavelengths at which a renderer samples.",
+        "compare": "Compare representations of spectra by error and cost.",
+        "lights": "Give lights of any brightness spectral powers.",
+    },
+    "Laboratory": {
+        "chart": "Measure the speed and accuracy of upsampling methods.",
+        "study": "Measure models, solver, and the propagation of errors.",
+        "samples": "Copy the files of the examples to a folder.",
+    },
 }
-"""Commands by headings of the help."""
+"""Summaries of the commands by headings of the help."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
 QUICK = ("query", "help")
 """Commands that should start fast."""
-SUMMARY_LENGTH = 200
-"""Characters of a command's summary in the help; enough for all of them."""
 CLOSED_PIPE = 1
 """Exit code of a command whose reader closed the pipe."""
 
@@ -49,10 +73,8 @@ class LazyGroup(click.Group):
         """Write a section of the help for each group."""
         width = max(map(len, COMMANDS))
         for title, names in GROUPS.items():
-            commands = ((name, self.get_command(ctx, name)) for name in names)
-            rows = [(f"{name:<{width}}", each.get_short_help_str(SUMMARY_LENGTH)) for name, each in commands if each]
             with formatter.section(title):
-                formatter.write_dl(rows)
+                formatter.write_dl([(f"{name:<{width}}", summary) for name, summary in names.items()])
 
     def main(self, *args: Any, **options: Any) -> Any:
         """Run the command line and exit.
@@ -119,5 +141,5 @@ def main(traceback: bool) -> None:
       uplift query 0.8 0.2 0.1 --format json
       uplift check macbeth-32.uplift
 
-    'uplift COMMAND --help' describes a command and all of its options, 'uplift help' lists further topics.
+    'uplift COMMAND --help' describes a command, and 'uplift help' lists further topics.
     """

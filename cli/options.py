@@ -5,8 +5,10 @@ Commands import this module and write ``@options.cube``.
 
 from __future__ import annotations
 
+import inspect
 import math
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Collection
 from functools import reduce
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
@@ -22,8 +24,59 @@ if TYPE_CHECKING:
     from uplift.common.arrays import Array
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+NEGATIVE_NUMBER = re.compile(r"-\.?\d")
+HELP_ALL = "uplift.help-all"
+"""Key of the context's ``meta`` while the whole help is printed."""
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
+
+
+class Command(click.Command):
+    """A command with many options, which reads '-0.1' as a number, not as an option.
+
+    ``--help`` shows the options of every day, by the names of their parameters, and the text before a form feed.
+    ``--help-all`` shows everything.
+    """
+
+    def __init__(self, *args: Any, everyday: Collection[str], **settings: Any) -> None:
+        super().__init__(*args, **settings)
+        self.everyday = everyday
+        self.params.append(
+            click.Option(
+                ["--help-all"],
+                is_flag=True,
+                is_eager=True,
+                expose_value=False,
+                callback=_print_all,
+                help="Show all options.",
+            )
+        )
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Mark negative numbers by a leading space before parsing."""
+        return super().parse_args(ctx, [f" {arg}" if NEGATIVE_NUMBER.match(arg) else arg for arg in args])
+
+    def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the text, after the form feed for --help-all only."""
+        short, _, rest = inspect.cleandoc(self.help or "").partition("\f")
+        formatter.write_paragraph()
+        with formatter.indentation():
+            formatter.write_text(short + rest if HELP_ALL in ctx.meta else short)
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options of every day, the last two of help, or all options."""
+        *own, help_all, help_option = self.get_params(ctx)
+        shown = [each for each in own if HELP_ALL in ctx.meta or each.name in self.everyday]
+        records = (each.get_help_record(ctx) for each in (*shown, help_all, help_option))
+        with formatter.section("Options"):
+            formatter.write_dl([record for record in records if record is not None])
+
+
+def _print_all(ctx: click.Context, param: click.Parameter, value: bool) -> None:
+    if value:
+        ctx.meta[HELP_ALL] = True
+        click.echo(ctx.get_help())
+        ctx.exit()
 
 
 class Number(click.ParamType):  # type: ignore[type-arg]

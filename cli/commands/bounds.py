@@ -10,7 +10,7 @@ import click
 from .. import options
 from ..output.answers import format_rgb, hex_code, patch
 from ..output.console import csv_writer, emit, make_table, print_fields, print_json_answers, say, show
-from .query import ColourCommand, QueryStream, ask, colour_options, result_object
+from .query import QueryStream, ask, colour_options, result_object
 
 if TYPE_CHECKING:
     from uplift.lookup import Bounds, Cube, QueryResult
@@ -21,7 +21,7 @@ DIVISIONS, SINGLE_DIVISIONS = 2, 3
 """Density of the directions of bounds: 162 of each of many colours, 642 of a single one."""
 
 
-@click.command("bounds", cls=ColourCommand)
+@click.command("bounds", cls=options.Command, everyday=("cube_path", "encoded", "lights", "style", "plot_path", "html"))
 @colour_options
 @options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
 @options.output_format("table", "json", "csv")

@@ -48,7 +48,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     return start, end
 
 
-@click.command("build")
+@click.command("build", cls=options.Command, everyday=("files", "output", "dim", "space", "coefficients", "force"))
 @options.atlas("Measured spectra")
 @options.scale
 @options.output("Cube to write. [default: named after atlas and dim, in the current folder]")
@@ -160,6 +160,12 @@ def command(
     Examples:
       uplift build --atlas macbeth --dim 32
       uplift build --atlas paints.csv --atlas fabrics.csv --coefficients 17 -o book.uplift
+      uplift build --atlas paints.csv --dim auto
+      uplift build --atlas macbeth --space ACEScg
+    \f
+
+    \b
+    More examples:
       uplift build --atlas paints.csv --dim auto --tolerance 1
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift

@@ -17,7 +17,6 @@ from ..inputs import find_input_space
 from ..output.answers import format_rgb, print_columns, sparkline
 from ..output.console import csv_writer, emit, print_fields, print_json_answers, say
 from .info import print_facts
-from .query import ColourCommand
 from .texture import as_tuple, convert, image_options
 
 if TYPE_CHECKING:
@@ -205,7 +204,7 @@ def texture(
     convert(settings, **images)
 
 
-@command.command("query", cls=ColourCommand)
+@command.command("query", cls=options.Command, everyday=("table_path", "encoded", "wavelengths", "style", "plot_path"))
 @click.argument("colour", nargs=-1)
 @table_option
 @options.input_file

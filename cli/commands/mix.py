@@ -25,7 +25,6 @@ from ..output.answers import (
 from ..output.console import emit, has_colours, print_fields, print_json, say
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
-from .query import ColourCommand
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -33,7 +32,11 @@ if TYPE_CHECKING:
     from uplift.lookup import Cube
 
 
-@click.command("mix", cls=ColourCommand)
+@click.command(
+    "mix",
+    cls=options.Command,
+    everyday=("kind", "thickness", "ground", "cube_path", "files", "plot_path", "over", "output"),
+)
 @click.argument("words", metavar="[PARTS:]COLOUR...", nargs=-1, required=True)
 @click.option(
     "--pigment", "kind", flag_value="pigment", default="pigment", help="Mix paints, which absorb and scatter."
@@ -139,6 +142,10 @@ def command(
       uplift mix --pigment 2:'#005fa0' 1:'#ffd200'
       uplift mix blue yellow --cube macbeth-32.uplift --plot ramp.png
       uplift mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
+    \f
+
+    \b
+    More examples:
       uplift mix --dye 1:'#d03060' 3:'#f0c000' --refractive-index 1.5 --thickness 2
       uplift mix '#e8c070' --surface-reflectance 0.04 --internal-reflectance 0.6
       uplift mix --dye '#d03060' --refractive-index 1.5 --plate transmitted

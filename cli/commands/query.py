@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import re
 import sys
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
@@ -36,19 +35,10 @@ if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.lookup import Cube, QueryResult
 
-NEGATIVE_NUMBER = re.compile(r"-\.?\d")
 PACKAGED = "packaged"
 """Name of the cube that answers without --cube."""
 LARGEST = 1e30
 """Limit of requested colours: ΔE00 of larger ones overflows."""
-
-
-class ColourCommand(click.Command):
-    """A command that reads '-0.1' as a number, not as an option."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Mark negative numbers by a leading space before parsing."""
-        return super().parse_args(ctx, [f" {arg}" if NEGATIVE_NUMBER.match(arg) else arg for arg in args])
 
 
 colour_options = options.stacked(
@@ -122,7 +112,9 @@ def ask(
     return stream, stream.results(blocks), path is None
 
 
-@click.command("query", cls=ColourCommand)
+@click.command(
+    "query", cls=options.Command, everyday=("cube_path", "encoded", "wavelengths", "lights", "style", "plot_path")
+)
 @colour_options
 @options.light("Illuminant under which colour and standard error are shown", "none")
 @options.output_format("table", "json", "csv")
@@ -156,6 +148,10 @@ def command(
       uplift query --cube macbeth-32.uplift '#cc3319' --plot red.png
       uplift query --encoded 204 51 25 --wavelengths 400:700:10 --format json
       uplift query --input colours.csv --format csv > spectra.csv
+    \f
+
+    \b
+    More examples:
       uplift query 1.4 0.3 -0.1 --out-of-gamut desaturate
       uplift query --input-space P3-D65 0.2 0.9 0.3 --out-of-gamut desaturate
       uplift query --xyz 0.05 0.2 0.1

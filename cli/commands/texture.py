@@ -52,7 +52,7 @@ image_options = options.stacked(
 """Images, their target, and how they are converted; for `convert`."""
 
 
-@click.command("texture")
+@click.command("texture", cls=options.Command, everyday=("target", "cube_paths", "mask", "kind", "depth", "force"))
 @image_options
 @click.option(
     "--cube",
@@ -107,6 +107,7 @@ def command(
     copied; colours multiplied by alpha, as in OpenEXR, are divided by it first and multiplied after. Several images, or
     a quoted pattern, go into the folder of --output.
 
+    \f
     Colours of an image in another RGB space than the cube's are converted. Its space is that of --input-space, or the
     one that the file states by colorInteropID, chromaticities, code points or an ICC profile.
 

@@ -17,7 +17,11 @@ if TYPE_CHECKING:
     from uplift.scene.wavelengths import Choice
 
 
-@click.command("wavelengths")
+@click.command(
+    "wavelengths",
+    cls=options.Command,
+    everyday=("count", "tolerance", "files", "lights", "style", "plot_path"),
+)
 @click.option("--count", metavar="N", type=options.Whole(), help="Number of wavelengths, 1 to 40.")
 @click.option(
     "--tolerance",

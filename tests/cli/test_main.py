@@ -35,6 +35,15 @@ def test_help_lists_every_command_under_a_heading(run):
     assert run("--version").stdout == f"uplift {uplift.__version__}\n"
 
 
+def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run):
+    short, full = run("build", "--help").stdout, run("build", "--help-all").stdout
+    every, shown = ({word for word in text.split() if word.startswith("--")} for text in (full, short))
+    assert {"--atlas", "--dim", "--help", "--help-all"} <= shown < every
+    assert max(map(len, run("--help").stdout.splitlines())) <= 80
+    command = main.get_command(click.Context(main), "build")
+    assert all(each.opts[-1] in full for each in command.params)
+
+
 def test_topics_are_listed_and_explained(run):
     words = ("70", "clip: ", "LED-B3", "refined", "1964", "ITU-R BT.2020")
     for topic, word in zip(TOPICS, words, strict=True):
