@@ -24,8 +24,8 @@ def test_the_answer_lies_inside(small_cube):
 
 def test_entries_are_metamers_of_their_colours(small_cube):
     """Measured spectra differ from the answers by no more than the largest difference."""
-    left_out = small_cube.data.atlas.left_out
-    spectra = left_out.measured[:20].astype(float)
+    measured = small_cube.data.atlas.measured
+    spectra = measured[:20].astype(float)
     found = bounds(small_cube, small_cube.data.sensor.rgb(spectra), FL11)
     differences = delta_e_spectra(FL11, spectra, found.reflectance)
     assert (differences <= found.largest.delta_e_2000).all()
@@ -43,6 +43,13 @@ def test_colours_outside_the_space_are_answered(plain_cube):
     found = bounds(plain_cube, rgb, FL11, divisions=1)
     np.testing.assert_allclose(plain_cube.data.sensor.rgb(found.reflectance), rgb, atol=1e-4)
     np.testing.assert_allclose(found.lab, lab(found.reflectance @ FL11.xyz.T, FL11.white))
+
+
+def test_the_likely_region_shrinks_towards_an_entry_outside_the_space(cyan_cube):
+    (entry,), reach = cyan_cube.data.outside_boxes.rgb, cyan_cube.data.outside_boxes.half_width[0]
+    rgb = np.array([entry, entry - [0.5 * reach, 0, 0], entry - [1.5 * reach, 0, 0]])
+    areas = np.sqrt(np.linalg.det(lab_errors(cyan_cube.data, FL11).covariance(rgb)[:, 1:, 1:]))
+    assert areas[0] < 0.5 * areas[1] < 0.5 * areas[2]
 
 
 def test_colours_without_reflectance_are_refused(plain_cube):

@@ -14,6 +14,7 @@ from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.solid import solid
 from uplift.common.errors import ColourError, UnknownNameError
+from uplift.cube import write
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube, query, query_xyz
 from uplift.lookup.blocks import BLOCK
@@ -124,14 +125,26 @@ def test_an_entry_outside_the_space_has_its_spectrum_and_its_colour(cyan_cube, d
     atlas, table = read_atlas(MACBETH), cyan_cube.data.atlas.outside
     measured = on_grid(atlas, cyan_cube.wavelengths)[[atlas.names.index("cyan")]]
     colour = xyz(cyan_cube, measured[0]).round(digits)
-    (answer,) = query_xyz(cyan_cube, [colour])
+    (answer,) = query_xyz(cyan_cube, [colour], lights=[light("FL11")])
     assert (answer.entry, answer.standard_error, answer.error_bound) == ("cyan", *table.error, *table.error)
     np.testing.assert_allclose(xyz(cyan_cube, answer.reflectance), colour, rtol=0, atol=1e-7)
     for name in (cyan_cube.data.error_illuminant, "FL11"):
         stored = cyan_cube.data.outside_spectra.reflectance(np.array([0]), cyan_cube.wavelengths)
         own, found = (delta_e_spectra(light(name), each, measured)[0] for each in (stored, answer.reflectance[None]))
         assert found == pytest.approx(own, abs=1e-5 if digits == 16 else 0.1)
+    assert answer.standard_errors == answer.error_bounds == {"FL11": pytest.approx(own, abs=1e-6)}
     assert without_outside(cyan_cube).data.outside_spectra is None
+
+
+def test_files_without_its_measurement_have_its_error_under_their_own_light(cyan_cube, tmp_path):
+    table = cyan_cube.data.atlas.outside
+    older = replace(cyan_cube.data, atlas=replace(cyan_cube.data.atlas, outside=replace(table, measured=None)))
+    for name, data, lights in (("new", cyan_cube.data, ["FL11"]), ("old", older, [])):
+        write(data, tmp_path / name)
+        at = data.sensor.xyz(np.array([*table.rgb, [0.2, 0.3, 0.4]]))
+        own, inside = query_xyz(uplift.load(tmp_path / name), at, lights=[light("FL11")])
+        assert (list(own.standard_errors), list(inside.standard_errors)) == (lights, ["FL11"])
+        assert own.standard_error == table.error[0]
 
 
 def test_a_sparse_cube_answers_an_entry_outside_its_space(cyan_cube):

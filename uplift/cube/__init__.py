@@ -1,7 +1,7 @@
 """The content of a cube, and the file that stores it."""
 
-from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
+from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
 from uplift.cube.file import contents, digest, read, write
 from uplift.cube.summary import summarise
 
-__all__ = ["AtlasTable", "CubeData", "EntrySpectra", "LeftOut", "contents", "digest", "read", "summarise", "write"]
+__all__ = ["AtlasTable", "CubeData", "EntrySpectra", "contents", "digest", "read", "summarise", "write"]

@@ -43,21 +43,6 @@ class EntrySpectra:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LeftOut:
-    """Atlas entries as measured, and as answered without them: evidence for the errors of answers.
-
-    Both are reflectances (M, N) at the wavelengths of the sensor, of all entries but looks. ``answered`` are those at
-    the colours of the entries, each predicted from the others.
-    """
-
-    measured: NDArray[np.float32]
-    answered: NDArray[np.float32]
-
-    def __repr__(self) -> str:
-        return f"LeftOut({len(self.measured)} entries)"
-
-
-@dataclass(frozen=True, eq=False, repr=False)
 class AtlasTable:
     """The E atlas entries that constrain a cube. The last ones may be looks."""
 
@@ -73,8 +58,10 @@ class AtlasTable:
     """(E,) ΔE00 between fitted and measured spectrum; for looks the standard error at their colours."""
     spectra: EntrySpectra | None = None
     """The entries with more coefficients than the nodes; None if they have as many."""
-    left_out: LeftOut | None = None
-    """None for a small atlas, and for files of earlier versions."""
+    measured: NDArray[np.float32] | None = None
+    """(M, N) measured reflectances at the wavelengths of the sensor; None for a small atlas and in earlier files."""
+    left_out: NDArray[np.float32] | None = None
+    """(M, N) reflectances at the colours of these entries, each predicted from the others; evidence for errors."""
     looks: int = 0
     """Number of looks: chosen spectra, of which no measurement is known."""
     outside: "AtlasTable | None" = None

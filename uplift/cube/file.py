@@ -20,7 +20,7 @@ from uplift.cube.container import (
     replace_file,
     require,
 )
-from uplift.cube.data import AtlasTable, CubeData, EntrySpectra, LeftOut
+from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
 from uplift.lattice import CORNERS, Lattice, PointTable, Status
 from uplift.models import from_description
 
@@ -28,7 +28,7 @@ FORMAT = "uplift cube"
 VERSION = 4
 KIND = Kind(FORMAT, (3, VERSION), "cube", foreign="not-a-cube")
 """Versions that are read. The entries of version 3 have as many coefficients as the nodes."""
-FEATURES = ("debug", "errors", "left-out", "camera", "sparse", "outside")
+FEATURES = ("debug", "errors", "left-out", "camera", "sparse", "outside", "outside-measured")
 """Optional parts of a file, in the order in which the metadata list them."""
 MAX_POINTS = 1 << 27
 """Points of the largest lattice of a sparse file, as a small file must not claim all memory."""
@@ -78,6 +78,7 @@ ARRAYS = {
     **{f"outside.{name}": stored for name, stored in OUTSIDE.items()},
     "atlas.measured": Stored("M N", SINGLE, 0, 1, feature="left-out"),
     "atlas.left_out": Stored("M N", SINGLE, 0, 1, feature="left-out"),
+    "outside.measured": Stored("O N", SINGLE, 0, 1, feature="outside-measured"),
 }
 """All arrays of a file by name. Letters as in docs/cube-file.md, and D for the number of nodes along an axis."""
 
@@ -144,14 +145,12 @@ def digest(data: CubeData) -> str:
 def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
     """Return the arrays by their names in the file, and the metadata without the digest."""
     atlas = data.atlas
-    measured, answered = (None, None) if atlas.left_out is None else (atlas.left_out.measured, atlas.left_out.answered)
     arrays = {
         "nodes": data.lattice.nodes,
         **{f"sensor.{name}": getattr(data.sensor, name) for name in SENSOR},
         **_table_arrays(atlas, "atlas"),
         **({} if atlas.outside is None else _table_arrays(atlas.outside, "outside")),
-        "atlas.measured": measured,
-        "atlas.left_out": answered,
+        "atlas.left_out": atlas.left_out,
         **{name: getattr(data.points, name) for name in POINTS},
     }
     tensors = {}
@@ -185,8 +184,8 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
 
 def _table_arrays(table: AtlasTable, prefix: str) -> dict[str, Any]:
     spectra = None if table.spectra is None else table.spectra.coefficients
-    arrays = table.rgb, table.coefficients, table.half_width, table.error, spectra
-    return {f"{prefix}.{name}": array for name, array in zip(TABLE, arrays, strict=True)}
+    arrays = table.rgb, table.coefficients, table.half_width, table.error, spectra, table.measured
+    return {f"{prefix}.{name}": array for name, array in zip((*TABLE, "measured"), arrays, strict=True)}
 
 
 def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
@@ -208,13 +207,13 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
         sizes[axis] = tensors[name].size
     check_arrays(tensors, schema, sizes)
     arrays: dict[str, Any] = {name: tensors[name] for name in schema}
-    has_left_out = "atlas.measured" in arrays
 
     def table(names: tuple[str, ...], prefix: str, **others: Any) -> AtlasTable:
         rgb, coefficients, half_width, error = (arrays[f"{prefix}.{name}"] for name in list(TABLE)[:-1])
         entries = arrays.get(f"{prefix}.{ENTRY_COEFFICIENTS}")
         spectra = None if entries is None else EntrySpectra(entry_model, entries)
-        return AtlasTable(names, rgb, coefficients, half_width, error, spectra, **others)
+        measured = arrays.get(f"{prefix}.measured")
+        return AtlasTable(names, rgb, coefficients, half_width, error, spectra, measured, **others)
 
     data = CubeData(
         model=model,
@@ -230,7 +229,7 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
         atlas=table(
             names,
             "atlas",
-            left_out=LeftOut(arrays["atlas.measured"], arrays["atlas.left_out"]) if has_left_out else None,
+            left_out=arrays.get("atlas.left_out"),
             looks=looks,
             outside=table(outside, "outside") if "outside.rgb" in arrays else None,
         ),

@@ -16,7 +16,6 @@ from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData
-from uplift.cube.data import LeftOut
 from uplift.lookup.interpolate import around
 from uplift.models import reflectance
 
@@ -51,16 +50,28 @@ class LightErrors:
 
 def light_errors(data: CubeData, light: Light) -> LightErrors:
     """Learn the standard errors under a light; `OptionError` without left-out entries."""
-    left_out, at = _left_out(data), data.sensor.wavelengths
-    missed = delta_e_spectra(light, left_out.answered, left_out.measured)
-    rows = np.arange(len(left_out.measured))
-    coefficients = data.atlas.coefficients[rows]
-    plain = delta_e_spectra(light, reflectance(data.model, coefficients, at), left_out.measured)
-    stored = delta_e_spectra(light, data.entry_spectra.reflectance(rows, at), left_out.measured)
+    measured, left_out = _evidence(data)
+    at, rows = data.sensor.wavelengths, np.arange(len(measured))
+    missed = delta_e_spectra(light, left_out, measured)
+    plain = delta_e_spectra(light, reflectance(data.model, data.atlas.coefficients[rows], at), measured)
+    stored = delta_e_spectra(light, data.entry_spectra.reflectance(rows, at), measured)
     expected = expected_error(data.entry_lab, missed, plain)
     entries = np.tile(np.array(expected.radii) * np.sqrt(expected.floor), (len(data.atlas.names), 1))
     entries[rows] = stored[:, None]
     return LightErrors(data, expected, entries)
+
+
+def outside_errors(data: CubeData, light: Light | None) -> Array:
+    """ΔE00 (O,) between stored and measured spectrum of the entries outside the RGB space, NaN if it is not known."""
+    table, spectra = data.atlas.outside, data.outside_spectra
+    if table is None or spectra is None:
+        return np.zeros(0)
+    if light is None or light.name == data.error_illuminant:
+        return table.error
+    if table.measured is None:
+        return np.full(len(table.names), np.nan)
+    stored = spectra.reflectance(np.arange(len(table.names)), data.sensor.wavelengths)
+    return delta_e_spectra(light, stored, table.measured)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -74,21 +85,26 @@ class LabErrors:
     """Mahalanobis distance in a* and b* that `LIKELY` of the materials like the atlas stay within. Normal: 2.45."""
 
     def covariance(self, rgb: Array) -> Array:
-        """Expected covariances (n, 3, 3) around the answers at linear RGB (n, 3) in [0, 1].
+        """Expected covariances (n, 3, 3) around the answers at linear RGB (n, 3), also outside [0, 1].
 
         Positive semidefinite; [:, 1:, 1:] is that of a* and b*.
         """
-        products = self.expected(rgb_to_lab(self.data.sensor, rgb)) + self.expected.floor
+        expected, hits = (
+            self.expected(rgb_to_lab(self.data.sensor, np.clip(rgb, 0, 1))),
+            self.data.outside_boxes.find(rgb),
+        )
+        expected[hits.rows] *= hits.lattice_weight[:, None] ** 2  # the share of the answer that no entry gives
+        products = expected + self.expected.floor
         return (self.expected.radii.scale**2 * products).reshape(-1, 3, 3)
 
 
 def lab_errors(data: CubeData, light: Light) -> LabErrors:
     """Learn the covariances in CIE L*a*b* under a light; `OptionError` without left-out entries."""
-    left_out = _left_out(data)
-    coefficients = data.atlas.coefficients[: len(left_out.measured)]
-    spectra = (left_out.answered, reflectance(data.model, coefficients, data.sensor.wavelengths))
-    errors = [delta_e_spectra(light, each, left_out.measured) for each in spectra]
-    differences = [_differences(light, each, left_out.measured) for each in spectra]
+    measured, left_out = _evidence(data)
+    coefficients = data.atlas.coefficients[: len(measured)]
+    spectra = (left_out, reflectance(data.model, coefficients, data.sensor.wavelengths))
+    errors = [delta_e_spectra(light, each, measured) for each in spectra]
+    differences = [_differences(light, each, measured) for each in spectra]
     expected = expected_products(data.entry_lab, *errors, *map(_products, differences))
     # d² = eᵀ Σ⁻¹ e of each entry, by the covariance Σ that the other entries let expect
     own = expected.radii.scale**2 * expected.left_out.reshape(-1, 3, 3)
@@ -97,15 +113,16 @@ def lab_errors(data: CubeData, light: Light) -> LabErrors:
     return LabErrors(data, expected, radius)
 
 
-def _left_out(data: CubeData) -> LeftOut:
-    if data.atlas.left_out is None:
+def _evidence(data: CubeData) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Reflectances (M, N) of the entries as measured, and as answered without each of them."""
+    if data.atlas.measured is None or data.atlas.left_out is None:
         raise OptionError(
             f"standard errors under other lights than {data.error_illuminant} need a cube with the left-out entries "
             "of its atlas",
             code="too-few-entries",
             hint="build the cube again, with an atlas of at least 8 entries",
         )
-    return data.atlas.left_out
+    return data.atlas.measured, data.atlas.left_out
 
 
 def _differences(light: Light, answered: NDArray[Any], measured: NDArray[Any]) -> Array:

@@ -81,6 +81,6 @@ def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", division
     spectra = reflectance_anywhere(cube, rgb, data.sensor.wavelengths, mode, ~in_unit_cube(rgb))
     xyz = spectra @ light.xyz.T
     errors = None if data.atlas.left_out is None else lab_errors(data, light)
-    covariance = None if errors is None else errors.covariance(np.clip(rgb, 0, 1))
+    covariance = None if errors is None else errors.covariance(rgb)
     radius = None if errors is None else errors.likely_radius
     return Bounds(light, spectra, xyz, volumes, largest_difference(volumes, xyz), covariance, radius)

@@ -10,6 +10,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.sensor import Light, as_rgb
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError, unknown_name
+from uplift.cube import CubeData
 from uplift.lattice import Status
 from uplift.lookup.blocks import BLOCK, as_colours, as_wavelengths
 from uplift.lookup.cube import Cube, expected_errors
@@ -132,30 +133,26 @@ def _block(
     xyz = at_sensor @ sensor.light.xyz.T
     delta_e = delta_e_rgb(sensor, answered, round_trip)
     relit = {light.name: at_sensor @ light.xyz.T for light in lights}
-    # Standard errors and error bounds (n, 2), under the build illuminant and under each light.
+    # Outside the RGB space a colour is that of an entry where its spectrum alone answers.
+    entries, outside_names = _outside_entries(data, answered), data.atlas.outside.names if data.atlas.outside else ()
+    # Standard errors and error bounds (n, 2) under the light of the cube's errors and under each light, by name.
+    wanted = [(None, None), *((light.name, light) for light in lights)]
     has_errors = data.points.standard_error is not None
-    errors = _errors_inside(cube, rgb, outside) if has_errors else None
-    by_light = {each.name: _errors_inside(cube, rgb, outside, each) for each in lights} if has_errors else {}
-    unlike = np.zeros(len(rgb), dtype=bool) if errors is None else cube.unlike_atlas(rgb)
+    errors = {name: _errors(cube, rgb, outside, entries, light) for name, light in wanted if has_errors}
+    unlike = cube.unlike_atlas(rgb) & has_errors
     # A colour is that of an entry if their 8-bit codes are close.
     codes, entry_codes = cube.encode(rgb), cube.encode(data.atlas.rgb)
-    # Outside the RGB space it is, where the spectrum of the entry alone answers.
-    outside_entries, kept = {}, data.atlas.outside
-    if kept is not None:
-        found = data.outside_boxes.find(answered)
-        exact = found.lattice_weight == 0
-        outside_entries = dict(zip(found.rows[exact].tolist(), found.entry[exact].tolist(), strict=True))
     low, fraction = data.lattice.cell(rgb)
     statuses = data.points.status[data.lattice.cell_corners(low, fraction)[0]]
     realisable = data.solid.contains(answered)
     for row, cell in enumerate(low.tolist()):
-        own = (None, None) if errors is None or outside[row] else errors[row].tolist()
+        known = {name: each[row].tolist() for name, each in errors.items() if not np.isnan(each[row, 0])}
+        own = known.pop(None, (None, None))
         difference = np.abs(entry_codes - codes[row]).max(axis=1)
         is_entry = difference.min(initial=np.inf) <= CODE_TOLERANCE and not outside[row]
         entry = data.atlas.names[difference.argmin()] if is_entry else None
-        if kept is not None and row in outside_entries:
-            entry = kept.names[outside_entries[row]]
-            own = (None, None) if errors is None else (float(kept.error[outside_entries[row]]),) * 2
+        if row in entries:
+            entry = outside_names[entries[row]]
         yield QueryResult(
             rgb=answered[row],
             requested_rgb=requested[row],
@@ -169,16 +166,27 @@ def _block(
             entry=entry,
             standard_error=own[0],
             error_bound=own[1],
-            standard_errors={name: float(each[row, 0]) for name, each in by_light.items() if not outside[row]},
-            error_bounds={name: float(each[row, 1]) for name, each in by_light.items() if not outside[row]},
+            standard_errors={name: each[0] for name, each in known.items() if name is not None},
+            error_bounds={name: each[1] for name, each in known.items() if name is not None},
             light_xyz={name: each[row] for name, each in relit.items()},
             unlike_atlas=bool(unlike[row] and not outside[row]),
             realisable=bool(realisable[row]),
         )
 
 
-def _errors_inside(cube: Cube, rgb: Array, outside: Mask, light: Light | None = None) -> Array:
-    """Standard errors and error bounds (n, 2) of a cube that has them, NaN for colours ``outside`` (n,)."""
+def _outside_entries(data: CubeData, rgb: Array) -> dict[int, int]:
+    """Rows of linear RGB (n, 3) that an entry outside the RGB space answers alone, and the number of the entry."""
+    found = data.outside_boxes.find(rgb)
+    exact = found.lattice_weight == 0
+    return dict(zip(found.rows[exact].tolist(), found.entry[exact].tolist(), strict=True))
+
+
+def _errors(cube: Cube, rgb: Array, outside: Mask, entries: Mapping[int, int], light: Light | None = None) -> Array:
+    """Standard errors and error bounds (n, 2) of a cube that has them, NaN ``outside`` (n,) where no entry answers."""
     errors = np.full((len(rgb), 2), np.nan)
     errors[~outside] = expected_errors(cube, rgb[~outside], light)
+    if entries:
+        from uplift.lookup.light_errors import outside_errors
+
+        errors[list(entries)] = outside_errors(cube.data, light)[list(entries.values())][:, None]
     return errors

@@ -348,11 +348,13 @@ def _build(
     points = points if kept is None else points.restricted_to(kept)
 
     # Entries outside the RGB space constrain no node: their spectra answer XYZ and textures of other spaces.
-    table = constraints.table(model, boxes.half_width, prior.left_out)
+    table = constraints.table(model, boxes.half_width)
     if outside.names:
         half_width = outside_half_widths(lattice, outside.rgb)
         spectra.warn_of_duplicates(outside.names, half_width)
         table = replace(table, outside=spectra.fit_constraints(problem, entry_model, outside).table(model, half_width))
+    if prior.left_out is not None:
+        table = spectra.with_evidence(table, measured, outside, prior.left_out)
     provenance = {
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},

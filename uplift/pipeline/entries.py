@@ -13,7 +13,7 @@ from uplift.colorimetry.observer import COMMON_SPACES, grid, smallest_space
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import AtlasError, OptionError, UpliftWarning
-from uplift.cube import AtlasTable, EntrySpectra, LeftOut
+from uplift.cube import AtlasTable, EntrySpectra
 from uplift.fit.base import NO_FREEDOM
 from uplift.fit.entries import FittedEntries, fit_entries
 from uplift.fit.families import Family, shipped_library
@@ -61,17 +61,11 @@ class Constraints:
         stored = self.entry_model.to_storage(self.at_entries.multipliers)  # c_j = (1/π) ∫ g cos jφ dφ for any count
         return model.from_storage(stored[:, : model.count])
 
-    def table(self, model: Model, half_width: Array, without: Array | None = None) -> AtlasTable:
-        """Return the part of a cube that records the constraints; entries with more coefficients have them there.
-
-        ``without`` are the reflectances of `LeftOut` that are answered.
-        """
-        spectra, left_out = None, None
+    def table(self, model: Model, half_width: Array) -> AtlasTable:
+        """Return the part of a cube that records the constraints; entries with more coefficients have them there."""
+        spectra = None
         if self.at_entries is not self.at_nodes and len(self.names):
             spectra = EntrySpectra(self.entry_model, self.entry_model.to_storage(self.at_entries.multipliers))
-        if without is not None:
-            measured = self.at_nodes.measured[: len(self.names) - self.looks]
-            left_out = LeftOut(measured.astype(np.float32), without.astype(np.float32))
         return AtlasTable(
             self.names,
             self.at_nodes.rgb,
@@ -79,8 +73,7 @@ class Constraints:
             half_width,
             self.at_entries.error,
             spectra,
-            left_out,
-            self.looks,
+            looks=self.looks,
         )
 
 
@@ -134,6 +127,13 @@ def fit_constraints(problem: Problem, entry_model: Model, entries: MeasuredEntri
     at_nodes = fitted(problem.model)
     at_entries = at_nodes if entry_model == problem.model else fitted(entry_model)
     return Constraints(entries.names, entry_model, at_nodes, at_entries)
+
+
+def with_evidence(table: AtlasTable, inside: MeasuredEntries, outside: MeasuredEntries, without: Array) -> AtlasTable:
+    """Add the measured reflectances of entries, and those ``without`` each of them, from which errors are learnt."""
+    kept = table.outside and replace(table.outside, measured=outside.reflectances.astype(np.float32))
+    measured = inside.reflectances.astype(np.float32)
+    return replace(table, measured=measured, left_out=without.astype(np.float32), outside=kept)
 
 
 def warn_of_duplicates(names: Sequence[str], half_width: Array) -> None:
