@@ -1,4 +1,4 @@
-"""Raw values of cameras to XYZ on held-out patches, by cubes and by matrices, for docs/cameras.md."""
+"""Raw values of cameras to XYZ on held-out patches, by cubes and by matrices, for docs/guides/cameras.md."""
 
 import warnings
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Speed and accuracy of all methods, for docs/chart.md and its pictures, and for ``uplift chart --recommend``."""
+"""Speed and accuracy of all methods, for docs/speed.md and its pictures, and for ``uplift chart --recommend``."""
 
 import sys
 from typing import Any
@@ -11,13 +11,11 @@ from uplift.common.files import write_text
 from uplift.common.progress import Progress
 from uplift.lab.chart.measure import measure_methods, select_methods
 from uplift.lab.chart.method import Effort, make_task
-from uplift.lab.chart.picture import render_chart, write_panel, write_picture
+from uplift.lab.chart.picture import render_chart, write_picture
 from uplift.lab.chart.table import MEASURED, Chart, MethodResult, State, chart_csv, criteria, read_chart
 
 UNSEEN = ("lights", "rms")
 """Errors of panels that are those of unseen materials."""
-PICTURES = {"unseen": 1, "set-up": 2}
-"""Panels of the page, by the first part of the names of their files; each is drawn for every number of colours."""
 
 
 def main(effort: Effort | None = None) -> None:
@@ -39,9 +37,6 @@ def publish(chart: Chart) -> None:
     write_text(chart_csv(chart), ROOT / "uplift" / "lab" / "chart" / MEASURED, force=True)
     write_picture(chart, folder / "chart.png", force=True)
     write_text(render_chart(chart), folder / "chart.html", force=True)
-    for name, number in PICTURES.items():
-        for batch in chart.batches:
-            write_panel(chart, criteria(batch)[number], folder / f"{name}-{batch}.png", force=True)
     record(
         "chart",
         environment=dict(chart.facts),

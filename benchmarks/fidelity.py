@@ -1,4 +1,4 @@
-"""Spectra of cubes compared with measured spectra, for docs/fidelity.md and docs/prior.md."""
+"""Spectra of cubes compared with measured spectra, for docs/materials.md and docs/prior.md."""
 
 import warnings
 from collections.abc import Iterator

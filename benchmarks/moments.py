@@ -1,4 +1,4 @@
-"""Reconstruction of spectra from moments, compared with Tódová 2020, for docs/moments.md and its pictures."""
+"""Reconstruction of spectra from moments, compared with Tódová 2020, for docs/reproductions.md and its pictures."""
 
 import warnings
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""The ColorChecker rendered with several methods, for docs/render.md and its picture."""
+"""The ColorChecker rendered with several methods, for docs/scene.md and its picture."""
 
 import tempfile
 import warnings

@@ -1,4 +1,4 @@
-"""Rates of textures in Mitsuba, rendering a scene, for docs/render.md.
+"""Rates of textures in Mitsuba, rendering a scene, for docs/scene.md.
 
 Every variant is measured in a child process, as an LLVM too old for Mitsuba ends it. All textures take turns in every
 round; a ratio is that of the CPU times of one round.

@@ -1,4 +1,4 @@
-"""Spectral representations compared with Kment 2011, for docs/representations.md and its pictures."""
+"""Spectral representations compared with Kment 2011, for docs/scene.md and its pictures."""
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence

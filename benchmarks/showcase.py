@@ -1,7 +1,7 @@
-"""The pictures of the README and their numbers, for docs/showcase.md.
+"""The pictures of the README and their numbers, for docs/materials.md.
 
 The light on the charts is uniform, so that spectra are integrated
-instead of rendered; docs/render.md has renderings of the same chart, which agree.
+instead of rendered; docs/scene.md has renderings of the same chart, which agree.
 """
 
 import io

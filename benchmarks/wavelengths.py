@@ -1,4 +1,4 @@
-"""Selection of wavelengths, and reproduction of Meyer 1988, for docs/wavelengths.md and its pictures."""
+"""Selection of wavelengths, and reproduction of Meyer 1988, for docs/scene.md and its pictures."""
 
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,7 +16,7 @@ from uplift.scene.quadrature import QuadratureRule, UndefinedRule
 from uplift.scene.wavelengths import METHODS, ColourErrors, choose, grid, make_setup
 from uplift.scene.wavelengths import meyer as paper
 from uplift.scene.wavelengths.sampling import RenderSetup, evaluate
-from uplift.viz.figure import GREY, INK, STYLE, new_figure, style_axes, write_png
+from uplift.viz.figure import GREY, INK, STYLE, colour_map, new_figure, style_axes, write_png
 
 CHANNELS = ("A", "C1", "C2")
 OPTIMISED, FITTED = "optimised", "fitted"
@@ -238,7 +238,7 @@ def figure_7(space: paper.ChannelSpace, counts: Array, errors: Array, divisions:
     shares = (cells[:, None, :] + np.where(upright, np.eye(3), 1 - np.eye(3))) / divisions
     figure = new_figure(6.0, 4.6)
     axes = figure.subplots()
-    style = {"cmap": "viridis_r", "edgecolors": "white", "linewidths": 0.6}
+    style = {"cmap": colour_map(), "edgecolors": "white", "linewidths": 0.6}
     triangles = axes.add_collection(PolyCollection(shares @ CORNERS, array=means, **style))
     axes.plot(*CORNERS[[0, 1, 2, 0]].T, color=GREY, linewidth=0.8)
     for name, corner, side, offset in zip(space.channels, CORNERS, ("bottom", "top", "top"), (5, -5, -5), strict=True):

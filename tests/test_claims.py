@@ -45,12 +45,12 @@ def prose(path):
 
 def sources():
     """Pages written by hand, and templates in place of the pages that they make."""
-    generated = set(pages())
-    written = [path for path in ROOT.glob("docs/**/*.md") if path.stem not in generated]
+    generated = {ROOT / "docs" / f"{name}.md" for name in pages()}
+    written = {*ROOT.glob("docs/**/*.md")} - generated
     exempt = {"bibliography.md", "coverage.md"}
     return [
         *(path for path in sorted(written) if path.name not in exempt),
-        *sorted(ROOT.glob("docs/templates/*.md.j2")),
+        *sorted(ROOT.glob("docs/templates/**/*.md.j2")),
     ]
 
 

@@ -1,6 +1,6 @@
 """Render the pages of measurements: docs/templates/NAME.md.j2 filled from docs/data/NAME.json is docs/NAME.md.
 
-README.md.j2 is the README, above docs.
+README.md.j2 is the README, above docs. Long tables of a page are CSV files that it links to, in docs/tables.
 
 Nothing is measured here. The programs in benchmarks/ write the data. A template without data uses that of
 other pages, by ``load`` (JSON) and ``rows`` (CSV).
@@ -13,15 +13,17 @@ Examples
 
 import csv
 import json
+import os
 import statistics
 import string
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Undefined
 
+from uplift.common.csv import csv_text
 from uplift.viz import format as viz_format
 
 ROOT = Path(__file__).parents[1]
@@ -82,6 +84,22 @@ def table(rows: Iterable[Row], caller: Callable[[], str]) -> str:
     return "".join(f"| {line} |\n" for line in (heading, rule, *body))
 
 
+def leaves(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the names and values of a nested row, the names joined by dots; floats have six digits."""
+    if isinstance(value, Mapping | list | tuple):
+        for key, item in value.items() if isinstance(value, Mapping) else enumerate(value):
+            yield from leaves(item, f"{name}.{key}" if name else str(key))
+    else:
+        yield name, f"{value:.6g}" if isinstance(value, float) else value
+
+
+def flat_csv(rows: Iterable[Row]) -> str:
+    """Return nested rows as CSV, with a column for each leaf."""
+    flat = [dict(leaves(row)) for row in rows]
+    columns = list(dict.fromkeys(key for row in flat for key in row))
+    return csv_text(columns, ([row.get(key) for key in columns] for row in flat))
+
+
 def where(rows: Iterable[Row], **conditions: Any) -> list[Row]:
     """Return the rows with these values."""
     return [row for row in rows if all(row[key] == value for key, value in conditions.items())]
@@ -97,7 +115,7 @@ def pick(rows: Iterable[Row], **conditions: Any) -> Row:
 
 def pages() -> list[str]:
     """Return the names of the pages that have a template."""
-    return sorted(path.name.removesuffix(".md.j2") for path in TEMPLATES.glob("*.md.j2"))
+    return sorted(path.relative_to(TEMPLATES).as_posix().removesuffix(".md.j2") for path in TEMPLATES.rglob("*.md.j2"))
 
 
 def page_file(name: str) -> Path:
@@ -128,16 +146,25 @@ def read_rows(path: str) -> list[Row]:
     return [{key: value(cell) for key, cell in row.items()} for row in csv.DictReader(read_text(path).splitlines())]
 
 
-def render(name: str, data: Mapping[str, Any] | None = None) -> str:
-    """Return the text of a page, from its template and its data, by default the stored one."""
+def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
+    """Return the text of a page and of its CSV files, from its template and its data, by default the stored one."""
+    page, tables = page_file(name), {}
+
+    def long_table(rows: Iterable[Row], table_name: str) -> str:
+        path = DOCS / "tables" / f"{table_name}.csv"
+        tables[path] = flat_csv(rows)
+        return f"[{path.name}]({Path(os.path.relpath(path, page.parent)).as_posix()})"
+
     style = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
     environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, **style)
     environment.filters |= {"num": number, "mean": statistics.fmean}
     functions = {"load": read_data, "rows": read_rows, "text": read_text, "table": table, "where": where, "pick": pick}
-    environment.globals |= functions
-    return environment.get_template(f"{name}.md.j2").render(read_data(name) if data is None else data)
+    environment.globals |= functions | {"long_table": long_table}
+    text = environment.get_template(f"{name}.md.j2").render(read_data(name) if data is None else data)
+    return {page: text} | tables
 
 
 if __name__ == "__main__":
     for name in sys.argv[1:] or pages():
-        page_file(name).write_text(render(name), encoding="utf-8")
+        for path, text in render(name).items():
+            path.write_text(text, encoding="utf-8")

@@ -15,11 +15,10 @@ from benchmarks.choices import ALONE, MARK, OURS, SHIPPED, is_optimistic, mark
 from tests.conftest import ROOT
 from tests.parts import MITSUBA, need
 from tools import render_docs
-from tools.render_docs import page_file, read_data, render, table
+from tools.render_docs import read_data, render, table
 from uplift.lab.chart.table import read_chart
 
 DOCS = ROOT / "docs"
-RENDERED = render_docs.pages()
 
 
 @pytest.mark.parametrize("name", pages())
@@ -55,9 +54,10 @@ def test_a_page_that_fails_does_not_stop_the_others(monkeypatch):
     assert commands == ["from benchmarks.chart", "from benchmarks.atlas_files", "tools.render_docs"]
 
 
-@pytest.mark.parametrize("name", RENDERED)
-def test_committed_page_is_the_rendering_of_the_committed_data(name):
-    assert page_file(name).read_text(encoding="utf-8") == render(name)
+def test_committed_pages_and_tables_are_the_rendering_of_the_committed_data():
+    files = {path: text for name in render_docs.pages() for path, text in render(name).items()}
+    assert [path for path, text in files.items() if path.read_text(encoding="utf-8") != text] == []
+    assert set((DOCS / "tables").iterdir()) <= files.keys()
 
 
 def test_a_missing_figure_is_an_error():

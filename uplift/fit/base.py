@@ -2,7 +2,7 @@
 
 Smooth spectra: multipliers have no upper bound on slope, so that from them alone a dark red rises to a reflectance of 1
 outside the range of the colour-matching functions. So a colour x starts from a brighter one, x' = x / k with
-k = √max(x). It is solved from a grey by minimum-norm steps, and its spectrum is scaled by k (docs/fidelity.md).
+k = √max(x). It is solved from a grey by minimum-norm steps, and its spectrum is scaled by k (docs/materials.md).
 
 The learnt base adds the deviation that families of measured materials have from smooth spectra (docs/prior.md). It is
 kriged relative to the brightening, so that dark colours stay dark, at the nodes of the table.

@@ -21,7 +21,7 @@ from uplift.models.model import Model
 
 LIGHTS_WEIGHT, SMOOTHNESS = 0.03, 1e-3
 """Weights of a unit of CIE L*a*b* under a light, and of the multipliers but the constant one, in the metric M of
-docs/mathematics.md, 5, relative to the root-mean-square difference of the spectra (docs/fidelity.md).
+docs/mathematics.md, 5, relative to the root-mean-square difference of the spectra (docs/materials.md).
 
 Without smoothness the minimum of a dark entry jumps: of two spectra that meet its colours nearly equally well one has
 multipliers ten times as large, and noise decides between them.

@@ -18,7 +18,7 @@ from uplift.lattice import CORNERS, Lattice, weighted_sum
 from uplift.models import evaluate
 
 NEAR, FAR = 8.0, 16.0
-"""ΔE*ab up to which a corner is near its entry, and from which it is far (docs/fidelity.md)."""
+"""ΔE*ab up to which a corner is near its entry, and from which it is far (docs/materials.md)."""
 MAX_HALF_WIDTH = 1.0
 """Lattice steps: the half width of an entry box without other entries nearby."""
 SAME_COLOUR = 1e-6
@@ -120,7 +120,7 @@ The weight changes linearly between them; the rest is the prior.
 HALF_ENTRY: Blend = (0.5, 0.0)
 """The default: shades of an entry, paint of nearly its colour, are like it, other materials near it like the prior.
 
-More of the entry is worse for other materials, and less is worse for shades (docs/fidelity.md). Corners of coarse
+More of the entry is worse for other materials, and less is worse for shades (docs/materials.md). Corners of coarse
 lattices whose colour is another one start from the prior alone.
 """
 FULL_ENTRY: Blend = (1.0, 1.0)

@@ -40,11 +40,13 @@ function hide() {
   picture.classList.remove("dimmed");
   picture.querySelectorAll(".highlighted").forEach(part => part.classList.remove("highlighted"));
 }
-// A page with a choice shows the parts of one value.
+// A page with choices shows the parts whose values are all chosen.
 const choices = [...document.querySelectorAll(".choice input")];
 function choose() {
-  const value = choices.find(input => input.checked)?.value;
-  for (const part of document.querySelectorAll("[data-choice]")) part.hidden = part.dataset.choice !== value;
+  const chosen = new Set(choices.filter(input => input.checked).map(input => input.value));
+  for (const part of document.querySelectorAll("[data-choice]")) {
+    part.hidden = !part.dataset.choice.split(" ").every(value => chosen.has(value));
+  }
 }
 if (choices.length) choose();
 choices.forEach(input => input.addEventListener("change", choose));

@@ -52,7 +52,7 @@ def style_title(axes: Any, title: str) -> None:
     axes.set_title(title, loc="left", fontsize=11, fontweight="bold", color=INK)
 
 
-def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array) -> None:
+def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array, fontsize: float = 7.5) -> None:
     """Write the labels that have room next to the ``markers`` (M, 2) and the ``line`` (k, 2), bold ones first."""
     if not labels:
         return
@@ -67,7 +67,7 @@ def draw_labels(axes: Any, labels: Sequence[Label], markers: Array, line: Array)
             figure_text(label.text),
             (0, 0),
             xycoords="figure points",
-            fontsize=7.5,
+            fontsize=fontsize,
             fontweight="bold" if label.bold else "normal",
             color=label.colour,
             gid=label.gid or None,

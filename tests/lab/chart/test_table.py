@@ -224,13 +224,16 @@ def test_page_has_markers_of_measured_methods_fits_and_is_accessible(tmp_path):
     check_page(text, tmp_path)
 
 
-def test_the_reader_chooses_the_number_of_colours(tmp_path):
+def test_the_reader_chooses_a_panel_and_the_number_of_colours(tmp_path):
     need(CHROMIUM)
     visible = """[...document.querySelectorAll(".picture svg")].filter(each => each.checkVisibility()).length"""
     with browser() as tab:
         open_page(tab, render_chart(chart_of(row_of("one", 80, 0.4))), tmp_path)
-        assert tab.evaluate(visible) == len(criteria(64))
-        assert tab.evaluate("document.querySelector('[data-choice=\"64\"]').hidden") is False
+        caption = "document.querySelector('.picture:not([hidden])').textContent"
+        assert tab.evaluate(visible) == 1
+        assert "64 colours" in tab.evaluate(caption)
         tab.evaluate("document.querySelector('.choice input[value=\"1\"]').click()")
-        assert tab.evaluate(visible) == len(criteria(64))
-        assert tab.evaluate("document.querySelector('[data-choice=\"64\"]').hidden") is True
+        tab.evaluate("document.querySelector('.choice input[value^=rms]').click()")
+        assert tab.evaluate(visible) == 1
+        assert tab.evaluate(caption).startswith(criteria(1)[3].title)
+        assert "1 colour per" in tab.evaluate(caption)

@@ -26,7 +26,7 @@ spectral image of ``uplift lights texture`` has the wavelengths that it was writ
 One colour becomes a regular spectrum of Mitsuba, without extra cost. Images are uplifted when they are loaded, to the
 multipliers of each texel, 4 bytes per coefficient. An image with colours near atlas entries has as many multipliers per
 texel as the entries, any other as many as the nodes of the cube. Spectra are evaluated at the wavelengths of each ray.
-docs/render.md compares rates with Mitsuba's own textures. Scalar variants call Python for every ray, and warn.
+docs/scene.md compares rates with Mitsuba's own textures. Scalar variants call Python for every ray, and warn.
 
 Examples
 --------

@@ -1,16 +1,19 @@
-"""The chart as a figure, a row of panels for each number of colours per call, and as a page with tooltips.
+"""The chart as a figure for readers in a hurry, and as a page of panels with tooltips.
 
-Of the cubes of this package a panel shows those that no other cube of the same kind and mode beats."""
+Of the cubes of this package a panel of the page shows those that no other cube of the same kind and mode beats."""
 
 from typing import Any
+
+import numpy as np
 
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.arrays import StrPath
 from uplift.lab.chart.table import BATCH, REFERENCE, Chart, Criterion, MethodResult, State, criteria
-from uplift.lab.panels import Panel, Point, family_colours, page_panel, pareto_front, write_panels
-from uplift.viz.figure import OTHER
+from uplift.lab.panels import Panel, Point, family_colours, page_panel, pareto_front
+from uplift.viz.figure import ACCENT, GREY, OTHER, PALE, new_figure, styled, write_png
 from uplift.viz.format import format_build_time, format_error, format_size, format_time
 from uplift.viz.html import Tooltip, render
+from uplift.viz.scatter import Label, draw_labels
 
 COLOURS = {
     "uplift, moments with atlas": "#0b3c8c",
@@ -28,8 +31,19 @@ COLOURS = {
 """Colours of families; those of other versions are dark grey."""
 MODES = {"spectra": "o", "moments": "^", "refined": "s", "nearest": "D", "bulk": "P"}
 """Markers of cubes of this package, by mode of lookup; other methods are stars."""
-SHOWN = 3
-"""Panels of each number of colours per call in the figure; pages show all."""
+OURS = "uplift"
+NAMES = {
+    "smits1999-float32": "Smits 1999",
+    "mallett2019-float32": "Mallett & Yuksel 2019",
+    "mitsuba3-llvm": "Mitsuba 3, compiled",
+    "jakob2019-table64": "Jakob & Hanika's table",
+    "otsu2018": "Otsu 2018",
+    "meng2015": "Meng 2015",
+    "c-moments9-32-spectra": OURS,
+}
+"""Methods of the figure and their names in it; a chart without these shows all of its methods."""
+ATLAS = "c-moments9-32-atlas-spectra"
+"""Cube of the figure whose error is that of the materials of its atlas."""
 TITLE = "Spectral upsampling: speed against accuracy"
 ERRORS = {
     "round_trip": "round trip, 1 nm",
@@ -76,25 +90,56 @@ def panel(criterion: Criterion, chart: Chart) -> Panel:
     return Panel(title, criterion.axis, format_time, points)
 
 
-def legend(chart: Chart) -> dict[str, dict[str, Any]]:
-    """Return the styles of the legend by name: colours of families, markers of modes, and lines."""
-    families = family_colours((result.family for result in chart.measured), COLOURS)
-    return {
-        **{name: {"color": families[name], "marker": "o" if name.startswith("uplift") else "*"} for name in families},
-        **{f"mode {mode}": {"marker": marker} for mode, marker in MODES.items()},
-        "timed with fewer colours": {"marker": "*", "markerfacecolor": "white"},
-    }
-
-
 def write_picture(chart: Chart, path: StrPath, *, force: bool = False) -> None:
-    """Write the figure of a chart as PNG. Raises `OutputError`."""
-    panels = [panel(criterion, chart) for batch in chart.batches for criterion in criteria(batch)[:SHOWN]]
-    write_panels(panels, SHOWN, path, legend(chart), force=force)
+    """Write the mean error of unseen materials over the time per RGB as PNG. Raises `OutputError`."""
+    with styled():
+        write_png(draw_picture(chart), path, force=force)
 
 
-def write_panel(chart: Chart, criterion: Criterion, path: StrPath, *, force: bool = False) -> None:
-    """Write one panel as PNG, as wide as a phone. Raises `OutputError`."""
-    write_panels([panel(criterion, chart)], 1, path, {}, force=force)
+def draw_picture(chart: Chart) -> Any:
+    """Return the matplotlib figure of `write_picture`: every method has its name, this package the only colour."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    unseen, own = (criteria(reference_batch(chart))[panel] for panel in (1, 4))
+    results = [result for result in chart.measured if result.method in NAMES] or list(chart.measured)
+    drawn = [(NAMES.get(each.method, each.title), point, "") for each in results if (point := unseen.point(each))]
+    for result in chart.measured:
+        if result.method == ATLAS and (point := own.point(result)):
+            drawn.append((OURS, point, " with the atlas, its own materials"))
+    figure = new_figure(9, 5.2)
+    figure.set_dpi(130)
+    axes = figure.subplots()
+    axes.set(xscale="log", ylim=(-0.02, 1.12 * max([1.0, *(error for _, (_, error), _ in drawn)])))
+    axes.set_xlabel(f"{unseen.axis}, {unseen.colours}", fontsize=11)
+    axes.set_ylabel(f"mean {unseen.unit} of unseen materials", fontsize=11)
+    axes.tick_params(labelsize=11)
+    axes.minorticks_off()
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.xaxis.set_major_formatter(lambda value, _: format_time(value))
+    axes.axhspan(0, 1, color=PALE, alpha=0.45, linewidth=0)
+    axes.annotate(
+        "just visible: 1", (0.99, 1), xycoords=("axes fraction", "data"), color=GREY, ha="right", va="top", size=11
+    )
+    labels = []
+    for name, place, what in drawn:
+        colour, face = (ACCENT if name == OURS else GREY), ("white" if what else None)
+        axes.plot(*place, "o", color=colour, markerfacecolor=face, markersize=9, markeredgewidth=2, clip_on=False)
+        text = f" {name}{what}  {place[1]:.2f} "  # blanks, as markers are large
+        labels.append(Label(text, place, colour, name == OURS, ""))
+    axes.margins(x=0.09)
+    best = sorted((error, name, format_time(time)) for name, (time, error), what in drawn if not what)[:2]
+    title = "\nthe next: ".join(f"{name}, {error:.2f} in {time}" for error, name, time in best)
+    axes.set_title(f"Smallest error on unseen materials: {title}", loc="left", fontsize=13, fontweight="bold", pad=12)
+    FigureCanvasAgg(figure)
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    draw_labels(axes, labels, np.array([label.point for label in labels]).reshape(-1, 2), np.empty((0, 2)), fontsize=12)
+    return figure
+
+
+def reference_batch(chart: Chart) -> int:
+    """Return the number of colours per call that the figure shows, and the page at first."""
+    return max((batch for batch in chart.batches if batch <= REFERENCE), default=0)
 
 
 def render_chart(chart: Chart) -> str:
@@ -110,7 +155,7 @@ def render_chart(chart: Chart) -> str:
         tooltips=[_tooltip(result) for result in chart.results],
         facts=chart.facts,
         sources=list(dict.fromkeys(f"{result.family}: {result.source}" for result in chart.results)),
-        chosen=max((batch for batch in chart.batches if batch <= REFERENCE), default=0),
+        chosen=reference_batch(chart),
         errors=ERRORS,
         not_measured=[result for result in chart.results if result.state != State.MEASURED],
     )

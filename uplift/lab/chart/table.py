@@ -111,7 +111,7 @@ def read_chart(path: StrPath) -> Chart:
 
 
 def shipped_chart() -> Chart:
-    """Return the chart of docs/chart.md, which is part of the package."""
+    """Return the chart of docs/speed.md, which is part of the package."""
     return parse_chart(files("uplift.lab.chart").joinpath(MEASURED).read_bytes(), MEASURED)
 
 

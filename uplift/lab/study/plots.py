@@ -11,7 +11,16 @@ from uplift.common.arrays import Array, StrPath
 from uplift.lab.study.moments import TECHNIQUES, MomentsStudy, Technique, fine_grid
 from uplift.lab.study.sensitivity import MOVED_DELTA_E, Change
 from uplift.models import Sigmoid
-from uplift.viz.figure import colour_map, figure_text, new_figure, style_axes, style_spectrum_axes, write_png
+from uplift.viz.figure import (
+    ACCENT,
+    GREY,
+    colour_map,
+    figure_text,
+    new_figure,
+    style_axes,
+    style_spectrum_axes,
+    write_png,
+)
 
 FLOATS = 9
 """Numbers stored of the spectra that are drawn, as in figures 4.1 and 4.2 of the thesis."""
@@ -96,48 +105,35 @@ def _plot_spectra(study: MomentsStudy, rows: Sequence[Iterable[int]], path: StrP
     write_png(figure, path, force=force)
 
 
-MAP_AXES = ("space", "threshold", "dim", "atlas")
-"""Options of builds that the map of failures shows, each over the models."""
-DECADES = (-2.0, 0.0)
-"""Range of the map: log₁₀ of the largest residual over the threshold."""
+PANELS = ("model", "space", "threshold", "dim", "atlas")
+"""Options of builds, each with a panel in the figure of failures."""
+RATIOS = (1e-3, 3.0)
+"""Range of that figure: largest residual over the threshold; smaller ones are drawn at its left end."""
 
 
 def plot_map(runs: Sequence[Mapping[str, Any]], path: StrPath, *, force: bool = False) -> None:
-    """Write the largest residual of realisable nodes over the threshold as heat maps, PNG.
+    """Write the largest residual of realisable nodes over the threshold as PNG: a dot for each build, in every panel.
 
-    Orange cells are those with failed nodes, numbers count failed stand-ins of unrealisable nodes. ``runs`` are records
-    of `uplift.lab.study.stability.run`.
+    Dots to the right of the line are failures, hollow ones builds with failed stand-ins of unrealisable nodes. ``runs``
+    are records of `uplift.lab.study.stability.run`.
     """
-    models = list(dict.fromkeys((each["model"], each["coefficients"]) for each in runs))
-    values = {
-        axis: sorted({each[axis] for each in runs}, key=lambda value: (str(type(value)), value)) for axis in MAP_AXES
-    }
-    figure = new_figure(11.0, 1.1 + 0.42 * len(models))
-    panels = figure.subplots(1, len(MAP_AXES), width_ratios=[len(values[axis]) for axis in MAP_AXES], squeeze=False)[0]
-    for axes, axis in zip(panels, MAP_AXES, strict=True):
-        residuals, failed = (np.full((len(models), len(values[axis])), start) for start in (np.nan, 0.0))
-        for each in runs:
-            cell = models.index((each["model"], each["coefficients"])), values[axis].index(each[axis])
-            residuals[cell] = np.fmax(residuals[cell], np.log10(max(each["worst"] / each["threshold"], 1e-12)))
-            failed[cell] += each["stand_ins"]
-        drawn = axes.imshow(
-            residuals, cmap=colour_map().with_extremes(over=HIGHLIGHT), vmin=DECADES[0], vmax=DECADES[1]
-        )
-        for (row, column), count in np.ndenumerate(failed):
-            if count:
-                dark = residuals[row, column] > sum(DECADES) / 2
-                axes.text(column, row, f"{count:.0f}", ha="center", va="center", fontsize=7, color="w" if dark else "k")
-        ticks = [f"{value:.0e}" if axis == "threshold" else str(value).removeprefix("ITU-R ") for value in values[axis]]
-        axes.set_xticks(range(len(ticks)), map(figure_text, ticks), rotation=40, ha="right", fontsize=8)
-        axes.set_title(axis, loc="left", fontsize=10)
-        axes.set_yticks([])
-        axes.spines[:].set_visible(False)
-    names = [model if model == Sigmoid.name else f"{model} {count}" for model, count in models]
-    panels[0].set_yticks(range(len(models)), names, fontsize=9)
-    bar = figure.colorbar(drawn, ax=list(panels), fraction=0.02, pad=0.01, extend="max", ticks=[-2, -1, 0])
-    bar.set_ticklabels(["0.01", "0.1", "1"])
-    bar.set_label("largest residual / threshold")
-    bar.outline.set_visible(False)
+    names = [each["model"] if each["model"] == Sigmoid.name else f"moments {each['coefficients']:2}" for each in runs]
+    runs = [{**each, "model": name} for each, name in zip(runs, names, strict=True)]
+    ratios = np.clip([each["worst"] / each["threshold"] for each in runs], *RATIOS)
+    faces = ["white" if each["stand_ins"] else ACCENT for each in runs]
+    figure = new_figure(11.0, 2.9)
+    for axes, option in zip(figure.subplots(1, len(PANELS), sharex=True), PANELS, strict=True):
+        values = sorted({each[option] for each in runs}, key=lambda value: (str(type(value)), value))
+        rows = [values.index(each[option]) for each in runs]
+        axes.axvline(1, color=HIGHLIGHT, linewidth=1)
+        axes.scatter(ratios, rows, s=22, facecolors=faces, edgecolors=ACCENT, linewidths=0.8, alpha=0.6, clip_on=False)
+        ticks = [f"{value:.0e}" if option == "threshold" else str(value).removeprefix("ITU-R ") for value in values]
+        axes.set_yticks(range(len(ticks)), map(figure_text, ticks), fontsize=9)
+        axes.set(xscale="log", xlim=RATIOS, ylim=(len(ticks) - 0.5, -0.5))
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.set_title(option, loc="left", fontsize=10)
+        style_axes(axes)
+    figure.supxlabel("largest residual / threshold; 1 would be a failure", fontsize=9, color=GREY)
     write_png(figure, path, force=force)
 
 
@@ -170,7 +166,7 @@ def _scatter(axes: Any, distance: Array, delta_e: Array) -> None:
     farthest = float(distance[visible].max(initial=0.1))
     highest = max(float(delta_e.max()), 2 * MOVED_DELTA_E)
     extent = (0, farthest, np.log10(MIN_DELTA_E), np.log10(highest))
-    style: dict[str, Any] = {"gridsize": (60, 34), "cmap": "Blues", "linewidths": 0, "mincnt": 1}
+    style: dict[str, Any] = {"gridsize": (60, 34), "cmap": colour_map(), "linewidths": 0, "mincnt": 1}
     axes.hexbin(distance[visible], delta_e[visible], yscale="log", bins="log", extent=extent, **style)
     edges = np.linspace(0, farthest, BINS + 1)
     bin_of = np.digitize(distance, edges[1:-1])
