@@ -39,7 +39,7 @@ WARPS: dict[str, tuple[tuple[float, float, float], ...]] = {
 
 The density of ``vision`` is that by which hero-wavelength renderers sample, 1/cosh²(0.0072 (λ − 538)): Radziszewski,
 Boryczko & Alda 2009, "An improved technique for full spectral rendering". That of ``colour`` has a peak for blue and
-one for green and red, fitted to the colours of the shipped atlases as three coefficients keep them (docs/reproductions.md).
+one for green and red, fitted to the colours of the shipped atlases at three coefficients (docs/reproductions.md).
 """
 
 

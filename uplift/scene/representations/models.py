@@ -58,7 +58,7 @@ class TrigonometricMoments(TabulatedProducts):
     """The zeroth moment and those above it, mirrored, as many as ``model`` has coefficients (`uplift.models.moments`).
 
     Peters et al. 2019, "Using moments to represent bounded signals for spectral rendering". These are the moments of
-    the spectrum itself. The coefficients of cubes are fitted to colours as well; docs/materials.md shows the difference.
+    the spectrum itself. The coefficients of cubes are fitted to colours as well (docs/materials.md).
     """
 
     model: Moments
