@@ -54,7 +54,7 @@ int main(int count, char **words)
         if (seconds() - begin < best[0]) best[0] = seconds() - begin;
         sum += found[run];
         begin = seconds();
-        cube_reflectances_n(rgb, rays, RAY, colours, found);
+        cube_reflectances_n(rgb, (int)colours, rays, RAY, found);
         if (seconds() - begin < best[1]) best[1] = seconds() - begin;
         sum += found[run];
         begin = seconds();

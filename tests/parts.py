@@ -20,6 +20,7 @@ PATIENCE = 60.0
 """Seconds that a trial may take."""
 EMPTY_KERNEL = "__global__ void nothing() {}\n"
 EMPTY_PROGRAM = "int main(void) { return 0; }\n"
+SANITIZED = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 EMPTY_SHADER = "#version 430\nlayout(local_size_x = 1) in;\nvoid main() {}\n"
 
 
@@ -87,6 +88,8 @@ _cxx = partial(_compile, "main.cpp", EMPTY_PROGRAM, "c++ main.cpp -o main", "./m
 _glslang = partial(_compile, "a.comp", EMPTY_SHADER, "glslangValidator a.comp")
 CC = Part("a C compiler, cc", "apt install gcc", _cc)
 CXX = Part("a C++ compiler, c++", "apt install g++", _cxx)
+_sanitized = partial(_compile, "main.c", EMPTY_PROGRAM, f"cc {' '.join(SANITIZED)} main.c -o main", "./main")
+SANITIZERS = Part("AddressSanitizer and UBSan", "apt install gcc", _sanitized)
 CHROMIUM = Part("Chromium", "apt install chromium", _open_tab)
 VULKAN = Part("a Vulkan driver", "pip install '.[gpu]' and apt install mesa-vulkan-drivers", _open_device)
 NVCC = Part("nvcc", "the CUDA toolkit", partial(_compile, "a.cu", EMPTY_KERNEL, "nvcc -ptx a.cu"))

@@ -99,7 +99,7 @@ def command(
       uplift export macbeth-32.uplift --format csv
     """
     suffix = "" if output is None else Path(output).suffix.lower()
-    style = style or next((name for name in SUFFIXES if SUFFIXES[name] == suffix), None)
+    style = style or {SUFFIXES[name]: name for name in SUFFIXES}.get(".cuh" if suffix == ".cu" else suffix)
     if style is None:
         raise click.UsageError(f"Give --format, or --output ending in {', '.join(SUFFIXES.values())}.")
     given = {"res": res, "light": light, "adapt": adapt, "mode": mode, "table": table}

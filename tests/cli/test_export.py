@@ -24,7 +24,7 @@ def test_formats_and_default_names(run, home, cube, style, suffix, first):
     assert (home / f"{STEM}.{suffix}").read_bytes().startswith(first)
 
 
-@pytest.mark.parametrize("name", ["a.cuh", "a.glsl", "a.hlsl"])
+@pytest.mark.parametrize("name", ["a.cuh", "a.cu", "a.glsl", "a.hlsl"])
 def test_programs_come_with_a_table(run, home, cube, name):
     assert "a.bin" in run("export", cube, "-o", name, "--mode", "moments").stdout
     assert {path.name for path in home.iterdir()} == {cube, name, "a.bin"}

@@ -34,7 +34,7 @@ LOAD_FILE = """const char *problem = cube_load("cube.bin");
 LOAD = """static float table[{size}];
     FILE *file = fopen("cube.bin", "rb");
     if (!file || fread(table, 1, sizeof table, file) != sizeof table) return 1;"""
-STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-unused-function", "-O1")
+STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-O1")
 KERNEL = """#include "{header}"
 extern "C" __global__ void lookup(const float *table, const float *rgb, const float *wavelengths, float *found)
 {{
@@ -82,7 +82,8 @@ def _compiled(path, rgb, wavelengths, compiler, call, load):
     folder = path.parent
     text = HOST.format(header=path.name, wavelengths=listed(wavelengths), call=call, load=load)
     (folder / "main.c").write_text(text)
-    subprocess.run([*compiler, *STRICT, "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
+    casts = ["-Wold-style-cast"] if compiler[0] == "c++" else []
+    subprocess.run([*compiler, *STRICT, *casts, "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
     done = subprocess.run(
         [folder / "main"], cwd=folder, input=rgb.astype(np.float32).tobytes(), capture_output=True, check=True
     )

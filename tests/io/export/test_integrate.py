@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.parts import CC, CXX, MITSUBA, need
+from tests.parts import CC, CXX, MITSUBA, SANITIZED, SANITIZERS, need
 from uplift.io.export import write_program
 
 PAGE = (Path(__file__).parents[3] / "docs" / "integrate.md").read_text(encoding="utf-8")
 STORED = "moments-8-macbeth.uplift"
-COLOUR = [0.8, 0.2, 0.1]
+COLOURS = [[0.8, 0.2, 0.1], [0.1, 0.2, 0.8]]
 
 
 def code(section, language):
@@ -40,14 +40,14 @@ def test_python(folder, small_cube):
 
 @pytest.mark.parametrize(("compiler", "language", "part"), [("cc", "c", CC), ("c++", "c++", CXX)])
 def test_c_and_cpp(folder, small_cube, compiler, language, part):
-    need(part)
+    need(part, SANITIZERS)
     write_program(small_cube.data, folder / "paints.h")
     (folder / "main.c").write_text(code("C and C\\+\\+", "c"))
-    subprocess.run([compiler, "-x", language, "-O1", "main.c", "-o", "main", "-lm"], check=True)
+    subprocess.run([compiler, "-x", language, "-O1", *SANITIZED, "main.c", "-o", "main", "-lm"], check=True)
     done = subprocess.run(["./main"], capture_output=True, text=True, check=True)
-    wavelengths, found = np.array([line.split() for line in done.stdout.splitlines()], dtype=float).T
+    wavelengths, *found = np.array([line.split() for line in done.stdout.splitlines()], dtype=float).T
     assert len(wavelengths) == 7
-    expected = small_cube.reflectance(COLOUR, wavelengths, mode="spectra")
+    expected = small_cube.reflectance([COLOURS[0], *COLOURS], wavelengths, mode="spectra")
     np.testing.assert_allclose(found, expected, atol=2e-5)
 
 
@@ -60,5 +60,5 @@ def test_mitsuba(folder, small_cube):
     image = np.array(names["image"])
     assert image.shape == (64, 64, 3)
     assert mi.variant() == "scalar_spectral"
-    np.testing.assert_allclose(image[30:34, 30:34].mean(axis=(0, 1)), COLOUR, atol=0.05)
+    np.testing.assert_allclose(image[30:34, 30:34].mean(axis=(0, 1)), COLOURS[0], atol=0.05)
     np.testing.assert_allclose(image[:4, :4].mean(axis=(0, 1)), 1, atol=0.05)

@@ -8,7 +8,7 @@ import pytest
 
 import uplift
 from tests.io.export import run_program
-from tests.parts import CC, need
+from tests.parts import CC, SANITIZED, SANITIZERS, need
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.io.export import LANGUAGES, write_program
 
@@ -104,18 +104,18 @@ MANY = r"""
 
 int main(void)
 {
-    float rgb[63], at[441], found[441];
-    for (int k = 0; k < 63; ++k) rgb[k] = k * 7 % 33 / 32.0f;
-    for (int k = 0; k < 441; ++k) at[k] = 400 + 15.0f * (k % 21) + k / 21;
-    cube_reflectances_n(rgb, at, 21, 21, found);
+    float rgb[63], at[21], found[441];
+    for (int k = 0; k < 63; ++k) rgb[k] = (float)(k * 7 % 33) / 32.0f;
+    for (int k = 0; k < 21; ++k) at[k] = 400 + 15.0f * (float)k;
+    cube_reflectances_n(rgb, 21, at, 21, found);
     fwrite(found, sizeof found, 1, stdout);
-    for (int k = 0; k < 21; ++k) cube_reflectances(rgb + 3 * k, at + 21 * k, 21, found + 21 * k);
+    for (int k = 0; k < 21; ++k) cube_reflectances(rgb + 3 * k, at, 21, found + 21 * k);
     fwrite(found, sizeof found, 1, stdout);
 #if !CUBE_SPECTRA
     float coefficients[21 * CUBE_COUNT], multipliers[21 * CUBE_COUNT];
     for (int k = 0; k < 21; ++k) cube_coefficients(rgb + 3 * k, coefficients + CUBE_COUNT * k);
     if (cube_multipliers_n(coefficients, 21, multipliers)) return 1;
-    for (int k = 0; k < 21; ++k) cube_evaluate(multipliers + CUBE_COUNT * k, at + 21 * k, 21, found + 21 * k);
+    for (int k = 0; k < 21; ++k) cube_evaluate(multipliers + CUBE_COUNT * k, at, 21, found + 21 * k);
     fwrite(found, sizeof found, 1, stdout);
     coefficients[0] = coefficients[10 * CUBE_COUNT] = 2;
     if (cube_multipliers_n(coefficients, 21, multipliers) != 2) return 2;
@@ -127,18 +127,19 @@ int main(void)
 ROW = (np.arange(63, dtype=np.float32) * 7 % 33 / 32).reshape(21, 3)
 
 
-def run_c(code, folder):
+def run_c(code, folder, *options):
     need(CC)
     (folder / "main.c").write_text(code)
-    subprocess.run(["cc", *run_program.STRICT, "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
+    subprocess.run(["cc", *run_program.STRICT, *options, "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
     return subprocess.run([folder / "main"], cwd=folder, capture_output=True, check=True).stdout
 
 
 @pytest.mark.parametrize(("mode", "count"), [("spectra", 2), ("moments", 3)])
 def test_many_colours_at_any_number_of_wavelengths_and_stored_multipliers(small_cube, tmp_path, mode, count):
     write_program(small_cube.data, tmp_path / "cube.h", mode=mode)
-    found = np.frombuffer(run_c(MANY, tmp_path), np.float32).reshape(count, 21, 21)
-    expected = [small_cube.reflectance(rgb, 400 + k + 15.0 * np.arange(21), mode=mode) for k, rgb in enumerate(ROW)]
+    need(SANITIZERS)
+    found = np.frombuffer(run_c(MANY, tmp_path, *SANITIZED), np.float32).reshape(count, 21, 21)
+    expected = small_cube.reflectance(ROW, 400 + 15.0 * np.arange(21), mode=mode)
     np.testing.assert_allclose(found, [expected] * count, rtol=0, atol=WITHIN)
 
 

@@ -31,8 +31,6 @@ LOOP = re.compile(
     re.MULTILINE,
 )
 """A loop to be written out: its statement is on the same line, or in braces."""
-EXAMPLE = re.compile(r"\n\n(?P<lines>(?: {7}.+\n)+)")
-"""The example in the comment of a public function."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +69,7 @@ def write_program(
 ) -> list[Path]:
     """Write a cube as a program in C, CUDA, GLSL or HLSL that evaluates it in single precision; return the files.
 
-    Names in the program begin with the name of the file, converted to an identifier. ``mode`` is what it interpolates,
+    It begins with a list of its functions. Names in the program begin with the name of the file, converted to an identifier. ``mode`` is what it interpolates,
     as in `Cube.reflectance`: "spectra", with exact colours, or coefficients, "moments". The table is by ``form`` in the
     program, a "header", the default of C; or in a "file" with the same stem: float32 numbers, little-endian. A cube
     that was built for a scene is an `OptionError` of the code ``sparse-cube``.
@@ -127,8 +125,9 @@ def compose(kind: str, table: Table, style: str, stem: str, form: str, words: di
     text = _read(f"{kind}.c")
     text = text.replace("${macros}", "".join(_read(each) for each in language.macros))
     calls = _read(f"{kind}_calls{language.calls}")
+    overview, _, calls = calls.partition(" */\n")
     text = text.replace("${calls}", calls)
-    text = text.replace("${example}", _example(calls, language.vector))
+    text = text.replace("${overview}", overview.removeprefix("/* ").replace("UP_VEC", language.vector))
     text = text.replace("${table}", _read(f"table_{form}.c"))
     text = _unroll(text, {f"UP_{key}": value for key, value in table.constants.items()})
     text = re.sub(r"\bup_", f"{name}_", text)
@@ -177,13 +176,6 @@ def comment(text: str) -> str:
 
 def _read(name: str) -> str:
     return (files("uplift.io.export") / "source" / name).read_text(encoding="ascii")
-
-
-def _example(calls: str, vector: str) -> str:
-    """Return the first example of the public functions, for the beginning of the program."""
-    found = EXAMPLE.search(calls)
-    assert found is not None
-    return found["lines"].replace("UP_VEC", vector).removesuffix("*/\n").rstrip()
 
 
 def _unroll(text: str, constants: dict[str, Any]) -> str:

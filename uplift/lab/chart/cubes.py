@@ -104,7 +104,6 @@ COMPILER = "a C compiler, cc: apt install gcc"
 SECONDS = 60
 """Time limit of the compiler."""
 FLAGS = ("-std=c99", "-O3", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-shared", "-fPIC")
-# The wavelengths are those of all colours; ``cube_reflectances_n`` takes different ones for each.
 SOURCE = """#include "cube.h"
 void uplift_colours(const float *rgb, const float *wavelengths, int width, long colours, float *reflectances)
 {

@@ -6,6 +6,11 @@
 #include <math.h>
 #include <string.h>
 
+#ifdef __cplusplus
+#define UP_CAST(type, x) static_cast<type>(x)
+#else
+#define UP_CAST(type, x) ((type)(x))
+#endif
 #ifndef UP_WIDTH
 #define UP_WIDTH ${width}
 #endif

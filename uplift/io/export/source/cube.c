@@ -3,7 +3,7 @@
    Written by uplift ${version} from the cube ${digest}.
    RGB is linear ${space} under ${illuminant} for the ${observer}; ${entries} atlas entries. Mode ${mode}.
 
-${example} */
+   ${overview} */
 ${macros}
 #ifdef UP_VEC4
 

@@ -1,3 +1,21 @@
+/* float rgb[3] = {0.8f, 0.2f, 0.1f}, wavelengths[4] = {450, 500, 550, 600}, reflectances[4];
+   up_reflectances(rgb, wavelengths, 4, reflectances);
+
+   Functions and the sizes of their arrays, which are of float; numbers of a colour follow those of the one before:
+
+   up_reflectances(rgb[3], wavelengths[count], count, reflectances[count])
+   up_reflectances_n(rgb[n * 3], n, wavelengths[count], count, reflectances[n * count])
+   up_evaluate(multipliers[UP_COUNT], wavelengths[count], count, reflectances[count])
+   up_tabulate(wavelengths[UP_WIDTH], basis[UP_COUNT * UP_WIDTH])
+   up_evaluate_block(multipliers[UP_COUNT], basis[UP_COUNT * UP_WIDTH], reflectances[UP_WIDTH])
+
+   in mode moments also
+
+   up_coefficients(rgb[3], coefficients[UP_COUNT])
+   up_multipliers(coefficients[UP_COUNT], multipliers[UP_COUNT])
+   up_multipliers_n(coefficients[n * UP_COUNT], n, multipliers[n * UP_COUNT])
+
+   and up_load(path) before all others, if the numbers are in a file. */
 /* Reflectances of the multipliers of a place, mixed with those of an entry unless it is negative, at wavelengths in nm. */
 UP_FUNCTION void up_mix_all(
     const float multipliers[UP_COUNT], const float place[UP_PLACE], int entry, const float *wavelengths, int count,
@@ -12,12 +30,12 @@ UP_FUNCTION void up_mix_all(
     }
     if (start < count) {
         float block[UP_WIDTH] = {0}, found[UP_WIDTH];
-        memcpy(block, wavelengths + start, (count - start) * sizeof *block);
+        memcpy(block, wavelengths + start, UP_CAST(size_t, count - start) * sizeof *block);
         up_mix(multipliers, place[3], entry, block, found);
 #if UP_INEXACT
         up_move(place, block, found);
 #endif
-        memcpy(reflectances + start, found, (count - start) * sizeof *found);
+        memcpy(reflectances + start, found, UP_CAST(size_t, count - start) * sizeof *found);
     }
 }
 
@@ -31,10 +49,7 @@ UP_FUNCTION void up_evaluate(
 
 #if UP_SPECTRA
 
-/* Reflectances of linear RGB at wavelengths in nm; their colour is exactly this RGB. Clips RGB to [0, 1].
-
-       float rgb[3] = {0.8f, 0.2f, 0.1f}, wavelengths[4] = {450, 500, 550, 600}, reflectances[4];
-       up_reflectances(rgb, wavelengths, 4, reflectances); */
+/* Reflectances of linear RGB at wavelengths in nm; their colour is exactly this RGB. Clips RGB to [0, 1]. */
 UP_FUNCTION void up_reflectances(const float rgb[3], const float *wavelengths, int count, float *reflectances)
 {
     float place[UP_PLACE];
@@ -43,18 +58,17 @@ UP_FUNCTION void up_reflectances(const float rgb[3], const float *wavelengths, i
         up_answer(place, entry, wavelengths + start, reflectances + start);
     if (start < count) {
         float block[UP_WIDTH] = {0}, found[UP_WIDTH];
-        memcpy(block, wavelengths + start, (count - start) * sizeof *block);
+        memcpy(block, wavelengths + start, UP_CAST(size_t, count - start) * sizeof *block);
         up_answer(place, entry, block, found);
-        memcpy(reflectances + start, found, (count - start) * sizeof *found);
+        memcpy(reflectances + start, found, UP_CAST(size_t, count - start) * sizeof *found);
     }
 }
 
-/* The same of n colours, each at count wavelengths of its own. */
+/* The same of n colours at the same wavelengths. */
 UP_FUNCTION void up_reflectances_n(
-    const float *rgb, const float *wavelengths, int count, int n, float *reflectances)
+    const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
 {
-    for (int i = 0; i < n; ++i)
-        up_reflectances(rgb + 3 * i, wavelengths + (size_t)count * i, count, reflectances + (size_t)count * i);
+    for (int i = 0; i < n; ++i, rgb += 3, reflectances += count) up_reflectances(rgb, wavelengths, count, reflectances);
 }
 
 #else
@@ -111,18 +125,12 @@ UP_FUNCTION int up_multipliers_of_lanes(const float *coefficients, int colours, 
 UP_FUNCTION int up_multipliers_n(const float *coefficients, int n, float *multipliers)
 {
     int failed = 0;
-    for (int start = 0; start < n; start += UP_LANES) {
-        size_t first = (size_t)UP_COUNT * start;
-        int colours = n - start < UP_LANES ? n - start : UP_LANES;
-        failed += up_multipliers_of_lanes(coefficients + first, colours, multipliers + first);
-    }
+    for (; n > 0; n -= UP_LANES, coefficients += UP_COUNT * UP_LANES, multipliers += UP_COUNT * UP_LANES)
+        failed += up_multipliers_of_lanes(coefficients, n < UP_LANES ? n : UP_LANES, multipliers);
     return failed;
 }
 
-/* Reflectances of linear RGB at wavelengths in nm; their colour is this RGB, approximately. Clips RGB to [0, 1].
-
-       float rgb[3] = {0.8f, 0.2f, 0.1f}, wavelengths[4] = {450, 500, 550, 600}, reflectances[4];
-       up_reflectances(rgb, wavelengths, 4, reflectances); */
+/* Reflectances of linear RGB at wavelengths in nm; their colour is this RGB, approximately. Clips RGB to [0, 1]. */
 UP_FUNCTION void up_reflectances(const float rgb[3], const float *wavelengths, int count, float *reflectances)
 {
     float place[UP_PLACE], coefficients[UP_COUNT], multipliers[UP_COUNT];
@@ -132,24 +140,21 @@ UP_FUNCTION void up_reflectances(const float rgb[3], const float *wavelengths, i
     up_mix_all(multipliers, place, entry, wavelengths, count, reflectances);
 }
 
-/* The same of n colours, each at count wavelengths of its own: faster than one by one. */
+/* The same of n colours at the same wavelengths: faster than one by one. */
 UP_FUNCTION void up_reflectances_n(
-    const float *rgb, const float *wavelengths, int count, int n, float *reflectances)
+    const float *rgb, int n, const float *wavelengths, int count, float *reflectances)
 {
-    for (int start = 0; start < n; start += UP_LANES) {
+    for (; n > 0; n -= UP_LANES) {
         float places[UP_PLACE * UP_LANES], numbers[UP_COUNT * UP_LANES], multipliers[UP_COUNT * UP_LANES];
-        int entries[UP_LANES], colours = n - start < UP_LANES ? n - start : UP_LANES;
-        for (int lane = 0; lane < colours; ++lane) {
-            entries[lane] = up_find(rgb + 3 * (start + lane), places + UP_PLACE * lane);
+        int entries[UP_LANES], colours = n < UP_LANES ? n : UP_LANES;
+        for (int lane = 0; lane < colours; ++lane, rgb += 3) {
+            entries[lane] = up_find(rgb, places + UP_PLACE * lane);
             up_sum_nodes(places + UP_PLACE * lane, numbers + UP_COUNT * lane);
         }
         up_multipliers_of_lanes(numbers, colours, multipliers);
-        for (int lane = 0; lane < colours; ++lane) {
-            size_t first = (size_t)count * (start + lane);
+        for (int lane = 0; lane < colours; ++lane, reflectances += count)
             up_mix_all(
-                multipliers + UP_COUNT * lane, places + UP_PLACE * lane, entries[lane], wavelengths + first, count,
-                reflectances + first);
-        }
+                multipliers + UP_COUNT * lane, places + UP_PLACE * lane, entries[lane], wavelengths, count, reflectances);
     }
 }
 

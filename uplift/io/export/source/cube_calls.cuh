@@ -1,3 +1,11 @@
+/* float rgb[3] = {0.8f, 0.2f, 0.1f}, wavelengths[UP_WIDTH] = {450, 500, 550, 600}, reflectances[UP_WIDTH];
+   up_reflectances(table, rgb, wavelengths, reflectances);
+
+   Functions and the sizes of their arrays, which are of float:
+
+   up_reflectances(table, rgb[3], wavelengths[UP_WIDTH], reflectances[UP_WIDTH])
+   up_evaluate(multipliers[UP_COUNT], wavelengths[UP_WIDTH], reflectances[UP_WIDTH])
+   up_coefficients(table, rgb[3], coefficients[UP_COUNT]), in mode moments */
 /* Reflectances of stored multipliers at wavelengths in nm. */
 UP_FUNCTION void up_evaluate(
     const float multipliers[UP_COUNT], const float wavelengths[UP_WIDTH], float reflectances[UP_WIDTH])
@@ -7,10 +15,7 @@ UP_FUNCTION void up_evaluate(
     up_evaluate_block(multipliers, basis, reflectances);
 }
 
-/* Reflectances of linear RGB at wavelengths in nm. Clips RGB to [0, 1].
-
-       float rgb[3] = {0.8f, 0.2f, 0.1f}, wavelengths[UP_WIDTH] = {450, 500, 550, 600}, found[UP_WIDTH];
-       up_reflectances(table, rgb, wavelengths, found); */
+/* Reflectances of linear RGB at wavelengths in nm. Clips RGB to [0, 1]. */
 UP_FUNCTION void up_reflectances(
     const float *table, const float rgb[3], const float wavelengths[UP_WIDTH], float reflectances[UP_WIDTH])
 {

@@ -1,3 +1,10 @@
+/* UP_VEC4 reflectances = up_reflectances(UP_VEC3(0.8, 0.2, 0.1), UP_VEC4(450.0, 500.0, 550.0, 600.0));
+
+   Functions, each at four wavelengths in nm:
+
+   UP_VEC4 up_reflectances(UP_VEC3 rgb, UP_VEC4 wavelengths)
+   UP_VEC4 up_evaluate(float multipliers[UP_COUNT], UP_VEC4 wavelengths)
+   up_coefficients(UP_VEC3 rgb, float coefficients[UP_COUNT]), in mode moments */
 /* Reflectances of stored multipliers at four wavelengths in nm. */
 UP_VEC4 up_evaluate(float multipliers[UP_COUNT], UP_VEC4 wavelengths)
 {
@@ -10,9 +17,7 @@ UP_VEC4 up_evaluate(float multipliers[UP_COUNT], UP_VEC4 wavelengths)
     return UP_VEC4(total[0], total[1], total[2], total[3]);
 }
 
-/* Reflectances of linear RGB at four wavelengths in nm. Clips RGB to [0, 1].
-
-       UP_VEC4 reflectances = up_reflectances(UP_VEC3(0.8, 0.2, 0.1), UP_VEC4(450.0, 500.0, 550.0, 600.0)); */
+/* Reflectances of linear RGB at four wavelengths in nm. Clips RGB to [0, 1]. */
 UP_VEC4 up_reflectances(UP_VEC3 rgb, UP_VEC4 wavelengths)
 {
     UP_ARRAY(colour, 3);

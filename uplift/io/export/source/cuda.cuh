@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#define UP_CAST(type, x) static_cast<type>(x)
 #ifndef UP_WIDTH
 #define UP_WIDTH ${width}
 #endif

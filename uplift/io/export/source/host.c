@@ -3,8 +3,8 @@
 #define UP_OUT
 #define UP_ARRAY(name, size) float name[size]
 #define UP_BOOL int
-#define UP_INT(x) ((int)(x))
-#define UP_REAL(x) ((float)(x))
+#define UP_INT(x) UP_CAST(int, x)
+#define UP_REAL(x) UP_CAST(float, x)
 #define UP_ABS fabsf
 #define UP_SQRT sqrtf
 #define UP_TANH tanhf
@@ -12,7 +12,7 @@
 /* Moving a colour takes a few steps in double precision. */
 #define UP_FINE double
 #define UP_FINES(name, size) double name[size]
-#define UP_EXACT(x) ((double)(x))
+#define UP_EXACT(x) UP_CAST(double, x)
 #define UP_TURN(x) (atan(x) * 0.31830988618379067)
 #define UP_SQUARE_ROOT sqrt
 #define UP_TINY 1e-18

@@ -3,7 +3,7 @@
    Written by uplift ${version} from the table ${digest}.
    RGB is linear ${space} for the ${observer}; ${lamps} lamps. Power 1 at all wavelengths has luminance 1, as has RGB (1, 1, 1).
 
-${example} */
+   ${overview} */
 ${macros}
 /* Direction from white in u'v', from 0 to 4 counterclockwise from the first knot: 1 per quarter turn, by |u| + |v|. */
 UP_FUNCTION float up_angle(float u, float v)

@@ -1,7 +1,6 @@
+/* UP_VEC4 power = up_power(UP_VEC3(8000.0, 5000.0, 900.0), UP_VEC4(450.0, 500.0, 550.0, 600.0)); */
 /* Power of linear RGB at four wavelengths in nm; its colour is exactly this RGB. Colours that no light has move towards
-   white of the same luminance.
-
-       UP_VEC4 power = up_power(UP_VEC3(8000.0, 5000.0, 900.0), UP_VEC4(450.0, 500.0, 550.0, 600.0)); */
+   white of the same luminance. */
 UP_VEC4 up_power(UP_VEC3 rgb, UP_VEC4 wavelengths)
 {
     UP_ARRAY(colour, 3);

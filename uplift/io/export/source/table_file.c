@@ -8,8 +8,8 @@ static inline const char *up_load(const char *path)
 {
     FILE *file = fopen(path, "rb");
     size_t size = ${size} * sizeof(float), count = 0, k;
-    unsigned char *bytes = (unsigned char *)malloc(size + 1);
-    float *table = (float *)malloc(size);
+    unsigned char *bytes = UP_CAST(unsigned char *, malloc(size + 1));
+    float *table = UP_CAST(float *, malloc(size));
     unsigned long checksum = 0xFFFFFFFFUL; /* CRC-32, as in zlib */
     const char *problem = NULL;
     if (!file) problem = "the table cannot be opened";
@@ -25,7 +25,7 @@ static inline const char *up_load(const char *path)
         problem = "the table is damaged or of another cube";
     for (k = 0; !problem && k < size / 4; ++k) {
         const unsigned char *four = bytes + 4 * k;
-        unsigned int number = four[0] | four[1] << 8 | four[2] << 16 | (unsigned int)four[3] << 24;
+        unsigned int number = four[0] + 0x100U * four[1] + 0x10000U * four[2] + 0x1000000U * four[3];
         memcpy(table + k, &number, sizeof number);
     }
     free(bytes);
