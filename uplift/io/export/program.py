@@ -69,10 +69,11 @@ def write_program(
 ) -> list[Path]:
     """Write a cube as a program in C, CUDA, GLSL or HLSL that evaluates it in single precision; return the files.
 
-    It begins with a list of its functions. Names in the program begin with the name of the file, converted to an identifier. ``mode`` is what it interpolates,
-    as in `Cube.reflectance`: "spectra", with exact colours, or coefficients, "moments". The table is by ``form`` in the
-    program, a "header", the default of C; or in a "file" with the same stem: float32 numbers, little-endian. A cube
-    that was built for a scene is an `OptionError` of the code ``sparse-cube``.
+    It begins with a list of its functions. Names in the program begin with the name of the file, converted to an
+    identifier. ``mode`` is what it interpolates, as in `Cube.reflectance`: "spectra", with exact colours, or
+    coefficients, "moments". The table is by ``form`` in the program, a "header", the default of C; or in a "file"
+    with the same stem: float32 numbers, little-endian. A cube that was built for a scene is an `OptionError` of the
+    code ``sparse-cube``.
     """
     if style not in LANGUAGES:
         raise unknown_name(style, LANGUAGES, "language")
