@@ -283,7 +283,7 @@ def query(
     elif style == "csv":
         _print_csv(results)
     elif path is None:
-        _print_details(table, next(results))
+        _print_details(table, next(results), complete=wavelengths is not None)
     else:
         _print_lines(results)
 
@@ -329,7 +329,7 @@ def _print_csv(results: Iterable[LightAnswer]) -> None:
         writer.write([*result.rgb.tolist(), result.expected_error, *result.power.tolist()])
 
 
-def _print_details(table: EmissionTable, result: LightAnswer) -> None:
+def _print_details(table: EmissionTable, result: LightAnswer, *, complete: bool) -> None:
     at = result.wavelengths
     fields = {
         "linear RGB": f"{format_rgb(result.rgb)} ({table.space})",
@@ -340,7 +340,7 @@ def _print_details(table: EmissionTable, result: LightAnswer) -> None:
     }
     print_fields(fields)
     emit("")
-    print_columns(at, result.power)
+    print_columns(at, result.power, complete=complete)
 
 
 def _print_lines(results: Iterable[LightAnswer]) -> None:

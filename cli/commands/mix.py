@@ -240,7 +240,7 @@ def command(
     if style == "json":
         _print_json(cube, mixture)
     else:
-        _print_table(cube, mixture)
+        _print_table(cube, mixture, complete=wavelengths is not None)
 
 
 def _print_theories(cube: Cube, names: tuple[str, ...], parts: Array, spectra: Array, method: str, style: str) -> None:
@@ -314,7 +314,7 @@ def _print_json(cube: Cube, mixture: Mixture) -> None:
     print_json(fields, indent=None)
 
 
-def _print_table(cube: Cube, mixture: Mixture) -> None:
+def _print_table(cube: Cube, mixture: Mixture, *, complete: bool) -> None:
     rgb, spectrum, wavelengths = mixture.rgb[0], mixture.spectrum, mixture.wavelengths
     fields = {mixture.kind: mixture.recipe, "linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"}
     fields |= describe_coordinates(cube, rgb)
@@ -325,4 +325,4 @@ def _print_table(cube: Cube, mixture: Mixture) -> None:
     ramp = "".join(patch(cube, step, 4) for step in mixture.rgb[1:])
     print_fields(fields, {"linear RGB": patch(cube, rgb), "ramp": ramp})
     emit("")
-    print_columns(wavelengths, spectrum)
+    print_columns(wavelengths, spectrum, complete=complete)

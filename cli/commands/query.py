@@ -192,7 +192,7 @@ def command(
         patches = {"linear RGB": patch(stream.cube, result.rgb)} if has_colours() else {}
         print_fields(_fields(stream, result), patches)
         emit("")
-        print_columns(result.wavelengths, result.reflectance)
+        print_columns(result.wavelengths, result.reflectance, complete=colours["wavelengths"] is not None)
     else:
         _print_lines(stream, chain.from_iterable(results))
     stream.warn()
@@ -347,13 +347,8 @@ def _fields(stream: QueryStream, result: QueryResult) -> dict[str, str]:
     else:
         unknown = "none, and none is near: unlike the atlas" if result.unlike_atlas else "none"
         fields["atlas entry"] = result.entry or unknown
-    if errors := _errors(cube, result):
-        standard = ", ".join(f"{error:.2g} ({name})" for name, error, _ in errors)
-        bound = ", ".join(f"{bound:.2g} ({name})" for name, _, bound in errors)
-        fields["std. error"] = f"ΔE00 {standard} to a measured material"
-        fields["error bound"] = f"ΔE00 {bound} to 95 % of them"
-    else:
-        fields["std. error"] = "unknown: too few atlas entries"
+    errors = (f"ΔE00 {error:.2g} under {name} (95 %: {bound:.2g})" for name, error, bound in _errors(cube, result))
+    fields["exp. error"] = ", ".join(errors) or "unknown: too few atlas entries"
     wavelengths = f"{result.wavelengths[0]:g}–{result.wavelengths[-1]:g} nm"
     fields["spectrum"] = f"{sparkline(result.reflectance)}  {wavelengths}"
     return fields

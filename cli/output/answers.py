@@ -17,11 +17,15 @@ if TYPE_CHECKING:
 BLOCKS = "▁▂▃▄▅▆▇█"
 CELL_WIDTH = 20
 """Characters of a wavelength and its reflectance, with the space between columns."""
+MAX_CELLS = 24
+"""Wavelengths that are printed where the user names none; JSON and CSV have all."""
 
 
-def print_columns(wavelengths: Array, values: Array) -> None:
-    """Print wavelengths and values in columns, ordered downwards."""
-    cells = [f"{wavelength:>6g} nm {value:8.5f}" for wavelength, value in zip(wavelengths, values, strict=True)]
+def print_columns(wavelengths: Array, values: Array, *, complete: bool) -> None:
+    """Print wavelengths and values in columns, ordered downwards; at most `MAX_CELLS` of them unless ``complete``."""
+    step = 1 if complete else -(-len(wavelengths) // MAX_CELLS)
+    pairs = zip(wavelengths[::step], values[::step], strict=True)
+    cells = [f"{wavelength:>6g} nm {value:8.5f}" for wavelength, value in pairs]
     height = -(-len(cells) // max(1, (columns() + 2) // CELL_WIDTH))
     for line in range(height):
         say("  ".join(cells[line::height]))
