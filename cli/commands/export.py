@@ -10,14 +10,14 @@ import click
 from .. import options
 from ..output.console import say
 from ..output.progress import progress_bar
-from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.lookup import Cube
 
 PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl"}
 LUTS = {"cube": ".cube", "clf": ".clf"}
-SUFFIXES = {"coeff": ".coeff", **PROGRAMS, **LUTS, "film": ".npy", "npz": ".npz", "csv": ".csv", "html": ".html"}
+SIGMOIDS = {"coeff": ".coeff", "pbrt": ".cpp", "luisa": ".cpp"}
+SUFFIXES = {**SIGMOIDS, **PROGRAMS, **LUTS, "film": ".npy", "npz": ".npz", "csv": ".csv", "html": ".html"}
 APPLIES = {
     "res": ("coeff", *LUTS, "film"),
     "light": (*LUTS, "film"),
@@ -76,6 +76,8 @@ def command(
     c, cuda, glsl, hlsl
            program that looks up colours
     coeff  table of rgb2spec, for Mitsuba and colour-science
+    pbrt, luisa
+           the same as source in C++, for pbrt-v4 and LuisaRender
     cube, clf
            table of the colours under --light, for grading and compositing
     film   table of a spectrum per chromaticity, for film simulation; with --light, as light that reaches the film
@@ -84,13 +86,14 @@ def command(
     csv    one line per node
 
     Names in a program start with the file's. A C header, also valid C++, contains the table, or loads it from a file
-    of numbers. Programs in other languages come with a second file, which they explain. A coeff table stores sigmoid
-    spectra of the cube's colours: three coefficients cannot represent the atlas.
+    of numbers. Programs in other languages come with a second file, which they explain. The tables of coeff, pbrt and
+    luisa store sigmoid spectra of the cube's colours: three coefficients cannot represent the atlas.
 
     \b
     Examples:
       uplift export macbeth-32.uplift -o macbeth-32.npz
       uplift export macbeth-32.uplift -o srgb.coeff
+      uplift export macbeth-32.uplift -o rgbspectrum_srgb.cpp
       uplift export macbeth-32.uplift -o cube.h
       uplift export macbeth-32.uplift -o filed.h --table file
       uplift export macbeth-32.uplift -o moments.glsl --mode moments
@@ -131,10 +134,10 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     if style == "film":
         film = write_film(cube, path, **settings)
         return f"{film.inside:.0%} of the chromaticities from the cube, mean error of exposure {film.stops:.2g} stops"
-    if style == "coeff":
-        enable_jit_cache()
+    if style in SIGMOIDS:
         with progress_bar("fitting sigmoids"):
-            return f"rgb2spec table, largest RGB error {write_coeff(data, path, **settings):.1e} between its points"
+            error = write_coeff(data, path, layout=style, **settings)
+        return f"table of sigmoids, largest RGB error {error:.1e} between its points"
     if style == "npz":
         return f"{write_npz(data, path, **settings)} arrays"
     if style == "csv":

@@ -1,13 +1,17 @@
-"""The table of rgb2spec: sigmoid spectra, which Mitsuba and colour-science read.
+"""The table of rgb2spec: sigmoid spectra, for Mitsuba and colour-science, pbrt and LuisaRender.
 
-The file is little-endian: "SPEC", u32 res, f32 scale[res], f32 data[3][res][res][res][3]. The first axis of the data is
-the largest component l. The second axis is its value, scale[k]. The last two are the other components as even fractions
-of it, l + 2 before l + 1 (modulo 3). A spectrum is S(c₀λ² + c₁λ + c₂) with λ in nm and S(t) = ½ + t / (2√(1 + t²)).
-The sensor follows, which Mitsuba 3.9 and later require and other programs ignore: u32 count, f32 wavelength[count] as
-fractions of 360–830 nm, f32 rgb[3][count] of a reflectance there, f32 rgb_to_xyz[3][3], f32 white_xyz[3].
+The first axis of the table is the largest component l. The second axis is its value, scale[k]. The last two are the
+other components as even fractions of it, l + 2 before l + 1 (modulo 3). A spectrum is S(c₀λ² + c₁λ + c₂) with λ in nm
+and S(t) = ½ + t / (2√(1 + t²)). Programs hold the same numbers in three layouts:
+
+- coeff, little-endian: "SPEC", u32 res, f32 scale[res], f32 data[3][res][res][res][3]. The sensor follows, which
+  Mitsuba 3.9 and later require and other programs ignore: u32 count, f32 wavelength[count] as fractions of 360–830 nm,
+  f32 rgb[3][count] of a reflectance there, f32 rgb_to_xyz[3][3], f32 white_xyz[3].
+- pbrt, a source file in C++: ``NAMEToSpectrumTable_Res``, ``_Scale`` and ``_Data``.
+- luisa, a source file in C++: ``sRGBToSpectrumTable_Data``, with a fourth number, 0, after the three.
 
 Three coefficients per spectrum determine a colour. The table therefore reproduces the cube's colours, but not the
-spectra of its atlas.
+spectra of its atlas. Colours are those of the readers' tables, 360–830 nm at 5 nm.
 
 References
 ----------
@@ -15,63 +19,122 @@ W. Jakob and J. Hanika, "A Low-Dimensional Function Space for Efficient Spectral
 reference implementation ``rgb2spec``.
 """
 
-import os
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.colorimetry.observer import on_range
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, StrPath, blocks
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write
 from uplift.cube import CubeData
 from uplift.lattice import CORNERS
 from uplift.lookup.interpolate import around
 from uplift.models import Sigmoid
-from uplift.models.minimum_norm import forward_map
+from uplift.models.arithmetic import blocked_matmul_columns
+from uplift.models.minimum_norm import solve_damped
+from uplift.models.sigmoid import evaluate_unscaled
 
 MAGIC = b"SPEC"
 RES = 64
 """Resolution of Mitsuba's own table."""
 MIN_RES, MAX_RES = 2, 256
-TOLERANCE, MAX_PASSES = 1e-6, 32
+DARK, DARK_COLOUR = 1e-3, 1e-4
+"""Up to this level, the difference ε of a component of linear RGB that weighs as much as the distance of a spectrum
+from grey; above, ε falls with the level. Very dark colours of high purity would else have reflectances near 1 where the
+eye hardly sees."""
+FAINT = 1e-6
+"""Reflectance of black, and 1 minus that of white, whose multipliers are infinite."""
+FIRST_DAMPING, MAX_DAMPING, MAX_STEPS, SMALL_GAIN, SMALL_PART = 1e-6, 1e6, 200, 1e-2, 1e-4
+BLOCK = 1 << 10
+"""Points of a level that are fitted at a time."""
 COLOURS, SEED = 20_000, 20200617
 """Random colours of which the error is stated."""
-START, END = 360.0, 830.0
-"""Wavelength range of rgb2spec in nm."""
+START, END, STEP = 360.0, 830.0, 5.0
+"""Range and step in nm of rgb2spec, and of the programs that read its tables."""
+MODEL = Sigmoid(START, END)
+SYMBOLS = {
+    ("sRGB", "D65"): "sRGB",
+    ("P3-D65", "D65"): "DCI_P3",
+    ("Display P3", "D65"): "DCI_P3",
+    ("ITU-R BT.2020", "D65"): "REC2020",
+    ("ACES2065-1", "D60"): "ACES2065_1",
+}
+"""Names of the tables of pbrt by space and illuminant."""
+LAYOUTS = {"coeff": {"", *SYMBOLS.values()}, "pbrt": set(SYMBOLS.values()), "luisa": {"sRGB"}}
+"""Tables that a layout can hold; that of rgb2spec has those without a name as well."""
 
 
-def write_coeff(data: CubeData, path: str | os.PathLike[str], *, res: int = RES, force: bool = False) -> float:
-    """Write a cube as an rgb2spec table of ``res`` points along each axis, 2 to 256.
+def write_coeff(data: CubeData, path: StrPath, *, layout: str = "coeff", res: int = RES, force: bool = False) -> float:
+    """Write a cube as a table of sigmoid spectra with ``res`` points along each axis, 2 to 256.
 
-    Readers interpret RGB in the cube's space under its illuminant. Mitsuba assumes sRGB under D65. Returns the largest
-    difference of a component of linear RGB from the cube's answers, of `COLOURS` random colours that rgb2spec
-    interpolates. A camera's cube is a `ColourError`.
+    The layout is one of `LAYOUTS`; pbrt and LuisaRender are compiled for 64 points. Readers interpret RGB in the cube's
+    space under its illuminant; Mitsuba and LuisaRender assume sRGB under D65. Returns the largest difference of a
+    component of linear RGB from the cube's answers, of `COLOURS` random colours that rgb2spec interpolates.
+
+    Raises
+    ------
+    ColourError
+        The cube of a camera.
+    OptionError
+        A size outside its range, or a space or illuminant for which the program has no table.
     """
     data.sensor.require_xyz()
     if not MIN_RES <= res <= MAX_RES:
         raise OptionError(f"res must be from {MIN_RES} to {MAX_RES}, got {res}", hint=f"{RES} is the default")
+    sensor = on_range(data.sensor, START, END, STEP)
+    name = SYMBOLS.get((sensor.space, sensor.illuminant), "")
+    if name not in LAYOUTS[layout]:
+        known = [f"{space} under {light}" for (space, light), symbol in SYMBOLS.items() if symbol in LAYOUTS[layout]]
+        raise OptionError(
+            f"a {layout} table needs {' or '.join(known)}, got {sensor.space} under {sensor.illuminant}",
+            hint="build a cube of this space and illuminant",
+        )
     with atomic_write(path, force=force) as temporary:
         scale = _scale(res)
-        coefficients = _fit(data, scale)
-        with temporary.open("wb") as file:
-            file.write(MAGIC + np.array(res, dtype="<u4").tobytes())
-            file.write(scale.astype("<f4").tobytes())
-            file.write(coefficients.astype("<f4").tobytes())
-            file.write(_sensor_bytes(data.sensor))
-    return _largest_error(data, scale, coefficients)
+        table = _fit(data, sensor, scale, _directions(res)).reshape(res, 3, res, res, 3).swapaxes(0, 1)
+        content = _binary(sensor, scale, table) if layout == "coeff" else _source(layout, name, scale, table).encode()
+        temporary.write_bytes(content)
+    return _largest_error(data, sensor, scale, table)
+
+
+def _binary(sensor: Sensor, scale: Array, table: NDArray[np.float32]) -> bytes:
+    """Return the bytes of the layout ``coeff``."""
+    return MAGIC + np.array(len(scale), "<u4").tobytes() + _f32(scale, table) + _sensor_bytes(sensor)
+
+
+def _source(layout: str, name: str, scale: Array, table: NDArray[np.float32]) -> str:
+    """Return the source of a layout in C++."""
+    res = len(scale)
+    axes = f"[3][{res}][{res}][{res}]"
+    if layout == "luisa":
+        padded = np.pad(table, [(0, 0)] * 4 + [(0, 1)])
+        return f"namespace luisa::render {{\n{_array(name, 'Data', axes + '[4]', padded)}}}\n"
+    return (
+        f"namespace pbrt {{\nextern const int {name}ToSpectrumTable_Res = {res};\n"
+        f"{_array(name, 'Scale', f'[{res}]', scale)}{_array(name, 'Data', axes + '[3]', table)}}}\n"
+    )
+
+
+def _array(name: str, part: str, axes: str, numbers: NDArray[Any]) -> str:
+    """Return the definition of an array of floats in C++."""
+    rows = numbers.reshape(-1, numbers.shape[-1]).tolist()
+    lines = "\n".join(",".join(f"{number:.9g}" for number in row) + "," for row in rows)
+    return f"extern const float {name}ToSpectrumTable_{part}{axes} = {{\n{lines}\n}};\n"
+
+
+def _f32(*arrays: Array | NDArray[np.float32]) -> bytes:
+    return b"".join(array.astype("<f4").tobytes() for array in arrays)
 
 
 def _sensor_bytes(sensor: Sensor) -> bytes:
     """Return the sensor in the layout of Mitsuba."""
-    numbers = (
-        (sensor.wavelengths - START) / (END - START),
-        sensor.matrix,
-        np.linalg.inv(sensor.xyz_to_rgb),
-        sensor.xyz(np.ones(3)),
+    numbers = _f32(
+        (sensor.wavelengths - START) / (END - START), sensor.matrix, sensor.rgb_to_xyz, sensor.xyz(np.ones(3))
     )
-    count = np.array(len(sensor.wavelengths), dtype="<u4").tobytes()
-    return count + b"".join(array.astype("<f4").tobytes() for array in numbers)
+    return np.array(len(sensor.wavelengths), "<u4").tobytes() + numbers
 
 
 def _scale(res: int) -> Array:
@@ -82,39 +145,73 @@ def _scale(res: int) -> Array:
     return x
 
 
-def _points(level: float, res: int) -> Array:
-    """Return linear RGB (3·res·res, 3) of the table's points whose largest component is ``level``."""
+def _directions(res: int) -> Array:
+    """Return linear RGB (3·res·res, 3) of the table's points whose largest component is 1."""
     share = np.linspace(0, 1, res)
     second, first = np.meshgrid(share, share, indexing="ij")
     shares = np.stack([np.ones_like(first), first, second], axis=-1)
-    return level * np.stack([np.roll(shares, largest, axis=-1) for largest in range(3)]).reshape(-1, 3)
+    return np.stack([np.roll(shares, largest, axis=-1) for largest in range(3)]).reshape(-1, 3)
 
 
-def _fit(data: CubeData, scale: Array) -> NDArray[np.float32]:
-    """Fit coefficients (3, res, res, res, 3).
+def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> NDArray[np.float32]:
+    """Fit coefficients (res, n, 3) of the levels of directions (n, 3).
 
     Levels are fitted upwards and downwards from a medium one. Each starts from the multipliers of the previous level,
     so that neighbours are similar and can be interpolated.
     """
-    from uplift.fit.solver import solve
-
-    sensor, res = data.sensor, len(scale)
-    model = Sigmoid(*sensor.wavelengths[[0, -1]].tolist())
-    forward = forward_map(model, sensor.wavelengths, sensor.matrix)
-    table = np.empty((3, res, res, res, 3), dtype=np.float32)
-    middle = res // 5
-    middle_multipliers = np.zeros((3 * res * res, model.count))
-    for levels in (range(middle, res), range(middle - 1, -1, -1)):
-        multipliers = middle_multipliers
-        for level in levels:
-            rgb = _points(scale[level], res)
-            multipliers = solve(
-                forward, multipliers, _targets(data, rgb), tolerance=TOLERANCE, max_passes=MAX_PASSES
-            ).multipliers
-            if level == middle:
-                middle_multipliers = multipliers
-            table[:, level] = _per_nanometre(model, multipliers).reshape(3, res, res, 3)
+    middle = len(scale) // 5
+    table = np.empty((len(scale), len(directions), 3), dtype=np.float32)
+    for rows in blocks(len(directions), BLOCK):
+        start = np.zeros((len(directions[rows]), 3))
+        for levels in (range(middle, len(scale)), range(middle - 1, -1, -1)):
+            multipliers = start
+            for level in levels:
+                target = _targets(data, scale[level] * directions[rows])
+                multipliers = _nearest_to_grey(sensor, multipliers, target, scale[level])
+                if level == middle:
+                    start = multipliers
+                table[level, rows] = _per_nanometre(multipliers)
     return table
+
+
+def _nearest_to_grey(sensor: Sensor, start: Array, target: Array, level: float) -> Array:
+    """Minimise |t − r(p)|² / ε² + |p − g|² / s² over p (n, 3) from a start, by damped Gauss-Newton steps.
+
+    g are the multipliers of the grey of this level, and s their size, at least 1.
+    """
+    grey = MODEL.from_reflectance(np.clip(level, FAINT, 1 - FAINT)) * MODEL.constant()
+    size, unit = np.maximum(np.abs(grey).max(), 1), DARK_COLOUR * DARK / max(level, DARK)
+    p, rows, damping = start.copy(), np.arange(len(start)), np.full(len(start), FIRST_DAMPING)
+    left, jacobian = _linearised(sensor, p, target, unit)
+    cost = (left**2).sum(axis=0) + (((grey - p) / size) ** 2).sum(axis=1)
+    for _ in range(MAX_STEPS):
+        # (JᵀJ + I / s² + μ tr I) Δ = Jᵀ (t − r) / ε + (g − p) / s²
+        products = np.einsum("abn,acn->bcn", jacobian, jacobian) + np.eye(3)[:, :, None] / size**2
+        goal = np.einsum("abn,an->bn", jacobian, left) + (grey - p[rows]).T / size**2
+        lower = [products[row, : row + 1] for row in range(3)]
+        change = np.stack(solve_damped(lower, damping[rows], goal), axis=-1)
+        trial = p[rows] + change
+        after, there = _linearised(sensor, trial, target[rows], unit)
+        reached = (after**2).sum(axis=0) + (((grey - trial) / size) ** 2).sum(axis=1)
+        gain = cost[rows] - reached
+        better = gain > 0
+        p[rows[better]], cost[rows[better]] = trial[better], reached[better]
+        damping[rows] *= np.where(better, 1 / 4, 4)
+        left, jacobian = np.where(better, after, left), np.where(better, there, jacobian)
+        going = ~better & (damping[rows] < MAX_DAMPING) | (gain > SMALL_GAIN + SMALL_PART * reached)
+        rows, left, jacobian = rows[going], left[:, going], jacobian[:, :, going]
+        if not rows.size:
+            break
+    return p
+
+
+def _linearised(sensor: Sensor, p: Array, target: Array, unit: float) -> tuple[Array, Array]:
+    """Return (t − r(p)) / ε, (3, n), and the Jacobian of r / ε, (3, 3, n)."""
+    basis = MODEL.basis(sensor.wavelengths)
+    x = blocked_matmul_columns(basis, p.T)
+    products = (sensor.matrix[:, None, :] * basis.T).reshape(-1, len(basis))
+    jacobian = blocked_matmul_columns(products, MODEL.derivative(x)).reshape(3, 3, -1)
+    return (target.T - blocked_matmul_columns(sensor.matrix, MODEL.to_reflectance(x))) / unit, jacobian / unit
 
 
 def _targets(data: CubeData, rgb: Array) -> Array:
@@ -122,9 +219,9 @@ def _targets(data: CubeData, rgb: Array) -> Array:
     return around(data, rgb).weighted_sum(data.points.rgb.astype(float), data.atlas.rgb)
 
 
-def _per_nanometre(model: Sigmoid, multipliers: Array) -> Array:
+def _per_nanometre(multipliers: Array) -> Array:
     """Convert polynomials (n, 3) of [start, end] scaled to [−1, 1] to polynomials of λ in nm."""
-    middle, half = (model.start + model.end) / 2, (model.end - model.start) / 2
+    middle, half = (START + END) / 2, (END - START) / 2
     square, linear, constant = (multipliers / half ** np.array([2, 1, 0])).T
     return np.stack(
         [
@@ -136,12 +233,10 @@ def _per_nanometre(model: Sigmoid, multipliers: Array) -> Array:
     )
 
 
-def _largest_error(data: CubeData, scale: Array, table: NDArray[np.float32]) -> float:
+def _largest_error(data: CubeData, sensor: Sensor, scale: Array, table: NDArray[np.float32]) -> float:
     rgb = np.random.default_rng(SEED).random((COLOURS, 3))
-    wavelengths = data.sensor.wavelengths
-    powers = np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
-    spectra = Sigmoid(*wavelengths[[0, -1]].tolist()).to_reflectance(_interpolated(scale, table, rgb) @ powers)
-    return float(np.abs(data.sensor.rgb(spectra) - _targets(data, rgb)).max())
+    spectra = evaluate_unscaled(_interpolated(scale, table, rgb), sensor.wavelengths)
+    return float(np.abs(sensor.rgb(spectra) - _targets(data, rgb)).max())
 
 
 def _interpolated(scale: Array, table: NDArray[np.float32], rgb: Array) -> Array:
