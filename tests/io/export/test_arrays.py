@@ -1,4 +1,4 @@
-"""Cubes as npz, CSV and rgb2spec table, and cubes that were built for a scene."""
+"""Cubes as npz and CSV, and cubes that were built for a scene."""
 
 import csv
 import json

@@ -44,7 +44,7 @@ MIN_RES, MAX_RES = 2, 256
 DARK, DARK_COLOUR = 1e-3, 1e-4
 """Up to this level, the difference ε of a component of linear RGB that weighs as much as the distance of a spectrum
 from grey; above, ε falls with the level. Very dark colours of high purity would else have reflectances near 1 where the
-eye hardly sees."""
+eye hardly responds."""
 FAINT = 1e-6
 """Reflectance of black, and 1 minus that of white, whose multipliers are infinite."""
 FIRST_DAMPING, MAX_DAMPING, MAX_STEPS, SMALL_GAIN, SMALL_PART = 1e-6, 1e6, 200, 1e-2, 1e-4
