@@ -1,7 +1,8 @@
 """Write the library that shapes the prior: ``python -m tools.ship_library [FILE]`` (docs/prior.md).
 
 It consists of the shipped atlases, and of spectra by Otsu et al. 2018, which stand for the Munsell book that their
-clusters were learnt from. tests/fit/test_library.py compares the shipped file with the output.
+clusters were learnt from. With it are the tables of smooth spectra of usual RGB spaces, which builds need not solve
+again. tests/fit/test_families.py compares the shipped file with the output.
 """
 
 import sys
@@ -17,7 +18,10 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
+from uplift.fit.base import MARGIN, TABLE, smooth
 from uplift.fit.families import STEPS
+from uplift.fit.problem import Problem, nodes_of
+from uplift.models import Moments
 
 ROOT = Path(__file__).parents[1]
 FILE = ROOT / "uplift" / "fit" / "library.npz"
@@ -27,6 +31,8 @@ FAMILIES = {"checker": ("macbeth", "babelcolor")} | {
 """Shipped atlases by family: the two ColorCheckers are one chart."""
 SPREAD, OTSU_SPREAD = 5.0, 3.0
 """Variance of what is peculiar to a family, chosen in docs/prior.md; the Munsell book is larger than the others."""
+SPACES = ("sRGB", "ACEScg", "ITU-R BT.2020")
+"""RGB spaces whose tables are stored."""
 SPACE = "ITU-R BT.2020"
 CANDIDATES, SPECTRA = 30_000, 320
 """Random colours, and those of them that are taken: in turn the one farthest from all before."""
@@ -40,6 +46,8 @@ def main(path: Path = FILE) -> None:
         warnings.simplefilter("ignore", UpliftWarning)
         families = {name: measurements(atlases) for name, atlases in FAMILIES.items()}
     families["otsu2018"] = otsu_spectra()
+    sensors = [observer.sensor(space) for space in SPACES]
+    tables = [smooth_nodes(Problem(sensor, Moments())) for sensor in sensors]
     steps = np.rint(np.concatenate(list(families.values())) * STEPS).astype(np.int16)
     np.savez_compressed(
         path,
@@ -47,7 +55,15 @@ def main(path: Path = FILE) -> None:
         counts=np.array([len(measured) for measured in families.values()]),
         spreads=np.array([SPREAD] * len(FAMILIES) + [OTSU_SPREAD]),
         steps=np.diff(steps, axis=1, prepend=np.int16(0)),
+        matrices=np.stack([sensor.matrix for sensor in sensors]),
+        **{f"smooth{number}": table for number, table in enumerate(tables)},
     )
+
+
+def smooth_nodes(problem: Problem) -> Array:
+    """Coefficients (17³, 9) of smooth spectra at the nodes of the table."""
+    nodes = nodes_of(TABLE, problem.sensor, MARGIN)
+    return np.asarray(smooth(problem.model, problem.forward, nodes.goal(nodes.points)).nodes)
 
 
 def measurements(atlases: tuple[str, ...]) -> Array:

@@ -10,6 +10,7 @@ kriged relative to the brightening, so that dark colours stay dark, at the nodes
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from importlib.resources import files
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, blocks
 from uplift.fit.batch import to_storage
 from uplift.fit.entries import FittedEntries
-from uplift.fit.families import Family, FamilySamples, krige_families, learn_relevance
+from uplift.fit.families import FILE, Family, FamilySamples, krige_families, learn_relevance
 from uplift.fit.kriging import average_close
 from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.solver import solve
@@ -35,6 +36,8 @@ GREY = 2 / 3
 """Power of the mean of x' that gives the reflectance of the grey to start from."""
 TABLE = Lattice(np.linspace(0, 1, 17) ** 2)
 MIN_LEVEL, MAX_LEVEL = 1e-4, 0.98
+SAME_SENSOR = 1e-14
+"""Difference of elements of W, of instruction sets, up to which stored tables are those of a sensor."""
 NO_FREEDOM = 3
 """Number of coefficients that the colour alone determines."""
 MARGIN = 1e-3
@@ -81,6 +84,17 @@ class Base:
         return np.asarray(np.maximum(rgb.max(axis=1), MIN_LEVEL)[:, None] ** self.brightening)
 
 
+def smooth_table(problem: Problem, goal: Array) -> Base:
+    """Smooth spectra of the table: those in `FILE` if it has them for the model and sensor, or solved."""
+    sensor = problem.sensor
+    if problem.model == Moments():
+        with (files(__package__) / FILE).open("rb") as file, np.load(file, allow_pickle=False) as stored:
+            for number, matrix in enumerate(stored["matrices"]):
+                if sensor.matrix.shape == matrix.shape and np.allclose(sensor.matrix, matrix, rtol=0, atol=SAME_SENSOR):
+                    return Base(problem.model, stored[f"smooth{number}"])
+    return smooth(problem.model, problem.forward, goal)
+
+
 def smooth(
     model: Model,
     forward: ForwardMap,
@@ -113,7 +127,7 @@ def learn_base(
     # arbitrary, and would spoil the interpolation between nodes.
     table = nodes_of(TABLE, problem.sensor, MARGIN)
     bright = table.goal(table.points)
-    plain = smooth(problem.model, problem.forward, bright)  # s(x′)
+    plain = smooth_table(problem, bright)  # s(x′)
     model, sensor = problem.model, problem.sensor
     if not families or plain.nodes is None or not isinstance(model, Moments):
         return plain, (1.0,) * len(families)
