@@ -1,4 +1,4 @@
-"""Gamut mapping of Munsell chips outside sRGB, for docs/display.md and its picture."""
+"""Gamut mapping of Munsell chips outside sRGB, for docs/guides/acescg.md and its picture."""
 
 import warnings
 from collections import defaultdict

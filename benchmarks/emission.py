@@ -1,4 +1,4 @@
-"""Emission tables: lamps left out, exactness, expected errors and cost, for docs/emission.md."""
+"""Emission tables: lamps left out, exactness, expected errors and cost, for docs/guides/lights.md."""
 
 import re
 from collections.abc import Iterator, Mapping

@@ -1,4 +1,4 @@
-"""Cubes with looks, and a scene of two cubes, for docs/look-cubes.md and its picture."""
+"""Cubes with looks, and a scene of two cubes, for docs/looks.md and its picture."""
 
 import tempfile
 import warnings

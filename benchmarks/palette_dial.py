@@ -1,4 +1,4 @@
-"""Pictures of the relighting viewer in Chromium, for docs/palette-dial.md, and a scan to relight.
+"""Pictures of the relighting viewer in Chromium, for docs/palette.md, and a scan to relight.
 
 ``python -m benchmarks.palette_dial engine.exr`` writes the weights of a synthetic computer tomogram of an engine, for
 ``uplift palette engine.toml --html engine.html --image engine.exr``.

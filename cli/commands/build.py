@@ -178,7 +178,7 @@ def command(
     Warnings name the entries that were left out, clipped or crowded. Colours without measurements get the
     spectra that real materials of such colours are expected to have.
 
-    Looks state colours under other lights, such as rgb = "#8a2a20" and HP1 = "#70392a" (docs/look-cubes.md). They
+    Looks state colours under other lights, such as rgb = "#8a2a20" and HP1 = "#70392a" (docs/looks.md). They
     become entries. A look that no reflectance meets gets the nearest colour, and a warning.
 
     Entries have their own values in the --range as far as they were measured, and continue as constants. So does the

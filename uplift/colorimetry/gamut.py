@@ -1,4 +1,4 @@
-"""Display gamuts by primaries and white, and gamut mapping of linear RGB outside [0, 1] (docs/display.md).
+"""Display gamuts by primaries and white, and gamut mapping of linear RGB outside [0, 1] (docs/guides/acescg.md).
 
 Fishkin 1983, *Applying Color Science to Computer Graphics*, chapters 4 and 6: a colour too bright for the display is
 scaled (6.1); a chromaticity outside the triangle of the primaries moves toward white on a straight line, which keeps

@@ -1,4 +1,4 @@
-"""Looks: colours whose appearance under further lights is chosen, as entries of a cube (docs/look-cubes.md).
+"""Looks: colours whose appearance under further lights is chosen, as entries of a cube (docs/looks.md).
 
 A reflectance is designed first: of all within [0, 1] that have the colour of the build exactly, the one nearest to the
 target colours, and among these the one that differs least from the expected spectrum. The problem is convex, so no

@@ -1,4 +1,4 @@
-"""Examples of docs/palette.md and docs/palette-dial.md have the properties that the pages state."""
+"""Examples of docs/palette.md have the properties that the page states."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Masks: images of which cube a pixel belongs to (docs/look-cubes.md).
+"""Masks: images of which cube a pixel belongs to (docs/looks.md).
 
 A grey mask holds the numbers of the cubes, 0 for the first; or, for two cubes, weights: black is the first, white the
 second, and grey mixes. A coloured mask holds the weights of three cubes in R, G and B.
