@@ -10,6 +10,7 @@ import numpy as np
 from uplift.atlas.document import SourceLocation
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning, unknown_name
+from uplift.common.text import listed
 
 VISIBLE = (400.0, 700.0)
 """Range in nm that every entry must cover. Wavelengths outside have little effect on colour."""
@@ -254,8 +255,7 @@ class Atlas:
         if self.skipped:
             parts.append(f"{len(self.skipped)} skipped")
         if self.sources:
-            more = f" and {len(self.sources) - 3} more" if len(self.sources) > 3 else ""
-            parts.append("from " + ", ".join(source.name for source in self.sources[:3]) + more)
+            parts.append("from " + listed([source.name for source in self.sources]))
         return f"Atlas({', '.join(parts)})"
 
     def _repr_html_(self) -> str:

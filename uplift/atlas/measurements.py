@@ -13,7 +13,7 @@ from uplift.atlas.atlas import HIGHEST, Atlas, Entry, Header, SkippedEntry, Sour
 from uplift.atlas.document import EXPORT, Document, SourceLocation, truncate
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, UpliftWarning, needs_extra
-from uplift.common.text import printable
+from uplift.common.text import listed, printable
 
 Measured = Literal["auto", "percent", "fraction"]
 MEASURED: tuple[Measured, ...] = ("auto", "percent", "fraction")
@@ -28,8 +28,6 @@ NOT_REFLECTANCE = re.compile(
     r"transmi(?:ttance|ssion|ssive)|absorbance|absorptance|irradiance|radiance|emissi(?:on|ve)|t-factor", re.I
 )
 REFLECTANCE = re.compile(r"reflect|remission|\br-factor", re.I)
-MAX_LISTED = 8
-"""Names of columns that a note lists."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,8 +91,7 @@ def not_used_note(labels: Iterable[str]) -> tuple[str, ...]:
     names = [truncate(label) or "(no label)" for label in labels]
     if not names:
         return ()
-    more = f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else ""
-    return (f"not used: {', '.join(names[:MAX_LISTED])}{more}",)
+    return (f"not used: {listed(names)}",)
 
 
 def wrong_quantity(problem: str, location: SourceLocation) -> AtlasError:

@@ -9,11 +9,10 @@ from numpy.typing import ArrayLike
 from uplift.atlas.atlas import Atlas
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
+from uplift.common.text import listed
 
 NOISE = 1e-6
 """Distance from [0, 1] that is clipped without a warning, such as −2e−16 for black."""
-MAX_NAMES = 5
-"""Clipped entries that a warning names."""
 
 
 @dataclass(frozen=True)
@@ -92,10 +91,9 @@ def on_grid(atlas: Atlas, wavelengths: ArrayLike) -> Array:
     if len(clips) == 1:
         warnings.warn(UpliftWarning(str(clips[0]), code="entry-clipped", entry=clips[0].name), stacklevel=2)
     elif clips:
-        names = ", ".join(f"'{clip.name}'" for clip in clips[:MAX_NAMES])
-        more = f" and {len(clips) - MAX_NAMES} more" if len(clips) > MAX_NAMES else ""
+        names = listed([f"'{clip.name}'" for clip in clips])
         most = max(clips, key=lambda clip: max(-clip.value, clip.value - 1))
-        problem = f"{len(clips)} entries clipped to [0, 1]: {names}{more}; '{most.name}' has {most}"
+        problem = f"{len(clips)} entries clipped to [0, 1]: {names}; '{most.name}' has {most}"
         warnings.warn(UpliftWarning(problem, code="entry-clipped"), stacklevel=2)
     return resampled.values
 

@@ -3,10 +3,13 @@
 import json
 import math
 import re
+from collections.abc import Sequence
 from typing import Any
 
 MAX_LENGTH = 40
 """Characters of a received value in a message."""
+MAX_LISTED = 6
+"""Names in a message."""
 _UNPRINTABLE = re.compile(
     "[\x00-\x1f\x7f-\x9f"  # controls, among them the newline
     "\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"  # direction, line breaks, invisible
@@ -46,6 +49,12 @@ def format_value(value: object) -> str:
 def shorten(text: str) -> str:
     """Return at most `MAX_LENGTH` characters of a text, and an ellipsis if it has more."""
     return text if len(text) <= MAX_LENGTH else f"{text[:MAX_LENGTH]}…"
+
+
+def listed(names: Sequence[str]) -> str:
+    """Join the first `MAX_LISTED` names, and count the others: 'a, b, c, d, e, f and 2 more'."""
+    more = f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else ""
+    return ", ".join(names[:MAX_LISTED]) + more
 
 
 def parse_float(text: str) -> float:

@@ -13,6 +13,7 @@ from uplift.colorimetry.observer import COMMON_SPACES, grid, smallest_space
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import AtlasError, OptionError, UpliftWarning
+from uplift.common.text import listed
 from uplift.cube import AtlasTable, EntrySpectra
 from uplift.fit.base import NO_FREEDOM
 from uplift.fit.entries import FittedEntries, fit_entries
@@ -27,8 +28,6 @@ AtlasLike = Atlas | StrPath | Sequence[StrPath] | None
 
 SPREAD, RELATED = 1.0, 0.5
 """See `uplift.fit.families.Family`; by held-out halves of large sets (docs/prior.md)."""
-MAX_NAMES = 6
-"""Entries that a warning names."""
 STACK_LEVEL = 6
 """Frames between a warning and the caller of `uplift.build`, whose decorator adds two."""
 
@@ -158,9 +157,8 @@ def warn_of_crowding(names: Sequence[str], boxes: EntryBoxes, seeds: Seeds) -> N
 
 def _listed(names: Sequence[str]) -> str:
     """'entry 'a' is', 'entries 'a', 'b', 'c' and 12 more are'."""
-    shown = ", ".join(f"'{name}'" for name in names[:MAX_NAMES])
-    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
-    return f"entry {shown} is" if len(names) == 1 else f"entries {shown}{more} are"
+    shown = listed([f"'{name}'" for name in names])
+    return f"entry {shown} is" if len(names) == 1 else f"entries {shown} are"
 
 
 def describe_atlas(atlas: Atlas, names: Sequence[str]) -> dict[str, Any]:
