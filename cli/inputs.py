@@ -14,7 +14,7 @@ from uplift.common.text import format_value, parse_float
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
     from uplift.colorimetry.spaces import ImageSpace
-    from uplift.common.arrays import Array
+    from uplift.common.arrays import Array, StrPath
 
 LOCAL = "atlases/*.txt"
 DEFAULT_ATLASES = f"{LOCAL} if there are any, or else the shipped atlases"
@@ -83,3 +83,11 @@ def find_input_space(name: str | None) -> ImageSpace | None:
     from uplift.colorimetry.spaces import find_space
 
     return find_space(name)
+
+
+def check_page(path: StrPath) -> None:
+    """Check that the name of a page ends in .html."""
+    from uplift.common.errors import OutputError
+
+    if not os.fspath(path).lower().endswith(".html"):
+        raise OutputError("the name of a page must end in .html", path=path, hint="name the page .html")

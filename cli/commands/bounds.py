@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import options
+from ..inputs import check_page
 from ..output.answers import format_rgb, hex_code, patch
 from ..output.console import csv_writer, emit, make_table, print_fields, print_json_answers, say, show
 from .query import QueryStream, ask, colour_options, result_object
@@ -57,6 +58,8 @@ def command(
     from uplift.common.files import check_outputs
     from uplift.lookup import bounds
 
+    if html is not None:
+        check_page(html)
     check_outputs((plot_path, html), inputs=(colours["cube_path"], colours["input_path"]), force=force)
     stream, results, single = ask(lights=lights or RELIGHT_LIGHTS, **colours)
     if html is not None and not single:

@@ -215,7 +215,11 @@ def command(
             scene = Images(tuple(map(Path, expand_patterns(images))), encoding, method, input_space)
             settings["scene"] = scene
             inputs += scene.paths
-        make = partial(_build, files, scale, **settings)
+        from uplift.atlas import read_atlas
+        from uplift.pipeline.build import build
+
+        stated = {name: value for name, value in settings.items() if value not in (None, ())}
+        make = partial(build, read_atlas(*files, measured=scale) if files else None, **stated)
     path = check_output(name if output is None else output, inputs=inputs, force=force)
     slices = path.with_suffix(".exr") if settings["debug"] else None
     if slices is not None:
@@ -235,14 +239,6 @@ def command(
         _print_summary(cube, path, time.perf_counter() - begin)
         if slices is not None:
             say(f"{slices}: {cube.data.lattice.dim} blue slices")
-
-
-def _build(files: tuple[str, ...], scale: Any, **settings: Any) -> Cube:
-    from uplift.atlas import read_atlas
-    from uplift.pipeline.build import build
-
-    given = {name: value for name, value in settings.items() if value not in (None, ())}
-    return build(read_atlas(*files, measured=scale) if files else None, **given)
 
 
 def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]) -> str:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import warnings
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from .. import options
-from ..inputs import expand_patterns, find_input_space
+from ..inputs import check_page, expand_patterns, find_input_space
 from ..output.console import make_table, print_json, say, show
 from ..output.progress import progress_bar
 
@@ -68,7 +67,7 @@ def command(
     Without --tolerance the exit code is 0.
     """
     from uplift.colorimetry.lights import SCENE_LIGHTS
-    from uplift.common.errors import OptionError, OutputError
+    from uplift.common.errors import OptionError
     from uplift.common.files import check_output, write_text
     from uplift.lookup import load
     from uplift.report.diff import diff_cubes, to_json
@@ -76,12 +75,11 @@ def command(
     if tolerance is not None and tolerance < 0:
         raise OptionError(f"tolerance must not be negative, got {tolerance:g}")
     paths = expand_patterns(images)
-    if output is not None:
-        if Path(output).suffix.lower() != ".html":
-            raise OutputError("the name of a page must end in .html", path=output, hint="name the page .html")
-        check_output(output, inputs=(first, second, *paths), force=force)
     names = (first, second) if first != second else (first, f"{second} (again)")
     cubes = dict(zip(names, map(load, (first, second)), strict=True))
+    if output is not None:
+        check_page(output)
+        check_output(output, inputs=(first, second, *paths), force=force)
     with progress_bar("comparing answers"):
         pictures = {path: _read(path, next(iter(cubes.values())), encoding, input_space, method) for path in paths}
         found = diff_cubes(cubes, lights or SCENE_LIGHTS, pictures)

@@ -115,8 +115,8 @@ def command(
     from uplift.common.files import check_output
     from uplift.lookup import load
 
-    path = check_output(output or Path(cube).stem + SUFFIXES[style], inputs=[cube], force=force)
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
+    path = check_output(output or Path(cube).stem + SUFFIXES[style], inputs=[cube], force=force)
     say(f"{path}: {_write(loaded, path, style, force=force, **settings)}")
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .. import options
+from ..inputs import check_page
 from ..output.console import emit, json_text, say
 from ..output.progress import progress_bar
 
@@ -64,9 +65,11 @@ def command(
     path = None if output is None else Path(output)
     if path is None and style == "html":
         path = Path(f"{Path(cube).stem}.html")
+    if path is not None and style == "html":
+        check_page(path)
+    loaded = load(cube)
     if path is not None:
         check_output(path, inputs=(cube, *files), force=force)
-    loaded = load(cube)
     with progress_bar("evaluating the cube"):
         atlas = read_atlas(*files) if files else recorded_atlas(loaded.data, cube, folders)
         size = Path(cube).stat().st_size

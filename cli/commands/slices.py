@@ -38,10 +38,10 @@ def command(cube: str, output: str | None, sheet: str | None, force: bool) -> No
     from uplift.io.exr import write_slices
     from uplift.viz.sheet import check_sheet, write_sheet
 
+    data = read(cube)
     check_outputs((output, sheet), inputs=[cube], force=force)
     if sheet is not None:
         check_sheet(sheet, force=force)
-    data = read(cube)
     if output is not None:
         write_slices(data, output, force=force)
         say(f"{output}: {data.lattice.dim} blue slices")

@@ -38,6 +38,16 @@ def test_labels_of_wavelengths(save, label):
     assert (entry.name, entry.wavelengths.tolist(), entry.values.tolist()) == ("grey", [400, 550, 700], [0.1, 0.2, 0.3])
 
 
+def test_rows_of_single_samples(save):
+    rows = [f"{name},{nm},{value}" for nm, value in ((700, 0.3), (400, 0.1), (550, 0.2)) for name in ("a", "b")]
+    first, second = read_atlas(save("\n".join(["Sample,Wavelength (nm),Reflectance", *rows])))
+    assert (first.name, first.wavelengths.tolist(), first.values.tolist()) == ("a", [400, 550, 700], [0.1, 0.2, 0.3])
+    assert (second.name, second.values.tolist()) == ("b", [0.1, 0.2, 0.3])
+    with raises(AtlasError, "atlas") as caught:
+        read_atlas(save("sample,wavelength,reflectance\na,400,0.1\na,red,0.2\n"))
+    assert (caught.value.line, caught.value.entry) == (3, "a")
+
+
 ROW = "name,400,500,600,700\n"
 SETS = "\nBEGIN_DATA_FORMAT\nID SPEC_400 SPEC_700\nEND_DATA_FORMAT\nBEGIN_DATA\na 1 1\nEND_DATA\n"
 

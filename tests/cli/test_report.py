@@ -50,6 +50,8 @@ def test_invalid_input_is_an_error_and_nothing_is_written(refuse, home, cube):
     (home / "old.html").write_text("old")
     before = {path.name for path in home.iterdir()}
     assert refuse("report", cube, "-o", "old.html").code == "file-exists"
+    assert refuse("report", "missing.uplift", "-o", "old.html").code == "file-not-found"
+    assert refuse("report", cube, "-o", "report.pdf").code == "output"
     assert refuse("report", "none.uplift").code == "file-not-found"
     assert refuse("report", "text.uplift").code == "not-a-cube"
     assert refuse("report", cube, "--light", "D66").code == "unknown-name"

@@ -49,6 +49,12 @@ NAME_LABELS = (
     "spectrum", "sampleid", "patchid", "id", "sampleloc", "sampleno", "no", "number", "index",
 )  # fmt: skip
 """Labels of names, in lower case and without blanks, the preferred ones first."""
+SAMPLE_LABELS = (
+    NAME_LABELS,
+    ("wavelength", "wavelength(nm)", "wavelengthnm", "lambda", "λ", "wl", "nm"),
+    ("reflectance", "reflectivity", "value", "refl", "r", "r%", "%r"),
+)
+"""Labels of the three columns of a table with a row per sample."""
 
 
 class Cell(NamedTuple):
@@ -110,7 +116,30 @@ def read(document: Document) -> Measurements:
         nm, values = ([parse_float(row[column].text) for row in rows] for column in (0, 1))
         spectrum = Spectrum(document.stem, nm, values, rows[0][0].line)
         return Measurements((spectrum,), notes=("layout: wavelength and value", "name: that of the file"))
-    return read_grid(rows, document.location, comments)
+    return _read_samples(rows, document.location) or read_grid(rows, document.location, comments)
+
+
+def _read_samples(rows: Sequence[Row], location: SourceLocation) -> Measurements | None:
+    """Read a table with a row per sample: a name, a wavelength and a reflectance, in any order of columns."""
+    header, *body = rows or ((),)
+    labels = [_plain_label(cell.text) for cell in header]
+    columns = [next((labels.index(name) for name in names if name in labels), -1) for names in SAMPLE_LABELS]
+    if -1 in columns or any(len(row) != len(header) for row in body):
+        return None
+    found: dict[str, list[tuple[float, float]]] = {}
+    for row in body:
+        name, nm, value = (row[column] for column in columns)
+        here = location.at(nm.line, name.text)
+        samples = found.setdefault(name.text, [])
+        samples.append((parse_number(nm.text, here, "wavelength"), parse_number(value.text, here, "value")))
+    columns_of = ((name, np.array(sorted(samples)).T) for name, samples in found.items())
+    spectra = (Spectrum(name, nm, values) for name, (nm, values) in columns_of)
+    return Measurements(tuple(spectra), notes=("layout: a row per sample",))
+
+
+def _plain_label(text: str) -> str:
+    """Return a label in lower case without blanks and punctuation."""
+    return re.sub(r"[\s_.-]", "", text.casefold())
 
 
 def text(atlas: Atlas) -> str:
@@ -187,7 +216,9 @@ def _find_table(rows: Sequence[Row], location: SourceLocation) -> Table:
     if table is None or len(rows) < 2 or len(table.rows) < 2:
         raise location.at(rows[0][0].line if rows else 1).error(NO_TABLE, LAYOUT, code="not-an-atlas")
     header = table.rows[0]
-    if not table.others and all(is_number(cell.text) for cell in header):
+    numbers = [cell.text for cell in header[table.first : table.last]]
+    unlabelled = not table.others and all(map(is_number, numbers))
+    if unlabelled or (not table.layout and all(parse_float(without_unit(each)) < SHORTEST for each in numbers)):
         raise location.at(header[0].line).error("the header row is missing", LAYOUT)
     return table
 
@@ -251,7 +282,7 @@ def _runs(cells: Sequence[Cell]) -> Iterator[Run]:
 def _name_column(table: Table) -> int | None:
     """Return the column of the names: that of a usual label whose texts differ, or else the first one."""
     # Labels that state a name come before those of numbers, unless they repeat a name.
-    labels = {index: re.sub(r"[\s_.-]", "", table.rows[0][index].text.casefold()) for index in table.others}
+    labels = {index: _plain_label(table.rows[0][index].text) for index in table.others}
     known = [index for wanted in NAME_LABELS for index, label in labels.items() if label == wanted]
     for index in known:
         names = [row[index].text for row in table.rows[1:]]
