@@ -3,7 +3,7 @@
 import jax
 import numpy as np
 
-import uplift.fit.compiled  # noqa: F401  # makes the forward map a pytree
+import uplift.fit.batch  # noqa: F401  # makes the forward map a pytree
 from uplift.models import Moments
 from uplift.models.minimum_norm import anchored_step, forward_map, minimum_norm_step, solve_damped
 

@@ -1,22 +1,25 @@
-"""Batches of rows: in chunks by numpy or, for large lattices, as programs of JAX; integrals of the moments of batches.
-
-Importing and tracing JAX takes longer than numpy does for a small lattice (docs/performance.md).
-"""
+"""Batches of few shapes, so that XLA compiles rarely, over all devices of JAX; the compiled integrals of moments."""
 
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 import numpy as np
+from jax import lax
+from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from uplift.common.arrays import Array, blocks
 from uplift.models import Moments
-from uplift.models.arithmetic import TOGETHER, arctan
+from uplift.models.arithmetic import arctan
 from uplift.models.duality import integrate, moments_from_multipliers
+from uplift.models.minimum_norm import ForwardMap
 from uplift.models.model import Model
 
-CHUNK = 512
-"""Rows that numpy computes at a time: their temporary arrays fit into the cache. A multiple of `TOGETHER`."""
+CPU_ROWS, ACCELERATOR_ROWS = (4096, 256), (1 << 15, 1 << 15)
+"""Rows of a batch per device, and of a chunk: that of a CPU fits its cache, an accelerator takes a whole batch."""
+EVERYWHERE, ROWS = PartitionSpec(), PartitionSpec("rows")  # type: ignore[no-untyped-call]
 MAX_NODES = 256
 """Larger rules of integration, which few spectra need, are not worth compiling."""
 PART_NODES = 97
@@ -24,59 +27,88 @@ PART_NODES = 97
 CONVERGED = 1e-6
 """For lattices: moments differ by some 1e-9 at most, a sixtieth of the rounding to single precision."""
 
+jax.tree_util.register_dataclass(
+    ForwardMap, ["basis", "sensor", "root", "inverse_root", "jacobian_basis"], meta_fields=["model"]
+)
 
-def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any, compiled: bool = False) -> Any:
+
+def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any) -> Any:
     """Apply a function to constants and to trees of arrays (n, …), n > 0, and join the arrays that it returns.
 
-    Trees are tuples and dicts. The function works on the arrays of numpy or, compiled, of JAX. What it returns for a
-    row must not depend on other rows; the last row is repeated, as products of numpy round rows `TOGETHER` alike.
+    It is compiled for a chunk of rows, once if it is the same object in each call. Batches run side by side.
     """
-    if compiled:
-        from uplift.fit import compiled as programs
-
-        return programs.map_batches(function, constants, *arrays)
-    parts, count = [], len(arrays[0])
-    for rows in blocks(count, CHUNK):
-        own = np.minimum(np.arange(rows.start, rows.stop + -rows.stop % TOGETHER), count - 1)
-        part = function(constants, *_map(lambda array, own=own: array[own], arrays))
-        parts.append(_map(lambda array, rows=rows: array[: rows.stop - rows.start], part))
-    return _map(lambda *joined: np.concatenate(joined), *parts)
-
-
-def _map(function: Callable[..., Any], *trees: Any) -> Any:
-    """Apply a function to the arrays of trees of one structure."""
-    first = trees[0]
-    if isinstance(first, dict):
-        return {name: _map(function, *(tree[name] for tree in trees)) for name in first}
-    if isinstance(first, tuple):
-        return tuple(_map(function, *each) for each in zip(*trees, strict=True))
-    return function(*trees)
+    devices, parts = len(jax.devices()), []
+    width, chunk = CPU_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_ROWS
+    with jax.enable_x64(True):
+        run, constants = _program(function, chunk, devices), _place(constants, EVERYWHERE)
+        for rows in blocks(len(jax.tree.leaves(arrays)[0]), devices * width):
+            # The last row is repeated. Chunks beyond the counts are not computed.
+            count, last = rows.stop - rows.start, rows.stop - 1
+            own = np.minimum(np.arange(rows.start, rows.start + devices * width), last)
+            counts = np.clip(count - width * np.arange(devices), 0, width)
+            given = jax.tree.map(lambda array, own=own: array[own], arrays)
+            parts.append((count, run(constants, *_place((counts, given), ROWS))))
+        parts = [jax.tree.map(lambda array, count=count: np.asarray(array)[:count], part) for count, part in parts]
+    return jax.tree.map(lambda *joined: np.concatenate(joined), *parts)
 
 
-def to_storage(model: Model, multipliers: Array, compiled: bool = False) -> Array:
+@cache
+def _program(function: Callable[..., Any], chunk: int, devices: int) -> Callable[..., Any]:
+    """Compile the loop over the chunks of a batch on each device."""
+    traced_once = jax.jit(function)
+
+    def run(constants: Any, counts: jax.Array, arrays: Any) -> Any:
+        def compute(first: Any) -> Any:
+            rows = jax.tree.map(lambda array: lax.dynamic_slice_in_dim(array, first, chunk), arrays)
+            return traced_once(constants, *rows)
+
+        def advance(carry: Any) -> Any:
+            first, results = carry
+            update = partial(lax.dynamic_update_slice_in_dim, start_index=first, axis=0)
+            return first + chunk, jax.tree.map(update, results, compute(first))
+
+        width = len(jax.tree.leaves(arrays)[0])
+        empty = jax.tree.map(lambda some: jnp.zeros((width, *some.shape[1:]), some.dtype), jax.eval_shape(compute, 0))
+        return lax.while_loop(lambda carry: carry[0] < counts[0], advance, (jnp.asarray(0), empty))[1]
+
+    if devices > 1:
+        run = jax.shard_map(run, mesh=_mesh(), in_specs=(EVERYWHERE, ROWS, ROWS), out_specs=ROWS, check_vma=False)
+    return jax.jit(run)
+
+
+def _place(arrays: Any, spec: PartitionSpec) -> Any:
+    """Put arrays on the devices."""
+    if len(jax.devices()) == 1:
+        return jax.device_put(arrays)
+    return jax.device_put(arrays, NamedSharding(_mesh(), spec))  # type: ignore[no-untyped-call]
+
+
+def _mesh() -> Mesh:
+    return Mesh(np.array(jax.devices()), ("rows",))
+
+
+def to_storage(model: Model, multipliers: Array) -> Array:
     """Coefficients (n, C) of many multipliers (n, C): `Model.to_storage`, less precise and several times faster."""
     if isinstance(model, Moments):
-        return moments_from_multipliers(multipliers, partial(_integrate, compiled=compiled), CONVERGED)
+        return moments_from_multipliers(multipliers, _integrate, CONVERGED)
     return model.to_storage(multipliers)
 
 
-def _integrate(multipliers: Array, synthesis: Array, analysis: Array, compiled: bool) -> Array:
+def _integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
     """Compute `uplift.models.duality.integrate`."""
     count, (nodes, columns) = len(synthesis), analysis.shape
     if nodes > MAX_NODES + 1 or not len(multipliers):
         return integrate(multipliers, synthesis, analysis)
-    if not compiled:
-        return np.asarray(map_batches(_weighted, (synthesis, analysis), multipliers))
     moments = np.zeros((len(multipliers), columns))
     for first in range(0, nodes, PART_NODES):
         # Each part is as large as the first rule, which has two sets of moments: the rest has no weight.
         part = slice(first, first + PART_NODES)
         points, weights = np.zeros((count, PART_NODES)), np.zeros((PART_NODES, 2 * count))
         points[:, : nodes - first], weights[: nodes - first, :columns] = synthesis[:, part], analysis[part]
-        moments += map_batches(_weighted, (points, weights), multipliers, compiled=True)[:, :columns]
+        moments += map_batches(_weighted, (points, weights), multipliers)[:, :columns]
     return moments
 
 
-def _weighted(rule: tuple[Any, Any], multipliers: Any) -> Any:
+def _weighted(rule: tuple[jax.Array, jax.Array], multipliers: jax.Array) -> jax.Array:
     synthesis, analysis = rule
-    return (0.5 + arctan(multipliers @ synthesis) / np.pi) @ analysis
+    return (0.5 + arctan(multipliers @ synthesis) / jnp.pi) @ analysis

@@ -1,20 +1,22 @@
 """Fit of atlas entries: the measured spectrum, its colours under several lights, and exactly its RGB.
 
-docs/mathematics.md, 6. Steps of numpy minimise the objective: nothing needs to be compiled for a few entries, and those
-that have converged leave the batch (docs/performance.md).
+docs/mathematics.md, 6. `Marquardt`, a solver of optimistix that is stepped in numpy, minimises the objective: nothing
+needs to be compiled for a few entries, and those that have converged leave the batch (docs/performance.md).
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, NamedTuple
 
+import equinox
+import jax
 import numpy as np
+import optimistix
 
 from uplift.colorimetry.delta_e import delta_e_spectra, lab_jacobian, lab_of
-from uplift.common.arrays import Array, Indices, Mask, blocks
+from uplift.common.arrays import Array, Mask, blocks
 from uplift.fit.problem import Problem
-from uplift.fit.solver import solve_singly
+from uplift.fit.solver import NO_TAGS, Options, solve_singly
 from uplift.models.model import Model
 
 LIGHTS_WEIGHT, SMOOTHNESS = 0.03, 1e-3
@@ -123,55 +125,82 @@ class MarquardtState(NamedTuple):
     """(n,) whether the fit has ended."""
 
 
-def marquardt_step(
-    residuals: Callable[[Array], Array], jacobian: Array, y: Array, state: MarquardtState
-) -> tuple[Array, MarquardtState]:
-    """Take one step at ``y`` (n, C) in every fit that has not ended; no sum of squares increases.
+class Marquardt(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
+    """Levenberg and Marquardt's method for a batch of fits in numpy, with Nielsen's damping.
 
-    Levenberg and Marquardt's method with Nielsen's damping, from the derivative (n, m, C) of the residuals: Madsen,
-    Nielsen & Tingleff 2004, "Methods for non-linear least squares problems", section 3.2.
+    The option ``jacobian`` maps ``y`` (n, C) to the derivative (n, m, C) of the residuals. Madsen, Nielsen & Tingleff
+    2004, "Methods for non-linear least squares problems", section 3.2.
     """
-    gram = jacobian.mT @ jacobian
-    diagonal = gram.diagonal(axis1=-2, axis2=-1).max(axis=-1)
-    damping = np.where(state.damping > 0, state.damping, FIRST_DAMPING * diagonal)
-    # (JᵀJ + μ I) Δy = −Jᵀ f
-    slope = (jacobian.mT @ state.residual[..., None])[..., 0]
-    change = -np.linalg.solve(gram + damping[:, None, None] * np.eye(y.shape[-1]), slope[..., None])[..., 0]
-    residual = residuals(y + change)
-    before, after = ((each**2).sum(axis=-1) for each in (state.residual, residual))
-    # ϱ: the reduction of the squares over that of the linear model
-    expected = (change * (damping[:, None] * change - slope)).sum(axis=-1)
-    gain = (before - after) / np.maximum(expected, np.finfo(float).tiny)
-    better = gain > 0
-    small = np.linalg.norm(change, axis=-1) <= PRECISION * np.linalg.norm(y, axis=-1)
-    ended = small | (better & (before - after <= PRECISION * before) & (expected <= PRECISION * before))
-    accept = (better & ~state.done)[:, None]
-    return np.where(accept, y + change, y), MarquardtState(
-        np.where(accept, residual, state.residual),
-        damping * np.where(better, np.maximum(1 / 3, 1 - (2 * gain - 1) ** 3), state.growth),
-        np.where(better, 2.0, 2 * state.growth),
-        state.done | ended,
-    )
+
+    rtol: float = PRECISION
+    atol: float = 0.0
+    norm: Callable[[Any], Any] = equinox.field(static=True, default=optimistix.max_norm)
+
+    def init(
+        self, fn: Any, y: Any, args: Any, options: Options, f_struct: Any, aux_struct: Any, tags: Any
+    ) -> MarquardtState:
+        """Evaluate the residuals at ``y`` (n, C)."""
+        count = len(y)
+        return MarquardtState(fn(y, args)[0], np.zeros(count), np.full(count, 2.0), np.zeros(count, dtype=bool))
+
+    def step(
+        self, fn: Any, y: Any, args: Any, options: Options, state: MarquardtState, tags: Any
+    ) -> tuple[Any, MarquardtState, Any]:
+        """Take one step in every fit that has not ended; no sum of squares increases."""
+        jacobian = options["jacobian"](y)
+        gram = jacobian.mT @ jacobian
+        diagonal = gram.diagonal(axis1=-2, axis2=-1).max(axis=-1)
+        damping = np.where(state.damping > 0, state.damping, FIRST_DAMPING * diagonal)
+        # (JᵀJ + μ I) Δy = −Jᵀ f
+        slope = (jacobian.mT @ state.residual[..., None])[..., 0]
+        change = -np.linalg.solve(gram + damping[:, None, None] * np.eye(y.shape[-1]), slope[..., None])[..., 0]
+        residual, aux = fn(y + change, args)
+        before, after = ((each**2).sum(axis=-1) for each in (state.residual, residual))
+        # ϱ: the reduction of the squares over that of the linear model
+        expected = (change * (damping[:, None] * change - slope)).sum(axis=-1)
+        gain = (before - after) / np.maximum(expected, np.finfo(float).tiny)
+        better = gain > 0
+        small = np.linalg.norm(change, axis=-1) <= self.rtol * np.linalg.norm(y, axis=-1)
+        ended = small | (better & (before - after <= self.rtol * before) & (expected <= self.rtol * before))
+        accept = (better & ~state.done)[:, None]
+        return (
+            np.where(accept, y + change, y),
+            MarquardtState(
+                np.where(accept, residual, state.residual),
+                damping * np.where(better, np.maximum(1 / 3, 1 - (2 * gain - 1) ** 3), state.growth),
+                np.where(better, 2.0, 2 * state.growth),
+                state.done | ended,
+            ),
+            aux,
+        )
+
+    def terminate(
+        self, fn: Any, y: Any, args: Any, options: Options, state: MarquardtState, tags: Any
+    ) -> tuple[Any, Any]:
+        """Whether all fits have ended."""
+        return state.done.all(), optimistix.RESULTS.successful
+
+    def postprocess(self, fn: Any, y: Any, aux: Any, *rest: Any) -> tuple[Any, Any, dict[str, Any]]:
+        """Return the solution as it is."""
+        return y, aux, {}
 
 
 def minimise(goal: Objective, measured: Array) -> Array:
     """Multipliers (E, C) that minimise the objective of measured reflectances (E, N), starting from grey."""
-    multipliers, colours = np.zeros((len(measured), goal.model.count)), goal.colours(measured)
+    solver, multipliers = Marquardt(), np.zeros((len(measured), goal.model.count))
+    colours, options = goal.colours(measured), {"jacobian": goal.jacobian}
 
-    def residuals(y: Array, rows: Indices) -> Array:
-        return np.asarray(goal.residuals(y, measured[rows], colours[rows]))
+    def fn(y: Array, rows: Array) -> tuple[Array, None]:
+        return goal.residuals(y, measured[rows], colours[rows]), None
 
     for block in blocks(len(measured), BLOCK):
         rows = np.arange(len(measured))[block]
-        count = len(rows)
-        first = residuals(multipliers[rows], rows)
-        state = MarquardtState(first, np.zeros(count), np.full(count, 2.0), np.zeros(count, dtype=bool))
+        state = solver.init(fn, multipliers[rows], rows, options, None, None, NO_TAGS)
         for _ in range(MAX_STEPS):
-            y = multipliers[rows]
-            multipliers[rows], state = marquardt_step(partial(residuals, rows=rows), goal.jacobian(y), y, state)
+            multipliers[rows], state, _ = solver.step(fn, multipliers[rows], rows, options, state, NO_TAGS)
             kept = ~state.done
-            rows, state = rows[kept], MarquardtState._make(each[kept] for each in state)
-            if not rows.size:
+            rows, state = rows[kept], jax.tree.map(lambda each, kept=kept: each[kept], state)
+            if solver.terminate(fn, multipliers[rows], rows, options, state, NO_TAGS)[0]:
                 break
     return multipliers
 

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any, NamedTuple
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
-from uplift.common.arrays import Array, Indices
-from uplift.fit.batch import map_batches
+from uplift.common.arrays import Array, Indices, blocks
 from uplift.fit.problem import Problem
 from uplift.models.arithmetic import distances
 
@@ -19,6 +20,8 @@ METRIC = np.array([0.5, 1.0, 1.0])
 """Weights of differences of L*, a* and b*: materials of one hue are more alike than those of one lightness."""
 REACH, WHITE = 10.0, 0.1
 """Distance within which the noise of an entry fades away, and the part of it that is white."""
+BLOCK_NUMBERS, BLOCK_ROWS = 1 << 20, 1 << 13
+"""Numbers and rows of the kernel matrix that are held at a time, at most."""
 DOUBT = 0.5
 """Entries' worth of the preference for `DEFAULT`, per squared doubling of the length or quadrupling of the noise."""
 MIN_ENTRIES = 8
@@ -87,10 +90,10 @@ class Kriging:
     noise: Array
     variances: Array
 
-    def __call__(self, lab: Array, compiled: bool = False) -> Array:
-        """Deviation (n, C) at L*a*b* (n, 3); ``compiled`` is that of `map_batches`."""
+    def __call__(self, lab: Array) -> Array:
+        """Deviation (n, C) at L*a*b* (n, 3)."""
         own = np.sqrt(self.kernel.noise * self.noise)
-        return kernel_sums(lab * METRIC, self.locations, self.weights, self.kernel.length, own, compiled)[0]
+        return kernel_sums(lab * METRIC, self.locations, self.weights, self.kernel.length, own)[0]
 
 
 def krige(lab: Array, deviations: Array, kernel: Kernel, variances: Array | None = None) -> tuple[Kriging, Array]:
@@ -141,21 +144,27 @@ def learn_kriging(lab: Array, deviations: Array, visible: Array) -> tuple[Krigin
     return kriging, errors
 
 
-def kernel_sums(
-    at: Array, locations: Array, columns: Array, length: float, own: Array, compiled: bool = False
-) -> tuple[Array, Array]:
+def kernel_sums(at: Array, locations: Array, columns: Array, length: float, own: Array) -> tuple[Array, Array]:
     """Sums (n, K) of columns (P, K) weighted by the kernel at locations (n, 3), and the largest weight (n,).
 
-    ``own`` (P,) weigh the part of the noise that is not white. ``compiled`` is that of `map_batches`.
+    ``own`` (P,) weigh the part of the noise that is not white.
     """
-    sums, nearest = map_batches(_kernel_block, (length, own, locations, columns), at, compiled=compiled)
+    rows = max(min(BLOCK_NUMBERS // max(len(locations), 1), BLOCK_ROWS), 1)
+    sums, nearest = np.empty((len(at), columns.shape[1])), np.empty(len(at))
+    with jax.enable_x64(True):
+        for block in blocks(len(at), rows):
+            count = block.stop - block.start
+            some = at[block] if count == rows else np.resize(at[block], (rows, 3))  # one shape is compiled
+            arrays = _kernel_block(length, own, some, locations, columns)
+            sums[block], nearest[block] = (np.asarray(array)[:count] for array in arrays)
     return sums, nearest
 
 
-def _kernel_block(constants: tuple[float, Any, Any, Any], at: Any) -> tuple[Any, Any]:
-    length, own, locations, columns = constants
-    xp = at.__array_namespace__()
-    distance = xp.sqrt(sum((at[:, axis, None] - locations[:, axis]) ** 2 for axis in range(3)))
+@jax.jit
+def _kernel_block(
+    length: float, own: jax.Array, at: jax.Array, locations: jax.Array, columns: jax.Array
+) -> tuple[jax.Array, jax.Array]:
+    distance = jnp.sqrt(((at[:, None] - locations[None]) ** 2).sum(axis=-1))
     weights = _shared(distance, length) + own * _own(distance)
     return weights @ columns, weights.max(axis=1)
 

@@ -37,8 +37,7 @@ class Prior:
     """Base spectra and, with an atlas, the interpolated deviation of its entries from them.
 
     ``errors`` are the expected squares of ΔE00, and ``left_out`` (E, N) the reflectances expected at the colours of the
-    entries without them, in their order; both None for an atlas of fewer than 8 entries. ``compiled`` is
-    that of `uplift.fit.batch.map_batches`.
+    entries without them, in their order; both None for an atlas of fewer than 8 entries.
     """
 
     model: Model
@@ -47,7 +46,6 @@ class Prior:
     kriging: Kriging | None = None
     errors: ExpectedError | None = None
     left_out: Array | None = None
-    compiled: bool = False
 
     def __call__(self, rgb: Array) -> Array:
         """Multipliers (n, C) expected at linear RGB (n, 3)."""
@@ -55,7 +53,7 @@ class Prior:
         if self.kriging is None:
             return self.model.from_storage(coefficients)
         # c = s(x) + k d(x), as multipliers
-        deviation = self.base.brightness(rgb) * self.kriging(rgb_to_lab(self.sensor, rgb), self.compiled)
+        deviation = self.base.brightness(rgb) * self.kriging(rgb_to_lab(self.sensor, rgb))
         return _bounded(self.model, coefficients, deviation)
 
     def describe(self) -> dict[str, float]:
@@ -72,7 +70,7 @@ class Prior:
             return None
         lab = rgb_to_lab(self.sensor, rgb)
         none = np.zeros(len(self.errors.locations))
-        sums = kernel_sums(lab, self.errors.locations, self.errors.columns, LENGTH, none, self.compiled)
+        sums = kernel_sums(lab, self.errors.locations, self.errors.columns, LENGTH, none)
         # Expected square v(x) Σ k e² / Σ k + f, and the learnt radius of 68 % in its root
         squares = self.errors.combine(*sums)[:, 0] + self.errors.floor
         return np.asarray(self.errors.radii.standard * np.sqrt(squares))

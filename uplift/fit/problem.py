@@ -22,8 +22,7 @@ class Problem:
     """Sensor, spectrum model, lights under which colours are kept, light of the errors, threshold and solver.
 
     ``error_light`` is that of the sensor by default. ``threshold`` is the largest distance of a fitted node in linear
-    RGB. ``method`` solves batches of nodes; see `uplift.fit.solver`. ``compiled`` is that of
-    `uplift.fit.batch.map_batches`.
+    RGB. ``method`` solves batches of nodes; see `uplift.fit.solver`.
     """
 
     sensor: Sensor
@@ -32,7 +31,6 @@ class Problem:
     error_light: Light | None = None
     threshold: float = 1e-4
     method: Method = LeastChange
-    compiled: bool = False
 
     @cached_property
     def forward(self) -> ForwardMap:
@@ -54,7 +52,6 @@ class Problem:
             max_passes=max_passes,
             prior=prior,
             method=self.method,
-            compiled=self.compiled,
         )
 
 

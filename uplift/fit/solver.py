@@ -1,17 +1,20 @@
 """The solver of the fit: of all spectra of a colour, the one nearest to the prior (docs/mathematics.md, 5).
 
 minimise |R⁻¹ (p − p₀)|² subject to r(p) = t, by damped steps (Nocedal & Wright 2006, "Numerical optimization", 18.1).
-`LeastChange` is a solver for many problems at a time, each with its own damping, with the interface of the solvers of
-optimistix, which runs it. `solve` steps it, or any solver of optimistix (`uplift.fit.stock_solvers`), over batches.
+`LeastChange` is a solver of optimistix for many problems at a time, each with its own damping. `solve` steps it, or any
+other solver of optimistix (`uplift.fit.stock_solvers`), over batches of fixed shapes.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import cache
 from itertools import chain, islice, repeat
 from typing import Any, NamedTuple, Protocol
 
+import equinox
+import jax
+import jax.numpy as jnp
 import numpy as np
+import optimistix
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
@@ -37,9 +40,6 @@ NO_TAGS: frozenset[object] = frozenset()
 class BatchSolver(Protocol):
     """A solver of optimistix for a batch of problems, as `solve` needs it."""
 
-    def is_done(self, state: Any) -> Any:
-        """Whether all problems have ended: the first result of ``terminate``, without loading optimistix."""
-
     def resume(self, options: Options, y: Any, state: Any) -> Options:
         """Return the options with which ``init`` goes on, from those before, multipliers ``y`` (n, C) and the state."""
 
@@ -47,7 +47,7 @@ class BatchSolver(Protocol):
 class Method(Protocol):
     """A way to solve batches, the same object for a whole build: what is compiled for it is found by its identity."""
 
-    def __call__(self, forward: ForwardMap, tolerance: Any, /) -> Any:
+    def __call__(self, forward: ForwardMap, tolerance: Any) -> Any:
         """Make the `BatchSolver` that stops at a distance of ``tolerance`` in linear RGB."""
 
     def options(self, start: Array, prior: Array | None) -> Options:
@@ -75,13 +75,7 @@ class LeastChangeState(NamedTuple):
         return abs(self.residual).max(axis=1)
 
 
-def largest(values: Any) -> Any:
-    """Maximum norm, as `optimistix.max_norm`."""
-    return abs(values).max()
-
-
-@dataclass(frozen=True, eq=False)
-class LeastChange:
+class LeastChange(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
     """Damped steps that reach the colour and change the prior least, for a batch of problems with three residuals each.
 
     ``atol`` is the distance in linear RGB at which a problem is solved. The options of `init` are ``prior`` (n, C), the
@@ -92,7 +86,7 @@ class LeastChange:
     forward: ForwardMap
     atol: Any
     rtol: float = 0.0
-    norm: Callable[[Any], Any] = largest
+    norm: Callable[[Any], Any] = equinox.field(static=True, default=optimistix.max_norm)
 
     def init(
         self, fn: Any, y: Any, args: Any, options: Options, f_struct: Any, aux_struct: Any, tags: Any
@@ -127,13 +121,7 @@ class LeastChange:
         self, fn: Any, y: Any, args: Any, options: Options, state: LeastChangeState, tags: Any
     ) -> tuple[Any, Any]:
         """Whether all problems are solved."""
-        from optimistix import RESULTS
-
-        return self.is_done(state), RESULTS.successful
-
-    def is_done(self, state: LeastChangeState) -> Any:
-        """Whether all problems are solved."""
-        return (state.distance <= self.atol).all()
+        return (state.distance <= self.atol).all(), optimistix.RESULTS.successful
 
     def postprocess(self, fn: Any, y: Any, aux: Any, *rest: Any) -> tuple[Any, Any, dict[str, Any]]:
         """Return the solution as it is."""
@@ -178,13 +166,12 @@ def solve(
     max_passes: int,
     prior: Array | None = None,
     method: Method = LeastChange,
-    compiled: bool = False,
 ) -> Solution:
     """Find multipliers of linear RGB ``target`` (n, 3), from ``start`` (n, C), nearest to ``prior`` (n, C).
 
     Without a prior each step changes the current multipliers least, which is more robust far from the answer. No
     squared residual increases. Failure to converge is not an error: the distance reports it. The steps of a problem do
-    not depend on the others. ``compiled`` is that of `map_batches`.
+    not depend on the others.
     """
     count = len(start)
     steps_taken = np.zeros(count, dtype=np.int64)
@@ -195,7 +182,7 @@ def solve(
             break
         given = (solution.multipliers[rows], target[rows], options)
         advance = _advance(method)  # type: ignore[arg-type]
-        y, residual, taken, options = map_batches(advance, (forward, tolerance, steps), *given, compiled=compiled)
+        y, residual, taken, options = map_batches(advance, (forward, tolerance, steps), *given)
         steps_taken[rows] += taken
         before = solution.distance[rows]
         closer = (residual**2).sum(axis=1) <= (solution.residual[rows] ** 2).sum(axis=1)
@@ -214,45 +201,57 @@ def solve(
 def _advance(method: Method) -> Callable[..., Any]:
     """Make the function that takes up to a number of steps in a chunk of rows; the options go on from there."""
 
-    def advance(constants: Any, y: Any, target: Any, options: Options) -> Any:
+    def advance(constants: Any, y: jax.Array, target: jax.Array, options: Options) -> Any:
         forward, tolerance, max_steps = constants
         solver = method(forward, tolerance)
-        y, state, steps = iterate(solver, forward, y, target, options, max_steps)
-        return y, state.residual, y.__array_namespace__().full(len(y), steps), solver.resume(options, y, state)
+        y, state, steps = iterate(
+            solver, _without_aux(forward, jax.jit(ForwardMap.residual)), y, target, options, max_steps
+        )
+        return y, state.residual, jnp.full(len(y), steps), solver.resume(options, y, state)
 
     return advance
 
 
-def iterate(solver: Any, forward: ForwardMap, y: Any, target: Any, options: Options, max_steps: Any) -> Any:
-    """Step a solver of optimistix by hand until it is done, as its documentation shows for interactive use.
+def _without_aux(forward: ForwardMap, residual: Callable[..., Any] = ForwardMap.residual) -> Any:
+    return lambda p, goal: (residual(forward, p, goal), None)
+
+
+def iterate(solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps: Any) -> tuple[Any, Any, Any]:
+    """Step a solver of optimistix by hand until it terminates, as its documentation shows for interactive use.
 
     Returns the last ``y``, the state and the number of steps.
     `optimistix.least_squares` takes the same steps, and seconds more to compile.
     """
+    state = solver.init(fn, y, args, options, *jax.eval_shape(fn, y, args), NO_TAGS)
+    arrays, static = equinox.partition(state, equinox.is_array)
 
-    def fn(p: Any, goal: Any) -> tuple[Any, None]:
-        return forward.residual(p, goal), None
+    def step(carry: Any) -> Any:
+        count, y, arrays = carry
+        y, state, _ = solver.step(fn, y, args, options, equinox.combine(arrays, static), NO_TAGS)
+        return count + 1, y, equinox.filter(state, equinox.is_array)
 
-    def step(y: Any, state: Any) -> tuple[Any, Any]:
-        return solver.step(fn, y, target, options, state, NO_TAGS)[:2]
+    def unfinished(carry: Any) -> Any:
+        count, y, arrays = carry
+        done, _ = solver.terminate(fn, y, args, options, equinox.combine(arrays, static), NO_TAGS)
+        return (count < max_steps) & ~done
 
-    state = solver.init(fn, y, target, options, None, None, NO_TAGS)
-    if not isinstance(y, np.ndarray):
-        from uplift.fit.compiled import repeat_step
-
-        return repeat_step(step, solver.is_done, y, state, max_steps)
-    count = 0
-    while count < max_steps and not solver.is_done(state):
-        y, state = step(y, state)
-        count += 1
-    return y, state, count
+    count, y, arrays = jax.lax.while_loop(unfinished, step, (jnp.asarray(0), y, arrays))
+    return y, equinox.combine(arrays, static), count
 
 
 def solve_singly(forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int) -> Array:
-    """Find multipliers (n, C) of linear RGB (n, 3), one problem after another, each nearest to its own start."""
-    solver, multipliers = LeastChange(forward, tolerance), start.copy()
-    for row in range(len(start)):
-        own = slice(row, row + 1)
-        options = LeastChange.options(start[own], None)
-        multipliers[own] = iterate(solver, forward, start[own], target[own], options, max_steps)[0]
+    """Find multipliers (n, C) of linear RGB (n, 3), one problem after another, each nearest to its own start.
+
+    The steps are those of numpy: nothing needs to be compiled for a few problems.
+    """
+    fn, solver, multipliers = _without_aux(forward), LeastChange(forward, tolerance), start.copy()
+    for row, goal in enumerate(target):
+        y = start[row : row + 1]
+        options = LeastChange.options(y, None)
+        state = solver.init(fn, y, goal, options, None, None, NO_TAGS)
+        for _ in range(max_steps):
+            if solver.terminate(fn, y, goal, options, state, NO_TAGS)[0]:
+                break
+            y, state, _ = solver.step(fn, y, goal, options, state, NO_TAGS)
+        multipliers[row] = y[0]
     return multipliers

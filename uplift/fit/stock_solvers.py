@@ -131,10 +131,6 @@ class EachRow(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
         """Return the solution as it is."""
         return y, aux, {}
 
-    def is_done(self, state: EachRowState) -> Any:
-        """Whether the solver has terminated in all rows."""
-        return state.done.all()
-
     def resume(self, options: Options, y: Any, state: EachRowState) -> Options:
         """Go on closer to the colour: the first answers are near the prior, later ones near the last answer."""
         return {"prior": y, "closeness": options["closeness"] / 100}

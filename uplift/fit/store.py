@@ -59,7 +59,7 @@ def _store_coefficients(
     def evaluate(points: Indices) -> None:
         if points.size:
             multipliers = problem.model.from_storage(coefficients[points].astype(kind))
-            rgb = map_batches(ForwardMap.rgb, problem.forward, multipliers, compiled=problem.compiled)
+            rgb = map_batches(ForwardMap.rgb, problem.forward, multipliers)
             growth.rgb[points], distance[points] = rgb, np.abs(nodes.goal(points) - rgb).max(axis=1)
 
     # Block by block; once a block loses too much in single precision, all sensitive nodes so far are evaluated again.
@@ -67,7 +67,7 @@ def _store_coefficients(
     for block in blocks(len(nodes.points), BLOCK_POINTS):
         points = nodes.points[block]
         safe = problem.model.is_float32_safe(coefficients[points])
-        coefficients[points] = to_storage(problem.model, coefficients[points], problem.compiled)
+        coefficients[points] = to_storage(problem.model, coefficients[points])
         distance[points] = growth.distance[points]
         sensitive.append(points[~safe])
         evaluate(sensitive[-1])

@@ -116,7 +116,6 @@ def nearest_lights(prior: Array, uv: Array, radiometry: Array) -> Array:
         tolerance=TOLERANCE,
         max_passes=MAX_PASSES,
         prior=multipliers,
-        compiled=True,
     )
     power = np.exp(found.multipliers @ basis.T)
     return np.asarray(power / (power @ radiometry @ DENOMINATOR)[:, None])

@@ -16,8 +16,6 @@ from uplift.common.arrays import Array
 
 SINGLE_THREAD_SIZE = 1 << 17
 """Multiplications per slice; OpenBLAS starts threads at twice as many."""
-TOGETHER = 16
-"""Rows that OpenBLAS multiplies together, at most. It may round what remains differently."""
 # arctan(√u) / √u on [0, 1], interpolated at 20 Chebyshev nodes in 60 digits; to 3e-16 of the value.
 _POLYNOMIAL = (
     1.0,
@@ -98,7 +96,7 @@ def blocked_matmul(rows: Any, matrix: Any) -> Any:
     if rows.__array_namespace__() is not np:
         return rows @ matrix
     product = np.empty((len(rows), matrix.shape[1]))
-    size = max(SINGLE_THREAD_SIZE // matrix.size // TOGETHER, 1) * TOGETHER
+    size = max(SINGLE_THREAD_SIZE // matrix.size, 1)
     full = len(rows) // size * size
     np.matmul(
         rows[:full].reshape(-1, size, rows.shape[1]),

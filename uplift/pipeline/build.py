@@ -61,8 +61,6 @@ if TYPE_CHECKING:
     from uplift.fit.stock_solvers import Solver
     from uplift.pipeline.look import LooksLike
 
-MAX_INTERPRETED = 64**3
-"""Nodes of the largest lattice that is fitted without JAX, which takes longer to import than it saves."""
 GROWTH: dict[str, Callable[..., Growth]] = {
     "outward": grow_outward,
     "coarse-to-fine": grow_coarse_to_fine,
@@ -268,7 +266,7 @@ def _problem(options: Options, observer: str | Camera, solver: str | Solver) -> 
         else:
             given = format_value(solver)
             raise OptionError(f"solver must be a name or a least-squares solver of optimistix, got {given}")
-        problem = replace(problem, method=method, compiled=True)
+        problem = replace(problem, method=method)
     if sensor.sensitivities is None:
         return replace(options, space=sensor.space), problem
     return replace(options, observer=sensor.space), problem
@@ -328,8 +326,6 @@ def _build(
     if options.dim == AUTO:
         options = _choose_lattice(options, problem, constraints, prior, blend)
     lattice, rgb = Lattice(observers.axis_nodes(options.axis, int(options.dim))), constraints.at_nodes.rgb
-    compiled = problem.compiled or lattice.size > MAX_INTERPRETED
-    problem, prior = replace(problem, compiled=compiled), replace(prior, compiled=compiled)
     boxes, seeds = EntryBoxes(lattice, rgb, half_widths(lattice, rgb)), seed(lattice, rgb)
     spectra.warn_of_duplicates(constraints.names, boxes.half_width)
     spectra.warn_of_crowding(constraints.names, boxes, seeds)
