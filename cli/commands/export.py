@@ -136,8 +136,8 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
         return f"{film.inside:.0%} of the chromaticities from the cube, mean error of exposure {film.stops:.2g} stops"
     if style in SIGMOIDS:
         with progress_bar("fitting sigmoids"):
-            error = write_coeff(data, path, layout=style, **settings)
-        return f"table of sigmoids, largest RGB error {error:.1e} between its points"
+            largest = write_coeff(data, path, layout=style, **settings)
+        return f"table of sigmoids, largest RGB error {largest:.1e} between its points"
     if style == "npz":
         return f"{write_npz(data, path, **settings)} arrays"
     if style == "csv":
