@@ -23,8 +23,10 @@ TOLERANCE = 1e-8
 MAX_STEPS = 24
 FIRST_DAMPING = 1e-2
 """μ after a rejected full step; nearly all colours need one or two full steps and no damping."""
+PULLED = 1e-11
+"""The same, scaled, of the convex problem, so that spectra do not depend on the steps (docs/reader.py)."""
 MAX_PULLS = 100
-"""Steps of the convex problem; most colours need four, none of those tried more than 60."""
+"""Steps of the convex problem; most colours need four, few more than 20."""
 TRACE = [0, 2, 5]
 """Diagonal elements of a lower triangle, row by row."""
 MIN_CURVATURE = 0.01
@@ -105,7 +107,7 @@ def _pull(model: Model, pulled: Pull, linear: Array, goal: Array) -> Array:
     found, length = np.zeros_like(goal), np.ones(goal.shape[1])
     gram, residual = products @ model.derivative(linear), goal - pulled.sensor @ model.to_reflectance(linear)
     for _ in range(MAX_PULLS):
-        pending = np.flatnonzero(np.abs(residual).max(axis=0) > TOLERANCE)
+        pending = np.flatnonzero(np.abs(residual).max(axis=0) > PULLED)
         if not pending.size:
             break
         part, off, (g00, g10, g11, g20, g21, g22) = length[pending], residual[:, pending], gram[:, pending]
