@@ -17,9 +17,18 @@ if TYPE_CHECKING:
 PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl"}
 LUTS = {"cube": ".cube", "clf": ".clf"}
 SIGMOIDS = {"coeff": ".coeff", "pbrt": ".cpp", "luisa": ".cpp"}
-SUFFIXES = {**SIGMOIDS, **PROGRAMS, **LUTS, "film": ".npy", "npz": ".npz", "csv": ".csv", "html": ".html"}
+SUFFIXES = {
+    **SIGMOIDS,
+    **PROGRAMS,
+    **LUTS,
+    "film": ".npy",
+    "fourier": ".png",
+    "npz": ".npz",
+    "csv": ".csv",
+    "html": ".html",
+}
 APPLIES = {
-    "res": ("coeff", *LUTS, "film"),
+    "res": ("coeff", *LUTS, "film", "fourier"),
     "light": (*LUTS, "film"),
     "adapt": tuple(LUTS),
     "mode": tuple(PROGRAMS),
@@ -40,7 +49,7 @@ APPLIES = {
 @click.option(
     "--res",
     type=options.Whole(),
-    help="Nodes of a table along each axis. [default: coeff 64, cube and clf 33, film 192]",
+    help="Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier 33, film 192]",
 )
 @click.option("--light", metavar="NAME", help="Illuminant of a cube, clf or film table.")
 @click.option(
@@ -80,6 +89,8 @@ def command(
            the same as source in C++, for pbrt-v4 and LuisaRender
     cube, clf
            table of the colours under --light, for grading and compositing
+    fourier
+           table from sRGB to three numbers for 8-bit textures, and the shader of their spectra
     film   table of a spectrum per chromaticity, for film simulation; with --light, as light that reaches the film
     html   page that relights images in a browser
     npz    all arrays of the cube, for numpy
@@ -98,6 +109,7 @@ def command(
       uplift export macbeth-32.uplift -o filed.h --table file
       uplift export macbeth-32.uplift -o moments.glsl --mode moments
       uplift export macbeth-32.uplift -o sodium.cube --light HP1
+      uplift export three.uplift -o fourier.png
       uplift export macbeth-32.uplift -o film.npy
       uplift export macbeth-32.uplift --format csv
     """
@@ -123,7 +135,15 @@ def command(
 def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     """Write a cube, and return a description of the file."""
     from uplift.common.files import write_text
-    from uplift.io.export import write_coeff, write_csv, write_film, write_lut, write_npz, write_program
+    from uplift.io.export import (
+        write_coeff,
+        write_csv,
+        write_film,
+        write_fourier,
+        write_lut,
+        write_npz,
+        write_program,
+    )
     from uplift.report.live_page import page
 
     data = cube.data
@@ -131,6 +151,10 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
         error = write_lut(cube, path=path, **settings)
         shown = f"mean {error.mean:.2g}, largest {error.largest:.2g}"
         return f"colours under {settings['light']}, ΔE00 from the cube's: {shown}"
+    if style == "fourier":
+        error = write_fourier(cube, path, **settings)
+        shader = path.with_suffix(".glsl")
+        return f"shader in {shader}, ΔE00 of colours in 8 bits: mean {error.mean:.2g}, largest {error.largest:.2g}"
     if style == "film":
         film = write_film(cube, path, **settings)
         return f"{film.inside:.0%} of the chromaticities from the cube, mean error of exposure {film.stops:.2g} stops"

@@ -3,6 +3,7 @@
 from uplift.io.export.arrays import write_csv, write_npz
 from uplift.io.export.coeff import write_coeff
 from uplift.io.export.film import write_film
+from uplift.io.export.fourier import write_fourier
 from uplift.io.export.lights import write_light_program
 from uplift.io.export.lut import write_lut
 from uplift.io.export.program import LANGUAGES, write_program
@@ -12,6 +13,7 @@ __all__ = [
     "write_coeff",
     "write_csv",
     "write_film",
+    "write_fourier",
     "write_light_program",
     "write_lut",
     "write_npz",

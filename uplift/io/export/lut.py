@@ -76,7 +76,7 @@ def write_lut(
     transform = _linear_to_linear(table, res)
     title = f"uplift: {cube.data.sensor.space} under {cube.data.sensor.illuminant} to {screen.illuminant}"
     is_clf = os.fspath(path).lower().endswith(".clf")
-    write_text(_clf(transform, title) if is_clf else _cube(table, title, res), path, force=force)
+    write_text(_clf(transform, title) if is_clf else cube_text(table, title, res), path, force=force)
     return _error(cube, transform, screen)
 
 
@@ -122,7 +122,7 @@ def _clf(transform: Any, title: str) -> str:
     return str(transform.write(formatName=CLF, config=ocio.Config.CreateRaw()))
 
 
-def _cube(table: Values, title: str, size: int) -> str:
+def cube_text(table: Values, title: str, size: int) -> str:
     """Return the text of a ``.cube`` file, in which red varies fastest."""
     rows = table.reshape(size, size, size, 3).transpose(2, 1, 0, 3).reshape(-1, 3)
     lines = "\n".join(" ".join(f"{value:.7g}" for value in row) for row in rows.tolist())

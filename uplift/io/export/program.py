@@ -123,17 +123,17 @@ def compose(kind: str, table: Table, style: str, stem: str, form: str, words: di
     ``up_`` and ``UP_`` in the source become the name of the program.
     """
     language, name, image = LANGUAGES[style], identifier(stem), table.image()
-    text = _read(f"{kind}.c")
-    text = text.replace("${macros}", "".join(_read(each) for each in language.macros))
-    calls = _read(f"{kind}_calls{language.calls}")
+    text = read_source(f"{kind}.c")
+    text = text.replace("${macros}", "".join(read_source(each) for each in language.macros))
+    calls = read_source(f"{kind}_calls{language.calls}")
     overview, _, calls = calls.partition(" */\n")
     text = text.replace("${calls}", calls)
     text = text.replace("${overview}", overview.removeprefix("/* ").replace("UP_VEC", language.vector))
-    text = text.replace("${table}", _read(f"table_{form}.c"))
+    text = text.replace("${table}", read_source(f"table_{form}.c"))
     text = _unroll(text, {f"UP_{key}": value for key, value in table.constants.items()})
     text = re.sub(r"\bup_", f"{name}_", text)
     text = re.sub(r"\bUP_", f"{name.upper()}_", text)
-    constants = (f"#define {name.upper()}_{key} {_literal(value)}" for key, value in table.constants.items())
+    constants = (f"#define {name.upper()}_{key} {literal(value)}" for key, value in table.constants.items())
     shared = {
         "version": VERSION,
         "stem": comment(stem),
@@ -175,7 +175,7 @@ def comment(text: str) -> str:
     return text.encode("ascii", "replace").decode().replace("*", "").replace("\n", " ").replace("$", "")
 
 
-def _read(name: str) -> str:
+def read_source(name: str) -> str:
     return (files("uplift.io.export") / "source" / name).read_text(encoding="ascii")
 
 
@@ -190,7 +190,7 @@ def _unroll(text: str, constants: dict[str, Any]) -> str:
     return LOOP.sub(copies, text)
 
 
-def _literal(value: float) -> str:
+def literal(value: float) -> str:
     """Return an integer, or a number of single precision in nine digits."""
     if isinstance(value, int):
         return str(value)
@@ -204,5 +204,5 @@ def _with_numbers(text: str, numbers: NDArray[np.float32], per_line: int) -> Ite
     yield before
     if found:
         for start in range(0, len(numbers), per_line):
-            yield ", ".join(map(_literal, numbers[start : start + per_line].tolist())) + ",\n"
+            yield ", ".join(map(literal, numbers[start : start + per_line].tolist())) + ",\n"
     yield after

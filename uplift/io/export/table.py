@@ -72,7 +72,7 @@ def make_table(data: CubeData, mode: str) -> Table:
         "PLACE": 4 if data.inexact_cells is None else 7,
         **how,
         **offsets,
-        **_model_constants(model),
+        **model_constants(model),
     }
     return Table(numbers, constants)
 
@@ -137,7 +137,7 @@ def _boxes(boxes: EntryBoxes) -> Floats:
     return np.concatenate([boxes.rgb, below, above], axis=1).astype(np.float32)
 
 
-def _model_constants(model: object) -> dict[str, float]:
+def model_constants(model: object) -> dict[str, float]:
     """Return the model, its wavelength range in nm, and the start and reciprocal length of the warped range."""
     if isinstance(model, Sigmoid):
         return {"SIGMOIDS": 1, "START": model.start, "END": model.end}

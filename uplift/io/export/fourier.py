@@ -1,0 +1,137 @@
+"""Fourier sRGB: colours of three numbers in [0, 1] that are linear in the spectrum, for textures of 8 bits.
+
+The moments c of a cube of three coefficients are a linear function of the linear components f of this colour space. f
+are near linear RGB, grey is f = (g, g, g), and the codes of f have the sRGB curve. Textures with such codes are
+filtered, and compressed in blocks, as those of sRGB are. A shader evaluates their spectra: its file is next to the
+table from sRGB to Fourier sRGB, a ``.png`` image of all 256³ codes or a ``.cube`` table of fewer.
+
+The image is a Hald image of level 16: pixels row by row, with red varying fastest, then green, then blue.
+
+References
+----------
+Peters, Merzbach, Hanika & Dachsbacher 2019, "Spectral rendering with the bounded MESE and sRGB data", MAM 2019.
+"""
+
+from pathlib import Path
+from string import Template
+
+import numpy as np
+
+from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.srgb import decode, encode
+from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import OptionError, TextureError
+from uplift.common.files import atomic_write, write_text
+from uplift.cube import CubeData
+from uplift.io.export.lut import MAX_SIZE, MIN_SIZE, SAMPLES, SEED, SIZE, LutError, cube_text
+from uplift.io.export.program import identifier, literal, read_source
+from uplift.io.export.table import Floats, model_constants
+from uplift.lookup import Cube
+from uplift.models import Moments, reflectance
+from uplift.models.moments import WARPS
+
+COUNT, LEVEL = 3, 16
+
+
+def write_fourier(cube: Cube, path: StrPath, *, res: int = SIZE, force: bool = False) -> LutError:
+    """Write the table from sRGB to Fourier sRGB, and the shader of its spectra as a ``.glsl`` file.
+
+    Parameters
+    ----------
+    cube : Cube
+        Cube of three moments, of sRGB or another space with its curve.
+    path : path-like
+        ``.png``, or else a ``.cube`` file.
+    res : int, default 33
+        Nodes of a ``.cube`` table along each axis, 2 to 129.
+    force : bool, default False
+        Replace existing files.
+
+    Returns
+    -------
+    LutError
+        Under the light of the cube, of random colours with codes of 8 bits before and after.
+
+    Raises
+    ------
+    OptionError
+        A cube of another model or curve, or a size outside its range.
+    """
+    data, path = cube.data, Path(path)
+    if not isinstance(data.model, Moments) or data.model.count != COUNT:
+        raise OptionError("Fourier sRGB needs a cube of three moments", hint="build one with coefficients=3")
+    if np.abs(data.sensor.decoding - decode(np.arange(256) / 255)).max() > 1e-6:
+        raise OptionError(f"Fourier sRGB needs the curve of sRGB, got {data.sensor.space}")
+    is_image = path.suffix.lower() == ".png"
+    if not MIN_SIZE <= res <= MAX_SIZE:
+        raise OptionError(f"res must be from {MIN_SIZE} to {MAX_SIZE}, got {res}", hint=f"{SIZE} is usual")
+    matrix = _to_moments(data)
+    table = _table(cube, np.linspace(0, 1, LEVEL**2 if is_image else res), matrix)
+    with atomic_write(path, force=force) as temporary:
+        if is_image:
+            _write_image(table, temporary)
+        else:
+            title = f"uplift: {data.sensor.space} to Fourier sRGB"
+            temporary.write_text(cube_text(table.transpose(2, 1, 0, 3), title, res), encoding="utf-8", newline="\n")
+        write_text(_shader(data.model, matrix, path.stem), path.with_suffix(".glsl"), force=force)
+    return _error(cube, table, matrix)
+
+
+def _to_moments(data: CubeData) -> Array:
+    """Return the matrix (3, 3) from linear Fourier sRGB to moments.
+
+    Its inverse takes c to c₀ + S (c₁, c₂), where S minimises the distance to the RGB of the nodes. Rows of S are scaled
+    down so that all nodes are in [0, 1].
+    """
+    moments, rgb = data.points.coefficients[data.points.present], data.points.rgb[data.points.present]
+    slopes = np.linalg.lstsq(moments[:, 1:], rgb - moments[:, :1])[0]
+    chroma = moments[:, 1:] @ slopes
+    room = np.where(chroma < 0, moments[:, :1], 1 - moments[:, :1])
+    size = np.abs(chroma)
+    fraction = np.divide(room, size, out=np.ones_like(size), where=size > room).min(axis=0)
+    return np.asarray(np.linalg.inv(np.vstack([np.ones(3), slopes * fraction]).T))
+
+
+def _table(cube: Cube, nodes: Array, matrix: Array) -> Floats:
+    """Return codes in [0, 1] (res, res, res, 3) of sRGB codes, by blue, green and red."""
+    size, inverse = len(nodes), np.linalg.inv(matrix)
+    table = np.empty((size, size, size, 3), dtype=np.float32)
+    rgb = np.empty((size, size, 3))
+    rgb[..., 1], rgb[..., 0] = np.meshgrid(decode(nodes), decode(nodes), indexing="ij")
+    for blue, plane in zip(decode(nodes), table, strict=True):
+        rgb[..., 2] = blue
+        plane[:] = encode(cube.coefficients(rgb) @ inverse.T)
+    return table
+
+
+def _write_image(table: Floats, path: Path) -> None:
+    import OpenImageIO
+
+    image = OpenImageIO.ImageBuf(_codes(table).astype(np.uint8).reshape(LEVEL**3, LEVEL**3, 3))
+    if not image.write(str(path), "uint8", "png"):
+        raise TextureError(image.geterror(), path=path)
+
+
+def _codes(numbers: Floats) -> Floats:
+    return np.rint(255 * numbers)
+
+
+def _shader(model: Moments, matrix: Array, stem: str) -> str:
+    rows = {f"row_{k}": ", ".join(map(literal, row)) for k, row in enumerate(matrix.tolist())}
+    constants = {name.lower(): literal(float(value)) for name, value in model_constants(model).items()}
+    terms = [f"{literal(a)} * tanh({literal(k)} * (wavelength - {literal(m)}))" for a, k, m in WARPS[model.warp]]
+    warp = " + ".join(terms) or "wavelength"
+    return Template(read_source("fourier.glsl")).substitute(rows, **constants, name=identifier(stem), warp=warp)
+
+
+def _error(cube: Cube, table: Floats, matrix: Array) -> LutError:
+    """Compare colours of the spectra of 8-bit codes with the colours asked for, linearly between nodes."""
+    from scipy.ndimage import map_coordinates
+
+    codes = np.random.default_rng(SEED).integers(0, 256, (SAMPLES, 3)) / 255
+    places = (codes[:, ::-1] * (len(table) - 1)).T
+    found = np.array([map_coordinates(table[..., k], places, order=1) for k in range(3)]).T
+    moments = decode(_codes(found) / 255) @ matrix.T
+    spectra = reflectance(cube.data.model, moments, cube.data.sensor.wavelengths)
+    errors = delta_e_rgb(cube.data.sensor, cube.data.sensor.rgb(spectra), decode(codes))
+    return LutError(float(errors.mean()), float(errors.max()))
