@@ -68,12 +68,12 @@ def test_codes_have_the_colours_of_srgb(three, folder):
     """Of the spectra of 8-bit codes, which are also near the codes themselves."""
     codes, sensor = hald(folder / "hald.png").reshape(-1, 3), three.data.sensor
     nodes = np.linspace(0, 1, LEVEL**2)
-    asked = np.array(list(product(nodes, repeat=3)))
+    requested = np.array(list(product(nodes, repeat=3)))
     moments = decode(codes / 255) @ fourier._to_moments(three.data).T
     found = sensor.rgb(reflectance(three.data.model, moments, sensor.wavelengths))
-    errors = delta_e_rgb(sensor, found, sensor.rgb(three.reflectance(decode(asked), mode="moments")))
+    errors = delta_e_rgb(sensor, found, sensor.rgb(three.reflectance(decode(requested), mode="moments")))
     assert errors.mean() < 0.3
-    assert np.abs(codes - 255 * asked).mean() < 15
+    assert np.abs(codes - 255 * requested).mean() < 15
     greys = codes[:: 3 * (LEVEL**4 + LEVEL**2 + 1)]  # at nodes of the cube
     np.testing.assert_allclose(greys, 255 * nodes[::3, None].repeat(3, axis=1), atol=1)
 

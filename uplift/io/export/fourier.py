@@ -125,7 +125,7 @@ def _shader(model: Moments, matrix: Array, stem: str) -> str:
 
 
 def _error(cube: Cube, table: Floats, matrix: Array) -> LutError:
-    """Compare colours of the spectra of 8-bit codes with the colours asked for, linearly between nodes."""
+    """Compare colours of the spectra of 8-bit codes with the requested colours, linearly between nodes."""
     from scipy.ndimage import map_coordinates
 
     codes = np.random.default_rng(SEED).integers(0, 256, (SAMPLES, 3)) / 255
