@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -45,12 +46,12 @@ def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
     if np.hypot(*direction) < ACHROMATIC:
         return GREY
     # The ray white + distance · direction leaves the outline at the locus, or at the line of purples, the last edge.
-    edge, fraction, distance = _crossing(outline, direction)
+    edge, fraction, distance = crossing(outline, direction)
     complementary = edge == len(outline) - 2
     if complementary:
-        edge, fraction, _ = _crossing(outline[:-1], -direction)
+        edge, fraction, _ = crossing(outline[:-1], -direction)
     first, second = sensor.wavelengths[edge : edge + 2]
-    return DominantWavelength(float(first + fraction * (second - first)), complementary, 1 / distance)
+    return DominantWavelength(float(first + fraction * (second - first)), bool(complementary), float(1 / distance))
 
 
 @lru_cache(maxsize=8)
@@ -61,16 +62,19 @@ def _outline(sensor: Sensor) -> tuple[Array, Array]:
     return xy[0], xy[1:] - xy[0]
 
 
-def _crossing(path: Array, direction: Array) -> tuple[int, float, float]:
-    """Return where a ray from the origin leaves a path (n, 2): the edge, the fraction of its length, and the distance.
+def crossing(path: Array, direction: Array) -> tuple[Any, Array, Array]:
+    """Return where rays from the origin leave a path: the edge, the fraction of its length, and the distance.
 
-    The distance is in units of ``direction`` (2,). Of several edges, as at the end of the locus, it is the farthest.
+    The distance is in units of the direction, infinite for a ray that meets no edge. Of several edges, as at the end of
+    the locus, it is the farthest. Shapes: ``path`` (n, 2), ``direction`` (..., 2) → (...).
     """
     # t · direction = start + f · edge, solved by Cramer's rule
-    (x, y), (u, v), (a, b) = path[:-1].T, np.diff(path, axis=0).T, direction
+    (x, y), (u, v) = path[:-1].T, np.diff(path, axis=0).T
+    a, b = direction[..., :1], direction[..., 1:]
     determinant = a * v - b * u
     safe = np.where(determinant == 0, 1, determinant)
     distance, fraction = (x * v - y * u) / safe, (x * b - y * a) / safe
     met = (determinant != 0) & (distance > 0) & (fraction >= -SLACK) & (fraction <= 1 + SLACK)
-    edge = int(np.where(met, distance, 0).argmax())
-    return edge, float(np.clip(fraction[edge], 0, 1)), float(distance[edge])
+    edge = np.where(met, distance, 0).argmax(axis=-1, keepdims=True)
+    place, reach = (np.take_along_axis(each, edge, -1)[..., 0] for each in (fraction, np.where(met, distance, np.inf)))
+    return edge[..., 0], np.clip(place, 0, 1), reach

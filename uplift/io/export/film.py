@@ -23,6 +23,7 @@ from pathlib import Path
 
 import numpy as np
 
+from uplift.colorimetry.dominant import crossing
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, grid, illuminant_spd, matching_functions
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import solid
@@ -34,8 +35,7 @@ from uplift.lookup import Cube
 
 SIZE, MIN_SIZE, MAX_SIZE = 192, 2, 1024
 SHARE = 0.5
-"""Luminance of a stored reflectance, as a fraction of the largest of its chromaticity. Of .1 to .9 in steps of .2, this
-one has the smallest `FilmTable.stops`."""
+"""Luminance of a stored reflectance, as a fraction of the largest of its chromaticity."""
 MIDGRAY = 0.184
 """Reflectance that readers expose as medium grey."""
 MARGIN = 1e-3
@@ -46,7 +46,7 @@ SAMPLES, SEED = 4096, 7
 """Random colours of the stated error, even in codes."""
 REACH = 10.0
 """Factor that takes RGB of a unit sum of XYZ out of the solid of reflectances."""
-SLACK, TINY = 1e-9, 1e-12
+TINY = 1e-12
 BAND = 10.0
 """Standard deviation of the narrow bands in nm."""
 WEAKEST = 0.05
@@ -102,9 +102,9 @@ def write_film(
     if not MIN_SIZE <= res <= MAX_SIZE or not 0 < share < 1:
         raise OptionError(
             f"res must be from {MIN_SIZE} to {MAX_SIZE} and share in (0, 1), got {res} and {share:g}",
-            hint=f"readers expect {SIZE} rows, and a share of {SHARE} loses least",
+            hint=f"readers expect {SIZE} rows; the usual share is {SHARE}",
         )
-    scene = Scene(sensor, light)
+    scene = _scene(sensor, light)
     unit = _chromaticities(res)
     spectra, inside = _spectra(cube, scene, unit, share)
     table = (spectra if light else spectra / scene.power).reshape(res, res, -1).astype("<f2")
@@ -117,20 +117,29 @@ def write_film(
     return FilmTable(inside, _stops(cube, scene, spectra.reshape(res, res, -1)))
 
 
+@dataclass(frozen=True, eq=False)
 class Scene:
-    """Light that reaches the film: its power, and the RGB of chromaticities under it in the cube's space."""
+    """Light that reaches the film."""
 
-    def __init__(self, sensor: Sensor, light: str | None) -> None:
-        self.name = light or sensor.illuminant
-        cmfs = matching_functions(DEFAULT_OBSERVER)
-        self.xyz = cmfs / cmfs[:, 1].sum()  # XYZ of a power (N,) is power @ xyz
-        power = illuminant_spd(self.name)
-        self.power = power / (power @ self.xyz[:, 1])
-        self.white = self.power @ self.xyz
-        # The reader's RGB are adapted to the light by CAT02; the cube's have the white of its illuminant.
-        cones = CAT02 @ np.stack([self.white, sensor.light.white], axis=1)
-        adapt = np.linalg.solve(CAT02, (cones[:, 1] / cones[:, 0])[:, None] * CAT02)
-        self.xyz_to_rgb = sensor.xyz_to_rgb @ adapt
+    name: str
+    xyz: Array
+    """(N, 3): XYZ of a power (N,) is power @ xyz."""
+    power: Array
+    """(N,) power with Y = 1."""
+    white: Array
+    """XYZ of the power, (3,)."""
+    xyz_to_rgb: Array
+    """Matrix to the RGB space of the cube."""
+
+
+def _scene(sensor: Sensor, light: str | None) -> Scene:
+    name, cmfs = light or sensor.illuminant, matching_functions(DEFAULT_OBSERVER)
+    xyz, power = cmfs / cmfs[:, 1].sum(), illuminant_spd(name)
+    power = power / (power @ xyz[:, 1])
+    # The reader's RGB are adapted to the light by CAT02; the cube's have the white of its illuminant.
+    cones = CAT02 @ np.stack([power @ xyz, sensor.light.white], axis=1)
+    adapt = np.linalg.solve(CAT02, (cones[:, 1] / cones[:, 0])[:, None] * CAT02)
+    return Scene(name, xyz, power, power @ xyz, sensor.xyz_to_rgb @ adapt)
 
 
 def _chromaticities(size: int) -> Array:
@@ -169,19 +178,9 @@ def _outer_lights(xyz: Array, white: Array, change: Array) -> tuple[Array, Array
     bands = np.exp(-0.5 * ((grid()[:, None] - grid()) / BAND) ** 2)
     sums = (bands @ xyz).sum(axis=1)
     bands = _unit_sum(bands[sums >= WEAKEST * sums.max()], xyz)
-    points = bands @ xyz - white
-    edges = np.roll(points, -1, axis=0) - points
-    # t · change = start + f · edge, in x and y, solved by Cramer's rule for every ray and edge
-    (x, y, _), (u, v, _), (a, b, _) = points.T, edges.T, change.T[..., None]
-    determinant = a * v - b * u
-    safe = np.where(determinant == 0, 1, determinant)
-    reach, fraction = (x * v - y * u) / safe, (x * b - y * a) / safe
-    met = (determinant != 0) & (reach > 0) & (fraction >= -SLACK) & (fraction <= 1 + SLACK)
-    edge = np.where(met, reach, -1).argmax(axis=1)
-    rows = np.arange(len(change))
-    share = np.clip(fraction[rows, edge], 0, 1)[:, None]
-    lights = (1 - share) * bands[edge] + share * np.roll(bands, -1, axis=0)[edge]
-    return np.where(met[rows, edge], reach[rows, edge], np.inf), lights
+    ring = np.concatenate([bands, bands[:1]])
+    edge, fraction, reach = crossing((ring @ xyz - white)[:, :2], change[:, :2])
+    return reach, (1 - fraction)[:, None] * ring[edge] + fraction[:, None] * ring[edge + 1]
 
 
 def _unit_sum(power: Array, xyz: Array) -> Array:
