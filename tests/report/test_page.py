@@ -64,7 +64,7 @@ def test_names_are_escaped(small_cube, hostile):
     assert HOSTILE in read.text
     assert "laser" + HOSTILE in read.text
     assert "which the cube was not built from" in read.text
-    assert "lattice alone" not in read.text[read.text.index("Entries") :].split("Table of entries")[1]
+    assert "lattice alone" not in read.text.split("Table of entries")[1].split("Crowding")[0]
 
 
 def test_points_over_the_threshold_are_listed(spoilt, macbeth):
@@ -93,8 +93,7 @@ def test_predicted_and_actual_errors_are_shown(small_cube, repository):
     assert values["standard_error"]["calibration"]["within_bound"] == measured.within_bound
     assert values["standard_error"]["calibrations"]["FL11"]["real"] == under.actual
     assert values["standard_error"]["unlike_atlas"] == found.unlike
-    headings, *rows = read.tables[-1]
-    assert [cell.text for cell in headings] == ["entry", "worst", "D65", "FL11", "rms", "predicted", "actual"]
+    rows = read.table("entry", "worst", "D65", "FL11", "rms", "predicted", "actual")
     assert [[cell.value for cell in row[-2:]] for row in rows] == pytest.approx(
         np.array([(entry["standard_error"], entry["delta_e_2000_reference"]) for entry in values["entries"]])
     )
