@@ -1,14 +1,16 @@
 """Tables of the values of all nodes, for queries of more colours than the lattice has points."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import DTypeLike
+from numpy.typing import ArrayLike, DTypeLike
 
+from uplift.colorimetry.sensor import as_rgb
 from uplift.common.arrays import Array, Values
 from uplift.cube import CubeData
-from uplift.lookup.blocks import Function, blockwise
+from uplift.lookup.blocks import Function, as_colours, blockwise
 from uplift.lookup.interpolate import (
     around,
     coefficients,
@@ -59,6 +61,27 @@ class NodeTable:
         if rows.size:
             values[rows] = self.exact(rgb[rows])
         return values
+
+    def times(self, matrix: Array) -> "NodeTable":
+        """Multiply values (…, N) by a matrix (K, N): interpolation is linear, and is faster of fewer numbers."""
+        lattice, atlas = ((each @ matrix.T).astype(each.dtype) for each in (self.lattice, self.atlas))
+        return NodeTable(self.data, lattice, atlas, partial(_product, self.exact, matrix))
+
+
+def _product(function: Function, matrix: Array, rgb: Array) -> Array:
+    return np.asarray(function(rgb) @ matrix.T)
+
+
+def prepare_products(data: CubeData, wavelengths: Array, matrix: Array, threads: int = 1) -> Callable[..., Values]:
+    """Prepare products (…, K) of a matrix (K, N) and reflectances in mode ``spectra`` at linear RGB (…, 3), float32."""
+    return partial(_sample, tabulate(data, wavelengths, np.float32, threads).times(matrix), threads)
+
+
+def _sample(table: NodeTable, threads: int, rgb: ArrayLike) -> Values:
+    def work(rows: Array) -> Values:
+        return table.values(as_colours(rows, table.data.sensor))
+
+    return blockwise(work, as_rgb(rgb), table.lattice.shape[1], table.lattice.dtype, threads)
 
 
 def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, threads: int = 1) -> NodeTable:

@@ -29,8 +29,9 @@ from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OutputError
 from uplift.io.texture.colours import Floats
 from uplift.io.texture.image import read_error, utf8_name
-from uplift.lookup import Cube, bulk
+from uplift.lookup import Cube
 from uplift.lookup.cube import common_sensor
+from uplift.lookup.node_table import prepare_products
 from uplift.report.measures import mean_p95_max
 from uplift.viz.figure import GREY, INK, RAMP, colour_map, figure_text, new_figure, ramp_codes, write_figure
 from uplift.viz.html import render, resource
@@ -38,7 +39,6 @@ from uplift.viz.html import render, resource
 RGB_PRODUCT = "RGB × light"  # name of the method that multiplies the RGB of the image by those of the light
 MIN_MAP_LIMIT = 2.0  # smallest ΔE00 at the dark end of a map: invisible differences stay pale
 JPEG_QUALITY = 92
-ROWS = 64  # rows whose spectra are in memory at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,10 +135,9 @@ def _by_product(sensor: Sensor, rgb: Floats, screen: Sensor) -> Floats:
 
 def _by_spectra(cube: Cube, rgb: Floats, screens: Sequence[Sensor], threads: int) -> list[Floats]:
     """Integrate the spectra of all pixels under each light."""
-    sample = bulk.spectra(cube, screens[0].wavelengths, threads=threads)
-    matrix = np.concatenate([screen.matrix for screen in screens]).astype(np.float32)
-    rows = [sample(rgb[first : first + ROWS]) @ matrix.T for first in range(0, len(rgb), ROWS)]
-    return np.split(np.concatenate(rows), len(screens), axis=-1)
+    matrix = np.concatenate([screen.matrix for screen in screens])
+    colours = prepare_products(cube.data, screens[0].wavelengths, matrix, threads)(rgb)
+    return np.split(colours, len(screens), axis=-1)
 
 
 PANEL = 3.4  # width of a panel in inches

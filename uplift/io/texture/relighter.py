@@ -10,26 +10,22 @@ import numpy as np
 
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.spaces import find_space
-from uplift.common.arrays import Array
 from uplift.io import exr
 from uplift.io.texture.colours import Counts, Floats, source_space
 from uplift.io.texture.image import Image, Part
 from uplift.io.texture.uplifter import Converted, Converter, ConvertRows, Sampler
 from uplift.lookup import Cube
-
-BLOCK = 1 << 18
-"""Pixels whose spectra are in memory at once."""
+from uplift.lookup.node_table import prepare_products
 
 
 @dataclass(frozen=True, eq=False)
 class Relighter(Converter):
     """A converter to colours under L lights, made by `prepare_relighter`; white is the white of each light.
 
-    ``sample`` maps linear RGB (…, 3) to reflectances (…, N), ``matrix`` (3 L, N) these to linear RGB of the sensor.
+    ``sample`` maps linear RGB (…, 3) to linear RGB of the sensor (…, 3 L).
     """
 
     sample: Sampler
-    matrix: Array
 
     def part_header(self, part: Part) -> dict[str, object]:
         space = source_space(part, self.sensor, self.space)
@@ -37,24 +33,18 @@ class Relighter(Converter):
 
     @contextlib.contextmanager
     def opened(self, image: Image) -> Iterator[ConvertRows]:
-        yield lambda part, first, rgb: self._relight(rgb, self._to_lights(part))
+        yield lambda part, first, rgb: ((self._to_space(part, self.sample(rgb)),), Counts())
 
     def convert(self, rgb: Floats) -> Converted:
-        return self._relight(rgb, self.matrix)
+        return (self.sample(rgb),), Counts()
 
-    def _to_lights(self, part: Part) -> Array:
-        """The matrix (3 L, N) to the linear RGB of the space of a part."""
+    def _to_space(self, part: Part, lit: Floats) -> Floats:
+        """Convert linear RGB (…, 3 L) of the sensor to the space of a part."""
         space = source_space(part, self.sensor, self.space)
         to_sensor = None if space is None else space.matrix_to(self.sensor)
         if to_sensor is None:
-            return self.matrix
-        lights = self.matrix.reshape(-1, 3, self.matrix.shape[1])
-        return np.asarray(np.linalg.inv(to_sensor) @ lights).reshape(self.matrix.shape)
-
-    def _relight(self, rgb: Floats, matrix: Array) -> Converted:
-        flat, to_rgb = rgb.reshape(-1, 3), matrix.astype(np.float32).T
-        rows = [self.sample(flat[first : first + BLOCK]) @ to_rgb for first in range(0, len(flat), BLOCK)]
-        return (np.concatenate(rows).reshape(*rgb.shape[:-1], -1),), Counts()
+            return lit
+        return (lit.reshape(-1, 3) @ np.linalg.inv(to_sensor).T.astype(lit.dtype)).reshape(lit.shape)
 
 
 def prepare_relighter(
@@ -92,8 +82,6 @@ def prepare_relighter(
     UnknownNameError
         A light or the RGB space is unknown.
     """
-    from uplift.lookup import bulk
-
     sensor = cube.data.sensor
     screens = display_sensors(lights, sensor.observer, *sensor.range, space=sensor.space)
     names = [screen.illuminant for screen in screens]
@@ -107,7 +95,8 @@ def prepare_relighter(
         out_of_gamut,
         tuple(f"{layer}.{letter}" for layer in layers for letter in "RGB"),
         header,
-        sample=bulk.spectra(cube, threads=threads),
-        matrix=np.concatenate([screen.matrix for screen in screens]),
+        sample=prepare_products(
+            cube.data, cube.wavelengths, np.concatenate([screen.matrix for screen in screens]), threads
+        ),
         space=None if space is None else find_space(space),
     )
