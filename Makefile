@@ -9,7 +9,7 @@ OUT := out
 PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
-.PHONY: golden golden-before build lint test bare basic site measure peers library nightly munsell docs atlases cubes lock clean pictures axe examples
+.PHONY: golden golden-before build lint test bare basic site demo measure peers library nightly munsell docs atlases cubes lock clean pictures axe examples
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -57,6 +57,16 @@ docs: $(INSTALLED)
 site: $(INSTALLED)
 	IPYTHONDIR=$(abspath $(OUT))/cache/ipython $(BIN)/python -m sphinx -W --keep-going -q -b html docs $(OUT)/site
 	$(BIN)/pytest -m site tests/test_site.py
+
+# A static folder for any web server, out/demo: pages of the ColorChecker's cube, and the chart of methods.
+demo: $(INSTALLED)
+	mkdir -p $(OUT)/demo
+	cp docs/demo.html $(OUT)/demo/index.html
+	cp docs/chart/chart.html $(OUT)/demo/chart.html
+	$(BIN)/uplift build --atlas macbeth -o $(OUT)/demo/macbeth-32.uplift --force
+	$(BIN)/uplift relight -o $(OUT)/demo/relight.html --force
+	$(BIN)/uplift export $(OUT)/demo/macbeth-32.uplift -o $(OUT)/demo/live.html --force
+	$(BIN)/uplift report $(OUT)/demo/macbeth-32.uplift -o $(OUT)/demo/report.html --force
 
 # axe-core, the rules of accessibility by which the tests check pages, from a package that contains it. Where it cannot be
 # fetched, these tests are skipped.

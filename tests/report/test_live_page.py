@@ -46,7 +46,7 @@ def test_pixels_equal_those_of_python_under_a_mix_of_lights(page, small_cube):
     need(CHROMIUM)
     with browser() as opened:
         opened.open(page)
-        states = [{"mix": 0, "split": 0, "balance": False}, {"light-b": "FL11", "mix": 40, "split": 768}]
+        states = [{"mix": 0, "split": 768, "balance": False}, {"light-b": "FL11", "mix": 40, "split": 0}]
         pictures = []
         for state in states:
             opened.evaluate(SET.replace("VALUES", str(state).replace("False", "false")))

@@ -87,7 +87,7 @@ void main() {
   ivec2 place = ivec2(gl_FragCoord.x, float(height) - gl_FragCoord.y);
   vec3 plain = linear(texelFetch(image, place, 0).rgb) * mix(white_a, white_b, share);
   vec3 ours = mix(texelFetch(first, place, 0).rgb, texelFetch(second, place, 0).rgb, share);
-  vec3 rgb = gl_FragCoord.x < split ? ours : plain;
+  vec3 rgb = gl_FragCoord.x < split ? plain : ours;
   bool edge = abs(gl_FragCoord.x - split) < 1.0;
   float ring = distance(vec2(place), cursor);
   colour = vec4(edge || abs(ring - 6.0) < 1.0 ? vec3(1.0) : encode(exposure * rgb * balance), 1.0);
