@@ -135,7 +135,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     is_flag=True,
     help="Start all eight nodes around an entry from it: closer near entries, less so for other materials.",
 )
-@click.option("--debug", is_flag=True, help="Store the round of every node, for 'uplift slices'.")
+@click.option("--debug", is_flag=True, help="Store the round of every node, and write slices as .exr next to the cube.")
 @options.force
 @options.quiet
 @options.verbose
