@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from uplift.io.texture import Conversion, Failure, TextureSettings
 
 
+LARGE = 100.0
+"""Megabytes of textures from which the smaller kind is named."""
 image_options = options.stacked(
     click.argument("sources", metavar="IN...", nargs=-1, required=True),
     click.option(
@@ -185,8 +187,10 @@ def convert(
         spaces = ", ".join(dict.fromkeys(space for one in converted for space in one.spaces))
         say(
             f"{target}: {len(converted)} texture{'s' * (len(converted) != 1)}{skipped}, {pixels:,} pixels, "
-            f"{size:.1f} MB, {time.perf_counter() - begin:.1f} s{f', converted from {spaces}' * bool(spaces)}"
+            f"{size:.1f} MB, {time.perf_counter() - begin:.1f} s{f', read as {spaces}' * bool(spaces)}"
         )
+        if size > LARGE and isinstance(settings.pixel_encoding, texture.Spectrum):
+            say("hint: --representation moments --depth half takes a fraction of the size", err=True)
     failures = [one for one in results if isinstance(one, texture.Failure)]
     for failure in failures[1:]:
         CommandFailure(failure.error).show()

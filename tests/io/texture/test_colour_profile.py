@@ -84,7 +84,7 @@ CODES = np.array([120, 128, 110])
 def test_srgb_profiles_change_nothing(data, spectral, tmp_path):
     plain, *_ = convert(spectral, save(tmp_path / "b.png", None))
     rgb, spaces, codes = convert(spectral, save(tmp_path / "a.png", data))
-    assert (spaces, codes) == ((), ())
+    assert (spaces, codes) == (("sRGB",), ())
     np.testing.assert_array_equal(rgb, plain)
 
 
@@ -125,7 +125,7 @@ def test_colours_of_profiles_and_code_points_are_converted(suffix, statement, sp
 )
 def test_unusable_statements_trigger_a_warning(suffix, statement, spectral, tmp_path):
     path = save(tmp_path / f"a.{suffix}", statement)
-    assert convert(spectral, path)[1:] == ((), ("colour-space-assumed",))
+    assert convert(spectral, path)[1:] == (("sRGB",), ("colour-space-assumed",))
 
 
 def exr(path, rgb, **header):
@@ -174,5 +174,5 @@ def test_images_without_a_statement_are_srgb_codes_or_floats_of_the_cube(tmp_pat
     assert (spaces, codes) == (("sRGB",), ("colour-space-assumed",))
     np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-5)
     rgb, spaces, codes = convert(wide, exr(tmp_path / "b.exr", [0.3, 0.4, 0.2]))
-    assert (spaces, codes) == ((), ("colour-space-assumed",))
+    assert (spaces, codes) == (("linear ACEScg",), ("colour-space-assumed",))
     np.testing.assert_allclose(rgb, [0.3, 0.4, 0.2], rtol=0, atol=1e-7)

@@ -32,7 +32,7 @@ class Conversion:
     seconds : float
         Wall-clock time.
     spaces : tuple of str
-        RGB spaces that colours were converted from; empty if they were in the space of the cube.
+        RGB spaces in which colours were read, ``linear sRGB`` for floats of the cube's space.
     """
 
     source: Path
@@ -101,9 +101,15 @@ def convert(
                     progress(Progress("rows", done, total))
         notes = space_warnings(image, converter.sensor, converter.space)
     warnings = (*counts.warnings(converter.out_of_gamut, source), *notes)
-    spaces = (source_space(each.part, converter.sensor, converter.space) for each in layouts if each.colours)
-    names = tuple(dict.fromkeys(space.name for space in spaces if space is not None))
-    return Conversion(Path(source), Path(target), counts, warnings, time.perf_counter() - begin, names)
+    spaces = tuple(dict.fromkeys(_space_name(converter, each.part) for each in layouts if each.colours))
+    return Conversion(Path(source), Path(target), counts, warnings, time.perf_counter() - begin, spaces)
+
+
+def _space_name(converter: Converter, part: Part) -> str:
+    space = source_space(part, converter.sensor, converter.space)
+    if space is not None:
+        return space.name
+    return converter.sensor.space if part.max_code else f"linear {converter.sensor.space}"
 
 
 @dataclass(frozen=True, eq=False)
