@@ -18,7 +18,7 @@ SPEC = importlib.util.spec_from_file_location("reader", READER)
 reader = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(reader)
 COLOURS = np.concatenate([list(product((0, 0.02, 0.25, 0.6, 1), repeat=3)), np.random.default_rng(0).random((44, 3))])
-AT = [300.0, 455.5, 550.0, 602.0, 790.0]
+AT = [380.0, 455.5, 550.0, 602.0, 780.0]
 
 
 def compare(cube, path, rgb, within):
