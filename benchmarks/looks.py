@@ -22,7 +22,7 @@ from uplift.colorimetry.observer import light
 from uplift.common.arrays import Array
 from uplift.lab.timing import time_calls
 from uplift.lookup import Bounds, Cube, bounds, load
-from uplift.lookup.light_errors import LIKELY, NORMAL_RADIUS, lab_errors
+from uplift.lookup.light_errors import NORMAL_RADIUS, lab_errors
 from uplift.report.look_page import page
 from uplift.viz.plots import plot_bounds
 
@@ -72,8 +72,6 @@ def main() -> None:
         many=MANY,
         runs=RUNS,
         likely=[row for name in LARGE for row in likely(name)],
-        likely_share=LIKELY,
-        normal_radius=NORMAL_RADIUS,
         splits=SPLITS,
     )
 

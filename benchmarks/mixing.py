@@ -121,7 +121,7 @@ def criteria(cube: Cube) -> Row:
         values = zip(CRITERIA, evaluate(mixer, cube.data.sensor, coloured), strict=True)
         verdicts = [{"obeys": value <= criterion.limit, "value": value + 0.0} for criterion, value in values]
         rows.append({"mixer": mixer.title, "verdicts": verdicts})
-    return {"patches": len(coloured), "criteria_titles": [vars(one) for one in CRITERIA], "criteria": rows}
+    return {"criteria_titles": [vars(one) for one in CRITERIA], "criteria": rows}
 
 
 # --- rules for S on mixtures of known paints ---

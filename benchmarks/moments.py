@@ -3,10 +3,8 @@
 import warnings
 from collections.abc import Mapping
 from typing import Any
-from unittest import mock
 
 import numpy as np
-from scipy.optimize import minimize
 
 import uplift
 from benchmarks import ATLASES, DOCS, MACBETH, read_reference, record
@@ -21,8 +19,6 @@ from uplift.models.moments import WARPS
 
 PICTURES = DOCS / "moments"
 FLOATS = (3, 5, 9, 13, 16)
-TRIES = 300
-"""Warps that the search tries."""
 CUBE_DIM, COEFFICIENTS = 16, (3, 5, 9)
 Pair = list[float]
 """Mean and largest error."""
@@ -53,7 +49,6 @@ def main() -> None:
         ],
         lights=[under_lights(study, floats, one) for floats in FLOATS for one in TECHNIQUES],
         warps=[warp_errors(study.measured, name, floats) for name in WARPS for floats in FLOATS],
-        least=least_error(study.measured),
         cubes=[cube_errors(atlases, name, count) for count in COEFFICIENTS for name in WARPS],
     )
 
@@ -121,15 +116,3 @@ def cube_errors(atlases: Mapping[str, Atlas], warp: str, count: int) -> dict[str
     answers = cube.reflectance(rgb)
     errors = {name: delta_e_spectra(observer.light(name), answers, measured).mean() for name in REPORT_LIGHTS}
     return {"warp": warp, "coefficients": count, "spectra": len(rgb), "errors": errors}
-
-
-def least_error(measured: Array) -> float:
-    """Return the least mean error of three floats that a search from the warp ``colour`` finds."""
-
-    def error(terms: Array) -> float:
-        with mock.patch.dict(WARPS, fitted=((1.0, *terms[:2]), tuple(terms[2:]))):
-            return float(warp_errors(measured, "fitted", min(FLOATS))["mean"])
-
-    (_, *first), second = WARPS["colour"]
-    found = minimize(error, [*first, *second], method="Nelder-Mead", options={"maxfev": TRIES})
-    return float(found.fun)

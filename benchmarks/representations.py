@@ -18,7 +18,6 @@ from uplift.lab.comparison.pictures import write_boxes, write_costs
 from uplift.scene.representations import all_representations, samples
 from uplift.scene.representations.composite import ENHANCED_THRESHOLD, Composite, enhanced_riemann
 from uplift.scene.representations.samples import SampleRepresentation
-from uplift.viz.format import capitalise
 
 OTHER_LIGHTS = ("LED-B3", "LED-RGB1", "HP1")
 TARGETS = (2.0, 1.0, 0.5)
@@ -48,7 +47,6 @@ def main() -> None:
     record(
         "representations",
         surfaces=len(default.surfaces),
-        titles={name: capitalise(title) for one in (ours, others) for name, title in one.sets.items()},
         advice=[row for one in (ours, others) for row in advice(one)],
         ranking=[*ranking(ours, printed_tables()), *ranking(others, {})],
         riemann=riemann_rows(default, printed_tables()),

@@ -84,18 +84,25 @@ def table(rows: Iterable[Row], caller: Callable[[], str]) -> str:
     return "".join(f"| {line} |\n" for line in (heading, rule, *body))
 
 
-def leaves(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the names and values of a nested row, the names joined by dots; floats have six digits."""
-    if isinstance(value, Mapping | list | tuple):
-        for key, item in value.items() if isinstance(value, Mapping) else enumerate(value):
-            yield from leaves(item, f"{name}.{key}" if name else str(key))
+def leaves(value: Any, parts: Sequence[str], name: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the names and values of a nested row, the names joined by dots; floats have six digits.
+
+    The items of a list have the names ``parts``. A list of another length is one value.
+    """
+    if isinstance(value, list) and len(value) == len(parts):
+        value = dict(zip(parts, value, strict=True))
+    if isinstance(value, Mapping):
+        for key, item in value.items():
+            yield from leaves(item, parts, f"{name}.{key}" if name else str(key))
+    elif isinstance(value, list):
+        yield name, "; ".join(f"{item:.6g}" if isinstance(item, float) else str(item) for item in value)
     else:
         yield name, f"{value:.6g}" if isinstance(value, float) else value
 
 
-def flat_csv(rows: Iterable[Row]) -> str:
+def flat_csv(rows: Iterable[Row], parts: Sequence[str]) -> str:
     """Return nested rows as CSV, with a column for each leaf."""
-    flat = [dict(leaves(row)) for row in rows]
+    flat = [dict(leaves(row, parts)) for row in rows]
     columns = list(dict.fromkeys(key for row in flat for key in row))
     return csv_text(columns, ([row.get(key) for key in columns] for row in flat))
 
@@ -150,9 +157,9 @@ def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
     """Return the text of a page and of its CSV files, from its template and its data, by default the stored one."""
     page, tables = page_file(name), {}
 
-    def long_table(rows: Iterable[Row], table_name: str) -> str:
+    def long_table(rows: Iterable[Row], table_name: str, parts: Sequence[str] = ()) -> str:
         path = DOCS / "tables" / f"{table_name}.csv"
-        tables[path] = flat_csv(rows)
+        tables[path] = flat_csv(rows, parts)
         return f"[{path.name}]({Path(os.path.relpath(path, page.parent)).as_posix()})"
 
     style = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
