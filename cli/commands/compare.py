@@ -32,6 +32,7 @@ SPECTRA = ("surfaces.csv", "lights.csv")
 @click.option(
     "--filters", is_flag=True, help="Also search the best low-pass filters for point sampling, which takes minutes."
 )
+@click.option("--all", "every", is_flag=True, help="Print all representations, not the Pareto front alone.")
 @click.option("--quick", is_flag=True, help="At most forty surfaces, few repeats and a coarse search: seconds.")
 @click.option(
     "--write",
@@ -47,6 +48,7 @@ def command(
     lights: tuple[str, ...],
     tolerance: float | None,
     filters: bool,
+    every: bool,
     quick: bool,
     write: str | None,
     output: str | None,
@@ -56,11 +58,12 @@ def command(
     """Compare representations of spectra for a renderer's lights and surfaces, by colour error and cost.
 
     Every light is multiplied with every reflectance of the atlases. The table has ΔE00 to the products of densely
-    sampled spectra, the number of floats stored, and the time of a product. --light replaces the default lights, a
-    smooth and a spiky set.
+    sampled spectra, the number of floats stored, and the time of a product, for representations that no other beats
+    in floats and error. --light replaces the default lights, a smooth and a spiky set.
 
     Representations: point samples (PS, filtered PF), Riemann sums (RS, enhanced RE), Sun's composite model (CS),
     Gaussian quadrature (GQ), trigonometric moments (TM), the sigmoid (SG), linear models (LM), hero wavelengths (HW).
+    Fitted to the scene: wavelengths (FW), Bergner's factor model (BF), moments as cubes have them (CM).
 
     --tolerance prints the cheapest sufficient representation for each set of lights. The cheapest stores the fewest
     floats per surface, then per light. --output writes box plots, a plot of error over cost, and a page.
@@ -71,6 +74,7 @@ def command(
     \b
     Examples:
       uplift compare --quick
+      uplift compare --quick --all
       uplift compare --tolerance 1.0
       uplift compare --atlas paints.csv --light LED-B3 --light HP1 --tolerance 0.5
       uplift compare --filters --output filters --force
@@ -94,7 +98,7 @@ def command(
     if tolerance is not None:
         _print_advice(comparison, tolerance)
     elif style == "table":
-        _print_table(comparison, tuned)
+        _print_table(comparison, tuned, every=every)
     else:
         _print_records(comparison, tuned, style)
 
@@ -117,14 +121,13 @@ def _measure(
     files: tuple[str, ...], lights: tuple[str, ...], *, filters: bool, quick: bool
 ) -> tuple[Comparison, tuple[TunedFilter, ...]]:
     from uplift.lab.comparison.compare import compare, make_scene, tune_filters
-    from uplift.scene.representations import all_representations
+    from uplift.lab.comparison.fitted import scene_representations
     from uplift.scene.representations.filters import COARSE_STRIDE, FINE_STRIDE
 
     scene = make_scene(read_atlases(files), lights)
     scene = scene.thinned() if quick else scene
     with progress_bar("representations") as progress:
-        representations = all_representations(scene.powers, scene.surfaces)
-        comparison = compare(scene, representations, quick=quick, progress=progress)
+        comparison = compare(scene, scene_representations(scene), quick=quick, progress=progress)
     if not filters:
         return comparison, ()
     with progress_bar("filters") as progress:
@@ -161,16 +164,16 @@ def _print_advice(comparison: Comparison, tolerance: float) -> None:
         say(f"{title}: {text}")
 
 
-def _print_table(comparison: Comparison, tuned: tuple[TunedFilter, ...]) -> None:
+def _print_table(comparison: Comparison, tuned: tuple[TunedFilter, ...], *, every: bool) -> None:
     """Print a ranked table for each set of lights, and the best filter of each kind."""
-    from uplift.lab.comparison.compare import HEADINGS
+    from uplift.lab.comparison.compare import HEADINGS, pareto
     from uplift.viz.format import format_time
 
     tables = []
     for name, title in comparison.sets.items():
         numbers = ("mean", "median", "97.5 %", "floats", "of a light", "product")
         table = make_table(("representation",), numbers, title=f"ΔE00 under {title}")
-        for row in comparison.of(name):
+        for row in comparison.of(name) if every else pareto(comparison, name):
             errors = (row.statistics.mean, row.statistics.median, row.statistics.q97_5)
             cost = (f"{row.floats:.1f}", f"{row.light_floats:.1f}", format_time(row.ns.median))
             table.add_row(row.name, *(f"{error:.3f}" for error in errors), *cost)

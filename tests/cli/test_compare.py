@@ -42,6 +42,8 @@ def test_all_files_are_written_and_tables_printed(quick):
     assert sorted(path.name for path in folder.iterdir()) == FILES
     assert "smooth lights (A, B, C)" in result.stdout
     assert "spiky lights (FL2, FL7, FL11)" in result.stdout
+    assert "FW7" in result.stdout
+    assert "PS4" not in result.stdout  # beaten by others of four floats
     assert result.stderr.startswith("out: compare-boxes.png")
 
 
@@ -60,7 +62,7 @@ def test_lights_replace_the_default_sets(run, macbeth):
     rows = list(csv.DictReader(run(*words, "csv").stdout.splitlines()))
     assert {row["lights"] for row in fields["representations"]} == {"given"}
     assert {row["representation"] for row in rows} == {row["representation"] for row in fields["representations"]}
-    assert len(rows) == 36
+    assert len(rows) == 46
     assert fields["facts"]["products"] == "24 surfaces under each light"
     assert fields["filters"] == []
 

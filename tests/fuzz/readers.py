@@ -168,7 +168,7 @@ def use_palette(path: Path) -> None:
         raise ValueError("spectra that are not finite")
 
 
-ATLAS, TEXTURE = ROOT / "atlases" / "macbeth.txt", ROOT / "docs" / "plan" / "page.png"
+ATLAS, TEXTURE = ROOT / "atlases" / "macbeth.txt", ROOT / "docs" / "plan" / "front.png"
 SCENE_FILE = b"""# a kitchen
 textures = ["texture.png", "*.png"]
 atlases = "atlas.txt"

@@ -25,9 +25,11 @@ from uplift.lab.comparison.compare import (
     compute_statistics,
     error_statistics,
     make_scene,
+    pareto,
     represent,
     tune_filters,
 )
+from uplift.lab.comparison.fitted import FittedWavelengths, scene_representations
 from uplift.lab.comparison.pictures import cost_panels, names, render_comparison, write_boxes, write_costs
 from uplift.lab.timing import Spread
 from uplift.lights.lamps import read_lamps
@@ -254,3 +256,33 @@ def test_page_has_every_representation_fits_and_is_accessible(found, tmp_path):
     for name in found.sets:
         assert [result.name for result in found.of(name)] in tables
     check_page(html, tmp_path)
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    scene = make_scene({"macbeth": read_atlas(MACBETH)}, ("A", "FL11")).thinned(8)
+    return scene, {each.name: each for each in scene_representations(scene)}
+
+
+def test_representations_fitted_to_a_scene_follow_its_products(fitted):
+    scene, named = fitted
+    (lights,) = scene.sets
+    errors = {name: error_statistics(named[name], scene, lights).mean for name in ("FW5", "FW12", "BF5", "CM9", "CM17")}
+    assert errors["FW12"] < 0.1 < errors["FW5"] < 2
+    assert errors["CM17"] < errors["CM9"] < 0.5
+    assert errors["BF5"] < 6
+    assert isinstance(named["FW5"], FittedWavelengths)
+    np.testing.assert_array_equal(named["FW5"].encode_light(lights.powers[::-1]), named["FW5"].sampling.powers[::-1])
+
+
+def test_the_front_has_all_that_nothing_dominates(found):
+    for name in found.sets:
+        front = pareto(found, name)
+        for row in found.of(name):
+            costs = (row.floats, row.light_floats, row.statistics.q97_5)
+            is_beaten = any(
+                all(np.less_equal((each.floats, each.light_floats, each.statistics.q97_5), costs))
+                for each in front
+                if each is not row
+            )
+            assert is_beaten != (row in front)

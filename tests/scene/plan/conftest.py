@@ -12,15 +12,24 @@ from tests.io.texture.conftest import planes, write_exr
 from uplift.scene import plan
 from uplift.scene.plan.context import SearchGrid
 
-SMALL = SearchGrid(coefficients=(5, 9), dims=(3, 5), reference=7, predicting=60, confirming=90)
+SMALL = SearchGrid(
+    models={"none": (5, 9)},
+    dims=(5, 8),
+    axes=("srgb",),
+    samples=(3, 5, 7),
+    others=False,
+    reference=12,
+    predicting=60,
+    confirming=90,
+)
 LIGHTS = ("D65", "FL11")
 
 
 def painted():
-    """(16, 16, 3) linear RGB: shades of four paints."""
+    """(20, 20, 3) linear RGB: shades of four paints."""
     rng = np.random.default_rng(3)
     paints = np.array([[0.5, 0.2, 0.1], [0.1, 0.3, 0.2], [0.2, 0.2, 0.5], [0.6, 0.6, 0.5]])
-    shades = rng.uniform(0.3, 1, (16, 16, 1)) * paints[rng.integers(0, 4, (16, 16))]
+    shades = rng.uniform(0.3, 1, (20, 20, 1)) * paints[rng.integers(0, 4, (20, 20))]
     return shades.astype(np.float32)
 
 
@@ -32,7 +41,7 @@ def kitchen(tmp_path_factory):
     shutil.copy(MACBETH, folder)
     path = folder / "kitchen.toml"
     path.write_text(
-        'textures = "wood.exr"\natlases = ["macbeth.txt"]\nlights = ["D65", "FL11"]\ntolerance = 4\n', encoding="utf-8"
+        'textures = "wood.exr"\natlases = ["macbeth.txt"]\nlights = ["D65", "FL11"]\ntolerance = 3\n', encoding="utf-8"
     )
     return path
 

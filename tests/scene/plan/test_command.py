@@ -13,6 +13,7 @@ from uplift_cli.main import main
 from tests.browsing import check_page
 from tests.cli.conftest import home, refuse, run, shown  # noqa: F401
 from uplift.cube import read
+from uplift.scene.plan.candidates import PIXELS
 from uplift.scene.plan.page import page
 from uplift.scene.plan.plan_file import commands, cube_name
 
@@ -22,7 +23,7 @@ def here(home, kitchen, planned, monkeypatch):
     """A working folder with the scene, where plans are as they were measured once."""
     shutil.copytree(kitchen.parent, home, dirs_exist_ok=True)
 
-    def plan(scene, progress):
+    def plan(scene, grid, progress):
         return dataclasses.replace(planned[0], scene=scene)
 
     monkeypatch.setattr("uplift.scene.plan.plan", plan)
@@ -31,8 +32,8 @@ def here(home, kitchen, planned, monkeypatch):
 
 def test_a_plan_is_printed_written_and_built(run, here):
     result = run("plan", "kitchen.toml")
-    assert "kitchen.toml: ΔE00 " in result.stdout
-    assert "uplift build --plan kitchen.plan.json" in result.stdout
+    assert result.stdout.startswith("  uplift build --plan kitchen.plan.json\n")
+    assert max(map(len, result.stdout.partition("kitchen.toml: ")[2].splitlines())) <= 80
     assert "kitchen.plan.json, kitchen.plan.html" in result.stderr
     values = json.loads((here / "kitchen.plan.json").read_text(encoding="utf-8"))
     assert json.loads(run("plan", "kitchen.toml", "--format", "json", "--force").stdout) == values
@@ -49,15 +50,12 @@ def test_the_page_fits_and_is_accessible(planned, tmp_path):
     check_page(page(planned[0], tmp_path / "kitchen.plan.json"), tmp_path)
 
 
-def test_command_lines_are_accepted(planned, tmp_path):
-    plan, path = planned[0], tmp_path / "my plan.plan.json"
+@pytest.mark.parametrize("pixel", PIXELS, ids=lambda pixel: f"{pixel.form}-{pixel.depth}{pixel.mode}")
+def test_command_lines_are_accepted(planned, tmp_path, pixel):
+    found, path = planned[0], tmp_path / "my plan.plan.json"
     assert cube_name(path) == "my plan.uplift"
-    commands_by_key = {
-        **dict.fromkeys(("coefficients", "lattice"), "uplift build"),
-        **dict.fromkeys(("wavelengths", "storage"), "uplift texture a.png -o b.exr"),
-    }
-    lines = [f"{commands_by_key[each.key]} {trial.cli_args}" for each in plan.decisions for trial in each.trials]
-    for line in (*commands(plan, path), *lines):
+    chosen = dataclasses.replace(found.chosen, candidate=dataclasses.replace(found.chosen.candidate, pixel=pixel))
+    for line in commands(dataclasses.replace(found, chosen=chosen), path):
         program, name, *arguments = shlex.split(line)
         assert program == "uplift"
         with click.Context(main, **main.context_settings) as context:

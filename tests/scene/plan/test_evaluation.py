@@ -3,19 +3,14 @@
 import numpy as np
 import pytest
 
+from tests.helpers import raises
 from tests.io.texture.conftest import planes, write_exr
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
-from uplift.scene.plan.context import sample_colours
-from uplift.scene.plan.evaluation import (
-    WORST_DELTA_E,
-    ColourGroup,
-    ErrorSummary,
-    EvaluationSet,
-    GroupError,
-    Trial,
-    decide,
-)
+from uplift.common.errors import TextureError, UpliftWarning
+from uplift.io.scene_colours import Images, sample_colours
+from uplift.scene.plan.evaluation import WORST_DELTA_E, ColourGroup, EvaluationSet
+from uplift.scene.plan.renderings import fit_matrices
 
 LIGHTS = ("D65", "FL11")
 
@@ -63,50 +58,78 @@ def test_reference_spectra_have_no_error_and_nan_has_the_largest(tests):
     assert {part.largest for part in error.parts if part.group == "textures"} == {WORST_DELTA_E}
 
 
-@pytest.mark.parametrize(
-    ("errors", "selected", "measured"), [((3.0, 0.9, 0.1), 1, 2), ((5, 2, 3), 1, 3)], ids=["sufficient", "none"]
-)
-def test_the_first_sufficient_candidate_or_else_the_best_is_selected(errors, selected, measured):
-    parts = [(GroupError("textures", "D65", 0.0, error, error),) for error in errors]
-    trials = iter([Trial(str(number), 1.0, "", "", {}, ErrorSummary(part)) for number, part in enumerate(parts)])
-    decision = decide("a", "A", "things", 1.0, trials)
-    assert (decision.selected, len(decision.trials), len(list(trials))) == (selected, measured, len(errors) - measured)
-    assert decision.within_limit == (errors[selected] <= 1)
-
-
 @pytest.fixture
 def image(tmp_path):
     """A file of linear RGB (h, w, 3)."""
     return lambda rgb, name="a.exr": write_exr(tmp_path / name, planes(np.asarray(rgb, np.float32)))
 
 
+def sample(paths, sensor, sizes):
+    return sample_colours(Images(tuple(paths)), sensor, sizes, lambda progress: None)
+
+
 def test_small_textures_are_sampled_completely(image, sensor):
     rgb = np.array([[[0.1, 0.2, 0.3], [0.1, 0.2, 0.3], [0.5, 0.5, 0.5], [0.1, 0.2, 0.3]]])
-    found = sample_colours((image(rgb), image(rgb, "b.exr")), sensor, "auto", (4, 6))
-    for sample in (found.predicting, found.confirming):
-        np.testing.assert_allclose(sample.rgb, [[0.1, 0.2, 0.3], [0.5, 0.5, 0.5]], rtol=1e-6)
-        np.testing.assert_allclose(sample.share, [0.75, 0.25])
-    assert len(found.colour_bins) == 2
+    found = sample([image(rgb), image(rgb, "b.exr")], sensor, (4, 6))
+    for each in (found.predicting, found.confirming):
+        np.testing.assert_allclose(each.rgb, [[0.1, 0.2, 0.3], [0.5, 0.5, 0.5]], rtol=1e-6)
+        np.testing.assert_allclose(each.share, [0.75, 0.25])
+    assert len(found.colour_bins) == len(found.few) == 2
+    assert (found.pixels, found.size) == (8, 8 * 12)
 
 
 def test_the_two_samples_of_a_large_texture_are_disjoint(image, sensor):
     rgb = np.random.default_rng(1).random((100, 90, 3))
     path = image(rgb)
-    found = sample_colours((path,), sensor, "auto", (300, 600))
-    first, second = (set(map(tuple, sample.rgb.tolist())) for sample in (found.predicting, found.confirming))
+    found = sample([path], sensor, (300, 600))
+    first, second = (set(map(tuple, each.rgb.tolist())) for each in (found.predicting, found.confirming))
     assert not first & second
     assert 240 < len(first) < 360
     assert 500 < len(second) < 700
     assert first | second <= set(map(tuple, rgb.astype(np.float32).reshape(-1, 3).astype(float).tolist()))
-    for sample in (found.predicting, found.confirming):
-        assert sample.share.sum() == pytest.approx(1)
-        np.testing.assert_allclose(sample.share @ sample.rgb, 0.5, atol=0.06)  # equal probability
-    again = sample_colours((path,), sensor, "auto", (300, 600))
+    assert found.few is None
+    for each in (found.predicting, found.confirming):
+        assert each.share.sum() == pytest.approx(1)
+        np.testing.assert_allclose(each.share @ each.rgb, 0.5, atol=0.06)  # equal probability
+    again = sample([path], sensor, (300, 600))
     np.testing.assert_array_equal(again.predicting.rgb, found.predicting.rgb)
 
 
 def test_rare_colours_have_a_bin(image, sensor):
     rgb = np.full((80, 80, 3), 0.25)
     rgb[40, 40] = [0.9, 0.05, 0.1]
-    found = sample_colours((image(rgb),), sensor, "auto", (50, 50))
+    found = sample([image(rgb)], sensor, (50, 50))
     np.testing.assert_allclose(np.sort(found.colour_bins[:, 0]), [0.25, 0.9], rtol=1e-6)
+
+
+def test_colours_outside_the_space_are_warned_of(image, sensor):
+    with pytest.warns(UpliftWarning, match="outside"):
+        found = sample([image([[[1.5, 0.2, -0.1], [0.1, 0.2, 0.3]]])], sensor, (5, 5))
+    assert found.predicting.rgb.max() <= 1
+
+
+def test_of_many_pixels_only_some_are_read(image, sensor, monkeypatch):
+    rgb = np.random.default_rng(2).random((64, 64, 3))
+    monkeypatch.setattr("uplift.io.scene_colours.MAX_PIXELS", 1000)
+    found = sample([image(rgb)], sensor, (100, 200))
+    assert len(found.colour_bins) <= 1000
+    assert 60 < len(found.predicting.rgb) < 150
+    assert found.pixels == 4096
+
+
+def test_images_without_pixels_are_refused(image, sensor, monkeypatch):
+    monkeypatch.setattr("uplift.io.scene_colours._pixel_count", lambda path: (0, 0))
+    with raises(TextureError):
+        sample([image([[[0.1, 0.2, 0.3]]])], sensor, (5, 5))
+
+
+def test_the_best_matrices_map_rgb_under_the_light_of_the_space_exactly(sensor):
+    spectra = np.random.default_rng(4).random((30, 81)) ** 2
+    rgb = spectra @ sensor.matrix.T
+    group = ColourGroup("textures", rgb, spectra, np.full(30, 1 / 30))
+    tests = EvaluationSet((group,), tuple(observer.light(name) for name in ("D65", "A")), 0.9)
+    matrices = fit_matrices(tests)
+    np.testing.assert_allclose(matrices[0], np.linalg.inv(sensor.xyz_to_rgb), atol=1e-9)
+    fitted = tests.error_of_xyz(rgb @ matrices.mT)
+    plain = tests.error_of_xyz(rgb @ np.stack([matrices[0], matrices[0]]).mT)
+    assert fitted.quantile < plain.quantile

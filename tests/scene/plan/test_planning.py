@@ -10,29 +10,33 @@ import pytest
 
 import uplift
 from tests.helpers import raises
+from tests.io.texture.conftest import planes, write_exr
 from tests.scene.plan.conftest import LIGHTS, SMALL, painted
 from uplift import models
 from uplift.colorimetry import observer
 from uplift.common.errors import PlanFileError
 from uplift.io.scene_colours import Images
 from uplift.scene import plan
+from uplift.scene.plan.page import notes
 from uplift.scene.plan.plan_file import read_plan, to_json
+from uplift.scene.plan.planning import no_candidate
+from uplift.scene.plan.space import WITHOUT_SPECTRA
 
 
-def test_every_decision_selects_the_cheapest_candidate_within_its_limit(planned):
+def test_the_choice_is_the_cheapest_within_the_tolerance(planned):
     found, _ = planned
-    assert [each.key for each in found.decisions] == ["coefficients", "lattice", "wavelengths", "storage"]
-    for decision in found.decisions:
-        errors = [trial.error.quantile for trial in decision.trials]
-        costs = [trial.cost for trial in decision.trials]
-        assert costs == sorted(costs)
-        if decision.within_limit:
-            assert decision.selected == len(errors) - 1
-            assert all(error > decision.limit for error in errors[:-1])
-        else:
-            assert errors[decision.selected] == min(errors)
-    assert found.options["coefficients"] == int(found.decisions[0].trial.name)
     assert found.within_tolerance
+    assert found.chosen.error.quantile <= found.scene.tolerance
+    sufficient = [each for each in found.measured if each.error.quantile <= found.scene.tolerance]
+    assert min(each.cost.ranked("balance") for each in sufficient) == found.chosen.cost.ranked("balance")
+    assert found.options["dim"] == found.chosen.candidate.cube.dim
+    assert found.chosen in found.front
+
+
+def test_an_unknown_cost_of_a_cube_is_close_to_its_file(planned):
+    found, _ = planned
+    pixels = 20 * 20 * found.chosen.candidate.pixel.size(0, int(found.chosen.cost.samples))
+    assert found.chosen.cost.memory == pytest.approx(found.final_build.size + pixels, rel=0.25)
 
 
 def integrated(reflectances, light):
@@ -56,33 +60,82 @@ def test_an_independent_computation_on_every_pixel_agrees(planned, kitchen):
     options = {"lights": found.options["lights"]}
     best = uplift.build(atlas, scene=scene, dim=SMALL.reference, coefficients=9, **options)
     cube = uplift.build(atlas, scene=scene, **found.options)
-    spectra = cube.reflectance(rgb, found.sampling.wavelengths)
-    if found.storage.form == "moments":
-        stored = cube.coefficients(rgb).astype(np.float16 if found.storage.depth == "half" else np.float32)
-        spectra = models.reflectance(cube.data.model, stored.astype(float), found.sampling.wavelengths)
+    spectra = cube.reflectance(rgb, found.rendering.sampling.wavelengths)
+    if found.chosen.candidate.pixel.form == "moments":
+        stored = cube.coefficients(rgb).astype(
+            np.float16 if found.chosen.candidate.pixel.depth == "half" else np.float32
+        )
+        spectra = models.reflectance(cube.data.model, stored.astype(float), found.rendering.sampling.wavelengths)
     for light in LIGHTS:
         white = colour.XYZ_to_xy(integrated(np.ones((1, 81)), light)[0])
-        place = found.sampling.lights.index(light)
-        planned_xyz = spectra * found.sampling.powers[place] @ found.sampling.to_xyz
+        place = found.rendering.sampling.lights.index(light)
+        planned_xyz = spectra * found.rendering.sampling.powers[place] @ found.rendering.sampling.to_xyz
         reference_xyz = integrated(best.reflectance(rgb), light)
         delta_e = colour.delta_E(
             *(colour.XYZ_to_Lab(xyz, white) for xyz in (reference_xyz, planned_xyz)), method="CIE 2000"
         )
-        for error in (found.predicted, found.confirmed):
+        for error in (found.chosen.error, found.confirmed):
             (part,) = [each for each in error.parts if (each.group, each.light) == ("textures", light)]
             low, high = np.quantile(delta_e, (0.95, 0.99))  # quantiles of a sample of pixels vary
             assert 0.9 * low < part.quantile < 1.1 * high
             assert delta_e.mean() == pytest.approx(part.mean, rel=0.2)
 
 
-def test_a_tolerance_below_the_error_of_the_reference_cube_is_refused(kitchen):
-    scene = replace(plan.read_scene_file(kitchen), tolerance=0.01)
+def test_without_a_candidate_the_error_names_what_is_missing(planned):
+    found, _ = planned
+    error = no_candidate(replace(found.scene, tolerance=0.02), found.measured)
+    feasible = float(error.hint.removeprefix("set tolerance = ").removesuffix(" or more"))
+    assert feasible >= min(each.error.quantile for each in found.measured)
+    error = no_candidate(replace(found.scene, limits={"samples": 2, "memory": 1e9}), found.measured)
+    assert (error.code, error.path) == ("no-candidate", found.scene.path)
+    assert error.problem == "no candidate: the cheapest within 3 needs 5 samples; limits allow 2 samples"
+
+
+def test_a_tolerance_that_no_candidate_meets_is_refused(tmp_path):
+    with raises(PlanFileError, "no-candidate"):
+        planned_for(tmp_path, np.zeros((20, 20, 3)) + 0.3, limits={"samples": 2})
+
+
+def planned_for(tmp_path, rgb, lights=LIGHTS, **values):
+    path = write_exr(tmp_path / "a.exr", planes(np.asarray(rgb, np.float32)))
+    scene = plan.SceneFile(tmp_path / "a.toml", (path,), lights=lights, **values)
+    return plan.plan(scene, SMALL)
+
+
+def test_a_scene_under_the_light_of_its_space_needs_no_spectra(tmp_path):
+    found = planned_for(tmp_path, painted(), ("D65",))
+    assert found.chosen.candidate == WITHOUT_SPECTRA
+    assert found.confirmed.quantile < 1e-3
+    assert "no spectra" in " ".join(notes(found))
+    path = tmp_path / "a.plan.json"
+    values = to_json(found, path)
+    matrix = np.array(values["rendering"]["rgb_to_xyz"]["D65"])
+    np.testing.assert_allclose(matrix, np.linalg.inv(found.scene.sensor().xyz_to_rgb), atol=1e-6)
+    assert not values["lines"]
+    path.write_text(json.dumps(values), encoding="utf-8")
     with raises(PlanFileError) as caught:
-        plan.plan(scene, replace(SMALL, coefficients=(5,)))
-    assert "of materials under FL11, got 0.01" in caught.value.problem
-    feasible = float(caught.value.hint.removeprefix("set tolerance = ").removesuffix(" or more"))
-    assert feasible > 0.05
-    assert caught.value.path == kitchen
+        read_plan(path)
+    assert "needs no cube" in caught.value.problem
+
+
+def test_black_images_need_no_texture(tmp_path):
+    found = planned_for(tmp_path, np.zeros((60, 80, 3)), tolerance=0.3, minimise="memory")
+    candidate = found.chosen.candidate
+    assert found.within_tolerance
+    assert candidate.pixel.form == "index"
+
+
+def test_a_list_of_spectra_is_written(tmp_path):
+    rgb = np.repeat([[[0.6, 0.1, 0.05], [0.05, 0.3, 0.6], [0.3, 0.6, 0.1]]], 500, axis=0)
+    found = planned_for(tmp_path, rgb, ("D65", "A", "FL11"), tolerance=1.0)
+    assert found.chosen.candidate.pixel.form == "index"
+    values = to_json(found, tmp_path / "a.plan.json")
+    assert len(values["spectra"]) == 3
+    spectra = np.array([each["reflectance"] for each in values["spectra"]])
+    rendering = values["rendering"]
+    xyz = spectra * np.array(rendering["powers"]["D65"]) @ np.array(rendering["to_xyz"])
+    listed = np.array([each["rgb"] for each in values["spectra"]])
+    np.testing.assert_allclose(xyz, listed @ np.linalg.inv(found.scene.sensor().xyz_to_rgb).T, atol=0.02)
 
 
 @pytest.fixture
@@ -100,7 +153,7 @@ def test_the_plan_file_builds_the_same_cube(planned, plan_file):
     write()
     cube, final = read_plan(path).build(), planned[0].final_build
     np.testing.assert_array_equal(cube.data.points.coefficients, final.cube.data.points.coefficients)
-    assert (cube.data.complete_cells is not None) == final.is_sparse
+    assert (cube.data.complete_cells is not None) == planned[0].chosen.candidate.sparse
 
 
 def test_changed_and_missing_sources_are_refused(plan_file):

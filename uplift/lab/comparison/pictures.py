@@ -24,6 +24,9 @@ COLOURS = {
     "sigmoid": "#d05fa2",
     "linear model (PCA)": "#5a5a5a",
     "hero wavelengths": "#5b8c1f",
+    "fitted wavelengths": "#0b3d91",
+    "factor model": "#a67c00",
+    "moments of cubes": "#4b2e83",
 }
 """Colours of families; others are dark grey."""
 MIN_ERROR = 1e-3

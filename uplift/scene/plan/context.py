@@ -1,127 +1,56 @@
-"""Inputs that all decisions of a plan share: the scene's colours and materials, and cubes to evaluate."""
+"""Inputs that all candidates of a plan share: the scene's colours and materials, and cubes to evaluate."""
 
 import warnings
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import Sensor
-from uplift.common.arrays import Array, Mask
-from uplift.common.errors import PlanFileError, UpliftWarning
-from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.io.scene_colours import Images, cells_touched
-from uplift.io.texture.colours import coloured_parts
-from uplift.io.texture.image import open_image
-from uplift.lattice import EntryBoxes
+from uplift.colorimetry.observer import AXES
+from uplift.common.arrays import Array
+from uplift.common.errors import UpliftWarning
+from uplift.common.progress import ProgressCallback
+from uplift.io.scene_colours import ColourSet, Images, PixelSample, SampledColours, sample_colours
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
-from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ColourGroup, ErrorSummary, EvaluationSet
+from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ColourGroup, EvaluationSet
 from uplift.scene.plan.scene_file import SceneFile
 
-BINS = 64
-"""Bins along each channel of encoded RGB: four 8-bit codes wide."""
-
-
-@dataclass(frozen=True, eq=False)
-class PixelSample:
-    """Distinct linear RGB (n, 3), and the share (n,) of the sampled pixels that have each; shares sum to 1."""
-
-    rgb: Array
-    share: Array
-
-
-@dataclass(frozen=True, eq=False)
-class SampledColours:
-    """Disjoint samples of the textures' pixels, to choose candidates by and to verify the result.
-
-    Textures with fewer pixels than both need together have all pixels in both. ``colour_bins`` (n, 3) has a colour of
-    every bin that has any pixel, in linear RGB.
-    """
-
-    predicting: PixelSample
-    confirming: PixelSample
-    colour_bins: Array
-
-
-def sample_colours(
-    textures: tuple[Path, ...],
-    sensor: Sensor,
-    encoding: str,
-    sizes: tuple[int, int],
-    progress: ProgressCallback = ignore_progress,
-) -> SampledColours:
-    """Sample about ``sizes`` pixels to predict and to confirm, all pixels with equal probability.
-
-    The sample is the same every time. Raises `TextureError`, and `PlanFileError` for textures without pixels.
-    """
-    total, scene = sum(map(_pixel_count, textures)), Images(textures, encoding)
-    if not total:
-        raise PlanFileError("textures must have pixels, got none", hint="name an image with pixels")
-    first = sizes[0] / total
-    last = first + sizes[1] / total
-    rng, bins = np.random.default_rng(0), np.full((BINS**3, 3), np.nan)
-    samples: tuple[list[Array], list[Array]] = [], []
-    for done, path in enumerate(textures):
-        progress(Progress("textures", done, len(textures)))
-        for rgb in scene.colours(path, sensor):
-            bins[_bin_index(sensor, rgb)] = rgb
-            lot = rng.random(len(rgb))
-            samples[0].append(rgb[(lot < first) | (last > 1)])
-            samples[1].append(rgb[(lot >= first) & (lot < last) | (last > 1)])
-    occupied = bins[~np.isnan(bins[:, 0])]
-    predicting, confirming = (_distinct(np.concatenate(each), occupied) for each in samples)
-    return SampledColours(predicting, confirming, occupied)
-
-
-def _pixel_count(path: Path) -> int:
-    """Pixels of the parts of an image that have colour channels."""
-    with open_image(path) as image:
-        return sum(part.window.width * part.window.height for part, _ in coloured_parts(image))
-
-
-def _bin_index(sensor: Sensor, rgb: Array) -> Any:
-    codes = np.interp(rgb, sensor.decoding, np.linspace(0, BINS, 256))
-    red, green, blue = np.minimum(codes, BINS - 1).astype(int).T
-    return (red * BINS + green) * BINS + blue
-
-
-def _distinct(sample: Array, occupied: Array) -> PixelSample:
-    """Each sampled colour once; the colours of the bins for an empty sample."""
-    rgb, counts = np.unique(sample if len(sample) else occupied, axis=0, return_counts=True)
-    return PixelSample(rgb, counts / counts.sum())
-
-
-@dataclass(frozen=True, eq=False)
-class ColourSet:
-    """Scene of linear RGB (n, 3) for `uplift.build`: the cube gets the lattice points that the colours need."""
-
-    rgb: Array
-
-    def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
-        """Lattice points (dim³,) that the colours need."""
-        return boxes.required_points(boxes.lattice.mask(cells_touched(boxes.lattice, self.rgb)))
-
-    def describe(self) -> list[dict[str, Any]]:
-        """An empty list: colours have no source files."""
-        return []
+MODELS: Mapping[str, tuple[int, ...]] = {
+    "none": (3, 5, 7, 9, 11, 13, 15, 17),
+    "vision": (5, 7, 9, 11),
+    "colour": (3, 5, 7, 9),
+}
+"""Numbers of coefficients by warp: warps are for few."""
 
 
 @dataclass(frozen=True)
 class SearchGrid:
-    """Candidates of the cube, in ascending order, and sizes of the pixel samples.
+    """Candidates, in ascending order, and sizes of the pixel samples.
 
-    The ``reference`` is the dim of the reference cube, which has the last of the ``coefficients``. Candidates are
-    chosen by ``predicting`` pixels and verified on ``confirming`` ones.
+    ``models`` are numbers of coefficients of moments by warp. ``samples`` are numbers of wavelengths, which other
+    representations are compared with if ``others``. The reference has the last number of coefficients without a warp,
+    and ``reference`` nodes along each axis. Candidates are chosen by ``predicting`` pixels and verified on
+    ``confirming`` ones.
     """
 
-    coefficients: tuple[int, ...] = (3, 5, 7, 9, 11, 13, 15, 17)
-    dims: tuple[int, ...] = (8, 12, 16, 24, 32, 48, 64, 96)
-    reference: int = 128
-    predicting: int = 3000
-    confirming: int = 8000
+    models: Mapping[str, tuple[int, ...]] = field(default_factory=lambda: MODELS)
+    dims: tuple[int, ...] = (8, 12, 16, 24, 32, 48, 64)
+    axes: tuple[str, ...] = AXES
+    samples: tuple[int, ...] = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20)
+    others: bool = True
+    reference: int = 96
+    predicting: int = 1500
+    confirming: int = 4000
+
+    @classmethod
+    def quick(cls) -> "SearchGrid":
+        """Fewer candidates and pixels: seconds."""
+        models, dims, samples = {"none": (5, 9, 13, 17)}, (8, 16, 32, 48), (3, 5, 6, 7, 8, 10)
+        return cls(models, dims, AXES[:1], samples, others=False, reference=64, predicting=400, confirming=1000)
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,26 +83,27 @@ class PlanContext:
             "lights": tuple(dict.fromkeys((self.sensor.illuminant, *scene.lights))),
         }
 
+    @property
+    def reference_options(self) -> dict[str, Any]:
+        """Options of the reference cube."""
+        return {"dim": self.grid.reference, "coefficients": self.grid.models["none"][-1]}
+
     def cube(self, rgb: Array, **options: Any) -> Cube:
         """Build a sparse cube for linear RGB (n, 3)."""
         # The final build repeats the warnings of trial builds.
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
             return build(self.atlas, scene=ColourSet(rgb), **{**self.options, **options})
 
-    def evaluation_set(self, sample: PixelSample) -> tuple[EvaluationSet, ErrorSummary]:
-        """Test colours with the reference cube's spectra of pixels and the measured spectra of materials.
-
-        Also the error of the reference cube, which is that of the materials: pixels have none by definition.
-        """
+    def evaluation_set(self, sample: PixelSample) -> tuple[EvaluationSet, Cube]:
+        """Test colours, with the spectra of the reference cube or of the measurement, and this cube."""
         rgb = np.concatenate([sample.rgb, self.materials])
-        reference = self.cube(rgb, dim=self.grid.reference, coefficients=self.grid.coefficients[-1])
-        spectra = reference.reflectance(rgb)
-        groups = [ColourGroup(TEXTURES, sample.rgb, spectra[: len(sample.rgb)], sample.share)]
+        reference = self.cube(rgb, **self.reference_options)
+        spectra = reference.reflectance(sample.rgb)
+        groups = [ColourGroup(TEXTURES, sample.rgb, spectra, sample.share)]
         if count := len(self.materials):
             weights = np.full(count, 1 / count)
             groups.append(ColourGroup(MATERIALS, self.materials, self.reflectances, weights))
-        tests = EvaluationSet(tuple(groups), self.scene.light_sources(), self.scene.quantile)
-        return tests, tests.error(spectra)
+        return EvaluationSet(tuple(groups), self.scene.light_sources(), self.scene.quantile), reference
 
 
 def prepare_context(scene: SceneFile, grid: SearchGrid, progress: ProgressCallback) -> PlanContext:
@@ -183,8 +113,7 @@ def prepare_context(scene: SceneFile, grid: SearchGrid, progress: ProgressCallba
     reflectances = resample(atlas or Atlas(), sensor.wavelengths).values
     rgb = sensor.rgb(reflectances)
     inside = sensor.contains(rgb)
-    with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-        sizes = grid.predicting, grid.confirming
-        colours = sample_colours(scene.textures, sensor, scene.encoding, sizes, progress)
+    images = Images(scene.textures, scene.encoding)
+    colours = sample_colours(images, sensor, (grid.predicting, grid.confirming), progress)
     materials = np.clip(rgb[inside], 0, 1)
     return PlanContext(scene, grid, sensor, atlas, reflectances[inside], materials, colours, progress)

@@ -1,8 +1,8 @@
-"""Colour errors of a candidate on test colours, under the lights of the scene, and the choice among candidates."""
+"""Colour errors of candidates on test colours, under the lights of the scene."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import cached_property
 
 import numpy as np
 
@@ -72,15 +72,24 @@ class EvaluationSet:
     lights: tuple[Light, ...]
     quantile: float
 
-    @property
+    @cached_property
     def rgb(self) -> Array:
         """Linear RGB of all groups, (n, 3)."""
         return np.concatenate([group.rgb for group in self.groups])
 
-    @property
+    @cached_property
     def reflectances(self) -> Array:
         """Reference spectra of all groups, (n, N)."""
         return np.concatenate([group.reflectances for group in self.groups])
+
+    @cached_property
+    def lab(self) -> list[Array]:
+        """CIE L*a*b* (n, 3) of the reference spectra under each light."""
+        return [lab(xyz, light.white) for xyz, light in zip(self.xyz(self.reflectances), self.lights, strict=True)]
+
+    def xyz(self, reflectances: Array) -> Array:
+        """XYZ (K, n, 3) of reflectances (n, N) on the grid of the lights, where white has Y = 1."""
+        return np.stack([reflectances @ light.xyz.T for light in self.lights])
 
     def subsample(self, count: int) -> "EvaluationSet":
         """At most ``count`` colours of each group."""
@@ -88,71 +97,17 @@ class EvaluationSet:
 
     def error(self, reflectances: Array) -> ErrorSummary:
         """Errors of reflectances (n, N) on the grid of the lights."""
-        return self.error_of_xyz([reflectances @ light.xyz.T for light in self.lights])
+        return self.error_of_xyz(self.xyz(reflectances))
 
     def error_of_xyz(self, xyz: Sequence[Array] | Array) -> ErrorSummary:
         """Errors of XYZ (n, 3) under each light, where white has Y = 1."""
         ends = np.cumsum([len(group.rgb) for group in self.groups])[:-1]
         parts = []
-        for light, values in zip(self.lights, xyz, strict=True):
-            difference = delta_e_2000(lab(self.reflectances @ light.xyz.T, light.white), lab(values, light.white))
+        for light, reference, values in zip(self.lights, self.lab, xyz, strict=True):
+            difference = delta_e_2000(reference, lab(values, light.white))
             delta_e = np.where(np.isfinite(difference), difference, WORST_DELTA_E)
             for group, errors in zip(self.groups, np.split(delta_e, ends), strict=True):
                 quantile = np.quantile(errors, self.quantile, weights=group.weights, method="inverted_cdf")
                 mean, largest = float(errors @ group.weights), float(errors.max())
                 parts.append(GroupError(group.name, light.name, mean, float(quantile), largest))
         return ErrorSummary(tuple(parts))
-
-
-@dataclass(frozen=True)
-class Trial:
-    """A candidate and its measured error: that of the chain up to this decision, with all earlier ones applied.
-
-    Candidates are ordered by ``cost``. ``cli_args`` are the options of the command line that select the candidate,
-    ``choice`` is the candidate in JSON values, ``result`` the object that it stands for, if there is one.
-    """
-
-    name: str
-    cost: float
-    cost_text: str
-    cli_args: str
-    choice: Mapping[str, Any]
-    error: ErrorSummary
-    result: Any = None
-
-
-@dataclass(frozen=True)
-class Decision:
-    """Candidates of one kind, as they were measured, and the index of the selected one.
-
-    That is the first within the ``limit``, a ΔE00, or else the one of the smallest error. ``unit`` is that of the cost.
-    """
-
-    key: str
-    title: str
-    unit: str
-    limit: float
-    trials: tuple[Trial, ...]
-    selected: int
-
-    @property
-    def trial(self) -> Trial:
-        """The selected trial."""
-        return self.trials[self.selected]
-
-    @property
-    def within_limit(self) -> bool:
-        """Whether the selected trial meets the limit."""
-        return self.trial.error.quantile <= self.limit
-
-
-def decide(key: str, title: str, unit: str, limit: float, trials: Iterable[Trial]) -> Decision:
-    """Measure candidates up to the first within the limit. ``trials`` makes each one when it is requested."""
-    measured: list[Trial] = []
-    for trial in trials:
-        measured.append(trial)
-        if trial.error.quantile <= limit:
-            break
-    errors = [trial.error.quantile for trial in measured]
-    selected = len(errors) - 1 if errors[-1] <= limit else errors.index(min(errors))
-    return Decision(key, title, unit, limit, tuple(measured), selected)

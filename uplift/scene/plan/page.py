@@ -1,14 +1,19 @@
 """Plan as a self-contained HTML page, and its summary as text for the page and the terminal."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
+from uplift.scene.plan.candidates import INDEX, Measured
 from uplift.scene.plan.plan_file import commands
-from uplift.scene.plan.planning import FinalBuild, Plan
-from uplift.viz.format import format_error, format_size
+from uplift.scene.plan.planning import Plan, cost_text
+from uplift.viz.format import format_error, format_size, pluralise
 from uplift.viz.html import render
 
 TEMPLATE = "scene/plan/templates/page.html.j2"
+HEADINGS = ("ΔE00", "memory", "time", "samples", "cube", "traced", "pixel")
+CLEARLY_SMALLER = 0.95
+"""Share of the error of a cheaper candidate that is worth a row."""
+SHARE = 0.5
+"""Share of the expected error of measurements below which a plan spends more than its colours are worth."""
 
 
 def page(plan: Plan, path: Path) -> str:
@@ -16,56 +21,71 @@ def page(plan: Plan, path: Path) -> str:
     return render(
         TEMPLATE,
         title=f"Plan for {plan.scene.path.stem}",
-        lead=f"{verdict(plan)}.",
-        summary=summary_rows(plan),
-        definition=describe_error(plan),
-        metamerism=describe_metamerism(plan),
+        lead=f"{plan.chosen.candidate.name}: {verdict(plan)}.",
+        notes=notes(plan),
         commands=commands(plan, path),
-        decisions=plan.decisions,
+        headings=HEADINGS,
+        rows=[(front_row(each), each is plan.chosen) for each in front_rows(plan)],
+        definition=describe_error(plan),
         quantile=percent(plan.scene.quantile),
-        errors=list(zip(plan.predicted.parts, plan.confirmed.parts, strict=True)),
+        errors=list(zip(plan.chosen.error.parts, plan.confirmed.parts, strict=True)),
     )
 
 
-@dataclass(frozen=True)
-class SummaryRow:
-    """One line of the summary: heading, selected candidate, cost, command-line options, and ΔE00 of the chain."""
-
-    title: str
-    chosen: str
-    cost: str
-    cli_args: str
-    error: str
-
-
-def summary_rows(plan: Plan) -> list[SummaryRow]:
-    """Rows in the order of the decisions; the one about cells follows the lattice."""
-    rows = []
-    for decision in plan.decisions:
-        trial = decision.trial
-        error = format_error(trial.error.quantile)
-        rows.append(SummaryRow(decision.title, trial.name, trial.cost_text, trial.cli_args, error))
-        if decision.key == "lattice":
-            rows.append(_cells_row(plan.final_build, error))
-    return rows
+def front_rows(plan: Plan) -> list[Measured]:
+    """The choice, and candidates whose error is clearly below that of all cheaper ones, by what the scene minimises."""
+    found: list[Measured] = []
+    for each in sorted(plan.measured, key=lambda each: (each.cost.ranked(plan.scene.minimise), each.error.quantile)):
+        smallest = min((other.error.quantile for other in found), default=float("inf"))
+        if each is plan.chosen or each.error.quantile < CLEARLY_SMALLER * smallest:
+            found.append(each)
+    return found
 
 
-def _cells_row(build: FinalBuild, error: str) -> SummaryRow:
-    cost = f"{build.points:,} points, {format_size(build.size)}, {build.seconds:.1f} s"
-    if build.is_sparse:
-        cost += f"; all cells: {format_size(build.full_size)}"
-        return SummaryRow("Cells", "those of the textures", cost, "--scene IMAGE", error)
-    cost += f"; those of the textures alone: {format_size(build.sparse_size)}, too small a saving"
-    return SummaryRow("Cells", "all", cost, "", error)
+def front_row(measured: Measured) -> tuple[str, ...]:
+    """Texts of a candidate in the order of `HEADINGS`."""
+    candidate, cost = measured.candidate, measured.cost
+    cube = f"{candidate.cube.name}{' sparse' * candidate.sparse}" if candidate.cube else ""
+    costs = (format_size(cost.memory), f"{cost.time:,.0f}", f"{cost.samples:g}")
+    return format_error(measured.error.quantile), *costs, cube, candidate.rendering, candidate.pixel.name
 
 
 def verdict(plan: Plan) -> str:
     """Errors and tolerance in one phrase."""
     end = "" if plan.within_tolerance else "; the tolerance is EXCEEDED: plan for a smaller one"
     return (
-        f"ΔE00 {format_error(plan.predicted.quantile)} predicted, {format_error(plan.confirmed.quantile)} confirmed on "
-        f"other pixels, tolerance {plan.scene.tolerance:g}{end}"
+        f"ΔE00 {format_error(plan.chosen.error.quantile)} predicted, {format_error(plan.confirmed.quantile)} confirmed "
+        f"on other pixels, tolerance {plan.scene.tolerance:g}{end}"
     )
+
+
+def notes(plan: Plan) -> list[str]:
+    """What the choice costs, whether the scene needs spectra, and what its colours are worth."""
+    cost, final, candidate = plan.chosen.cost, plan.final_build, plan.chosen.candidate
+    shared = f" for {pluralise(len(plan.scene.textures), 'texture')}" if len(plan.scene.textures) > 1 else ""
+    cube = f", of which one cube{shared} {format_size(final.size)}" if final else ""
+    found = [f"It costs {format_size(cost.memory)}{cube}, {cost_text(cost, 'time')} and {cost_text(cost, 'samples')}."]
+    if plan.rendering is None:
+        found.append("This scene needs no spectra: RGB and a 3 × 3 matrix per light suffice.")
+    else:
+        rgb = format_error(plan.without_spectra.quantile)
+        found.append(f"Without spectra, by RGB and the best 3 × 3 matrix per light, ΔE00 is {rgb}.")
+    if candidate.pixel.form == INDEX and plan.spectra is not None:
+        found.append(f"The textures have {pluralise(len(plan.spectra[0]), 'colour')}: a list of spectra suffices.")
+    if plan.expected_error is not None:
+        found.append(_yardstick(plan, plan.expected_error))
+    return found
+
+
+def _yardstick(plan: Plan, expected: float) -> str:
+    """The error of the plan against that of any answer, as RGB alone does not identify a material."""
+    text = f"Your colours are known within ΔE00 {expected:.2g}; this plan adds {plan.confirmed.quantile:.2g}"
+    cheaper = plan.cheapest(expected)
+    if plan.confirmed.quantile > SHARE * expected or cheaper is None:
+        return f"{text}."
+    cost = cheaper.cost
+    needs = f"{format_size(cost.memory)}, {cost_text(cost, 'time')} and {cost_text(cost, 'samples')}"
+    return f"{text}. With tolerance {expected:.2g} it would need {needs}."
 
 
 def describe_error(plan: Plan) -> str:
@@ -76,17 +96,8 @@ def describe_error(plan: Plan) -> str:
     return (
         f"ΔE00 of {percent(scene.quantile)} of the textures' pixels{materials} is at most this value, under the worst "
         f"of {', '.join(scene.lights)}. Pixels are compared with a cube of the finest lattice and the most "
-        f"coefficients at all wavelengths{measured}"
-    )
-
-
-def describe_metamerism(plan: Plan) -> str:
-    """Expected difference between measurements and any answer; empty if it is not known."""
-    if plan.expected_error is None:
-        return ""
-    return (
-        "RGB alone does not identify a material: measurements of such colours are expected to differ by ΔE00 "
-        f"{format_error(plan.expected_error)} under A from any answer"
+        f"coefficients at all wavelengths{measured}. {len(plan.measured):,} of {plan.considered:,} candidates were "
+        "measured; the bounds of the others exclude them"
     )
 
 

@@ -23,8 +23,6 @@ from uplift.io.texture.colours import check_encoding
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
 from uplift.pipeline.options import Options, recorded_options
-from uplift.scene.plan.decisions import wavelength_args
-from uplift.scene.plan.evaluation import Decision
 from uplift.scene.plan.planning import Plan
 from uplift.scene.plan.scene_file import SceneFile
 
@@ -32,14 +30,15 @@ FORMAT: Literal["uplift plan 1"] = "uplift plan 1"
 HINT = "plan the scene again"
 MAX_FILES = 10_000
 SUFFIX = ".plan.json"
+SCENE_KEYS = ("lights", "tolerance", "quantile", "encoding", "minimise", "limits")
 
 
 def to_json(plan: Plan, path: Path) -> dict[str, Any]:
-    """All decisions of a plan with their measurements, its wavelengths and its command lines, as JSON values.
+    """The choice of a plan, its wavelengths and command lines, and the Pareto front, as JSON values.
 
     ``path`` is the file to write them to: paths of textures and atlases are relative to its folder.
     """
-    scene, final = plan.scene, plan.final_build
+    scene, final, candidate = plan.scene, plan.final_build, plan.chosen.candidate
     # All options in JSON values, so that later defaults do not change the build.
     options = {
         key: list(each) if isinstance(each, tuple) else each for key, each in asdict(Options(**plan.options)).items()
@@ -49,39 +48,55 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
         "uplift": VERSION,
         "scene": {
             "file": scene.path.name,
-            "lights": list(scene.lights),
-            "tolerance": scene.tolerance,
-            "quantile": scene.quantile,
-            "encoding": scene.encoding,
+            **{
+                key: getattr(scene, key)
+                for key in ("lights", "tolerance", "quantile", "encoding", "minimise", "limits")
+            },
             "textures": _sources(scene.textures, path),
             "atlases": _sources(scene.atlases, path),
         },
-        "build": options,
-        "cells": "sparse" if final.is_sparse else "whole",
-        "texture": asdict(plan.storage),
-        "rendering": {
-            "wavelengths": plan.sampling.wavelengths.tolist(),
-            "to_xyz": plan.sampling.to_xyz.tolist(),
-            "powers": dict(zip(plan.sampling.lights, plan.sampling.powers.tolist(), strict=True)),
-        },
+        "name": candidate.name,
+        "build": options if final else None,
+        "cells": "sparse" if candidate.sparse else "whole",
+        "texture": asdict(candidate.pixel),
+        "rendering": _rendering_json(plan),
+        "spectra": plan.spectra
+        and [
+            {"rgb": rgb, "reflectance": values}
+            for rgb, values in zip(*(each.tolist() for each in plan.spectra), strict=True)
+        ],
         "error": {
             **{
                 name: {**asdict(error.worst), "parts": [asdict(part) for part in error.parts]}
-                for name, error in (("predicted", plan.predicted), ("confirmed", plan.confirmed))
+                for name, error in (("predicted", plan.chosen.error), ("confirmed", plan.confirmed))
             },
             "within": plan.within_tolerance,
+            "without_spectra": plan.without_spectra.quantile,
             "expected_of_measurements": plan.expected_error,
         },
         "cost": {
-            "points": final.points,
-            "bytes": final.size,
-            "cpu_seconds": final.seconds,
-            "bytes_whole": final.full_size,
-            "bytes_sparse": final.sparse_size,
+            **plan.chosen.cost._asdict(),
+            **({"points": final.points, "bytes": final.size, "cpu_seconds": final.seconds} if final else {}),
         },
-        "decisions": [_decision_json(each) for each in plan.decisions],
+        "search": {"considered": plan.considered, "measured": len(plan.measured)},
+        "front": [
+            {"name": each.candidate.name, **asdict(each.candidate), **each.cost._asdict()}
+            | {"error": asdict(each.error.worst)}
+            for each in plan.front
+        ],
         "lines": list(commands(plan, path)),
     }
+
+
+def _rendering_json(plan: Plan) -> dict[str, Any]:
+    """Wavelengths and their weights, the name of a representation, or matrices of RGB."""
+    rendering = plan.rendering
+    if rendering is None:
+        return {"rgb_to_xyz": dict(zip(plan.scene.lights, plan.matrices.tolist(), strict=True))}
+    if (sampling := rendering.sampling) is None:
+        return {"representation": rendering.name}
+    powers = dict(zip(sampling.lights, sampling.powers.tolist(), strict=True))
+    return {"wavelengths": sampling.wavelengths.tolist(), "to_xyz": sampling.to_xyz.tolist(), "powers": powers}
 
 
 def _sources(paths: Iterable[Path], plan: Path) -> list[dict[str, str]]:
@@ -90,38 +105,27 @@ def _sources(paths: Iterable[Path], plan: Path) -> list[dict[str, str]]:
     ]
 
 
-def _decision_json(decision: Decision) -> dict[str, Any]:
-    trials = [
-        {
-            "name": trial.name,
-            "cost": trial.cost,
-            "told": trial.cost_text,
-            "typed": trial.cli_args,
-            "choice": trial.choice,
-            "error": asdict(trial.error.worst),
-        }
-        for trial in decision.trials
-    ]
-    header = {name: getattr(decision, name) for name in ("key", "title", "unit", "limit")}
-    return {**header, "trials": trials, "taken": decision.selected, "kept": decision.within_limit}
-
-
 def cube_name(plan_path: StrPath) -> str:
     """File name of the cube of a plan: that of the plan with the suffix ``.uplift``."""
     name = Path(plan_path).name
     return f"{name.removesuffix(SUFFIX) if name.endswith(SUFFIX) else Path(name).stem}.uplift"
 
 
-def commands(plan: Plan, path: Path) -> tuple[str, str]:
-    """Command lines for a plan at ``path``: its build, and all its textures."""
-    scene, storage = plan.scene, plan.storage
+def commands(plan: Plan, path: Path) -> tuple[str, ...]:
+    """Command lines for a plan at ``path``: its build, and its textures or the program that looks colours up."""
+    scene, pixel = plan.scene, plan.chosen.candidate.pixel
+    if plan.final_build is None:
+        return ()
+    build, cube = f"uplift build --plan {shlex.quote(str(path))}", cube_name(path)
+    if pixel.mode:
+        return build, shlex.join(["uplift", "export", cube, "--format", "c", "--mode", pixel.mode])
     target = f"{scene.textures[0].stem}-uplifted.exr" if len(scene.textures) == 1 else "uplifted"
-    words = [*map(str, scene.textures), "-o", target, "--cube", cube_name(path), *storage.cli_args.split()]
-    if storage.form == Spectrum.name:
-        words += wavelength_args(plan.sampling.wavelengths).split()
+    words = ["uplift", "texture", *map(str, scene.textures), "-o", target, "--cube", cube, *pixel.cli_args.split()]
+    if pixel.form == Spectrum.name and plan.rendering is not None and plan.rendering.sampling is not None:
+        words += ["--wavelengths", ",".join(f"{each:g}" for each in plan.rendering.wavelengths)]
     if scene.encoding != SceneFile.encoding:
         words += ["--encoding", scene.encoding]
-    return f"uplift build --plan {shlex.quote(str(path))}", f"uplift texture {shlex.join(words)}"
+    return build, shlex.join(words)
 
 
 @dataclass(frozen=True)
@@ -178,7 +182,7 @@ class _PlanTable(SpecModel):
 
     format: Literal["uplift plan 1"]
     scene: _Scene
-    build: Annotated[dict[str, Any], resolves(_check_options)]
+    build: Annotated[dict[str, Any], resolves(_check_options)] | None
     cells: Literal["sparse", "whole"]
 
 
@@ -189,6 +193,8 @@ def read_plan(path: StrPath) -> PlanFile:
     """
     file = read_json(path, PlanFileError)
     table = file.validate(_PlanTable, hint=HINT)
+    if table.build is None:
+        file.fail(("build",), "the plan needs no cube", hint="render as its key 'rendering' describes")
     textures, atlases = (_check_sources(file, key, getattr(table.scene, key)) for key in ("textures", "atlases"))
     return PlanFile(
         file.path, textures, atlases, table.scene.encoding, table.cells == "sparse", recorded_options(table.build)

@@ -1,60 +1,42 @@
-"""Order of a plan's decisions: coefficients, lattice, wavelengths, storage; then the build and its verification."""
+"""Plans: components are measured, cubes that may suffice are built, the choice is confirmed on other pixels."""
 
 import tempfile
 import time
-import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from uplift.common.errors import PlanFileError, UpliftWarning
+from uplift.common.arrays import Array
+from uplift.common.errors import OptionError, PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.scene_colours import Images
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
-from uplift.scene.plan import decisions
+from uplift.scene.plan.candidates import INDEX, Cost, Measured
 from uplift.scene.plan.context import PlanContext, SearchGrid, prepare_context
-from uplift.scene.plan.decisions import Storage
-from uplift.scene.plan.evaluation import Decision, ErrorSummary, Trial, decide
+from uplift.scene.plan.evaluation import ErrorSummary
+from uplift.scene.plan.renderings import Rendering
 from uplift.scene.plan.scene_file import SceneFile
-from uplift.scene.wavelengths import Sampling
-from uplift.viz.format import format_error
+from uplift.scene.plan.search import explore, pareto_front, sufficient
+from uplift.scene.plan.space import WITHOUT_SPECTRA, CandidateSpace, Evaluator
+from uplift.viz.format import format_error, format_size
 
-DECISIONS = {
-    "coefficients": ("Coefficients per spectrum", "coefficients", 0.4),
-    "lattice": ("Lattice", "lattice points that the textures need", 0.55),
-    "wavelengths": ("Wavelengths", "wavelengths", 0.9),
-    "storage": ("Texture pixel", "bytes per pixel", 1.0),
-}
-"""Title, unit of the cost, and share of the tolerance that the chain may use up to each decision.
-
-Errors of independent origin add up like their squares. That leaves 0.4, 0.38, 0.71 and 0.44 of the tolerance to each
-decision alone: most to the wavelengths, as every ray pays for them.
-"""
-MIN_SAVING = 1e6
-"""Bytes that a sparse cube must save, as it cannot answer other colours."""
+FINALISTS = 6
+"""Candidates that are confirmed, at most."""
+CLEARLY_SMALLER = 0.97
+"""Share of the error of a candidate that was not confirmed; the next finalist has a smaller one."""
 
 
 @dataclass(frozen=True, eq=False)
 class FinalBuild:
-    """The planned cube, the bytes of its file, and the CPU time of the build.
-
-    ``full_size`` and ``sparse_size`` are the bytes with all cells, and with those of the textures alone.
-    """
+    """The planned cube, the bytes of its file, and the CPU time of the build."""
 
     cube: Cube
     size: int
     seconds: float
-    full_size: float
-    sparse_size: float
-
-    @property
-    def is_sparse(self) -> bool:
-        """Whether the cube has only the cells of the textures."""
-        return self.cube.data.complete_cells is not None
 
     @property
     def points(self) -> int:
@@ -64,141 +46,200 @@ class FinalBuild:
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """Cube, wavelengths and texture format for a scene, with all measurements.
+    """The Pareto front for a scene, and the choice from it, with all that it needs.
 
     Parameters
     ----------
     scene : SceneFile
         The scene file.
-    decisions : tuple of Decision
-        Decisions in the order in which they were made.
-    options : mapping
-        Options of `uplift.build`.
-    sampling : Sampling
-        Wavelengths to render at, the lights there, and the weights of their sum.
-    storage : Storage
-        Contents of a texture's pixel.
-    final_build : FinalBuild
-        The cube.
-    predicted : ErrorSummary
-        Error on the pixels that the decisions were made by.
+    measured : tuple of Measured
+        Candidates that were measured.
+    considered : int
+        Number of candidates, most of which bounds exclude.
+    chosen : Measured
+        The cheapest candidate within the tolerance and the limits that was confirmed.
     confirmed : ErrorSummary
-        Error of the cube on other pixels.
+        Its error on other pixels.
+    rendering : Rendering or None
+        What is traced for the choice; None for RGB.
+    matrices : ndarray, shape (K, 3, 3)
+        From linear RGB to XYZ under each light, the best without spectra.
+    without_spectra : ErrorSummary
+        Error of RGB with these matrices.
+    options : mapping
+        Options of `uplift.build`; empty without a cube.
+    final_build : FinalBuild or None
+        The cube.
+    spectra : tuple of ndarray, or None
+        Colours (n, 3) and reflectances (n, W) of a list of spectra.
     expected_error : float or None
-        Mean standard error of the textures' colours, ΔE00 under A: the difference to expect between a measurement of
+        Mean standard error of the textures' colours under the worst light: the ΔE00 to expect between a measurement of
         such a colour and any answer. None if the cube does not store standard errors.
     """
 
     scene: SceneFile
-    decisions: tuple[Decision, ...]
-    options: Mapping[str, Any]
-    sampling: Sampling
-    storage: Storage
-    final_build: FinalBuild
-    predicted: ErrorSummary
+    measured: tuple[Measured, ...]
+    considered: int
+    chosen: Measured
     confirmed: ErrorSummary
+    rendering: Rendering | None
+    matrices: Array
+    without_spectra: ErrorSummary
+    options: Mapping[str, Any]
+    final_build: FinalBuild | None
+    spectra: tuple[Array, Array] | None
     expected_error: float | None
+
+    @property
+    def front(self) -> list[Measured]:
+        """Measured candidates that no other dominates in memory, time, samples, and error."""
+        return pareto_front(self.measured)
 
     @property
     def within_tolerance(self) -> bool:
         """Whether the confirmed error is within the tolerance."""
         return self.confirmed.quantile <= self.scene.tolerance
 
+    def cheapest(self, tolerance: float) -> Measured | None:
+        """The cheapest measured candidate within another tolerance and the limits of the scene."""
+        found = sufficient(self.measured, tolerance, self.scene.minimise, self.scene.limits)
+        return found[0] if found else None
+
 
 def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCallback = ignore_progress) -> Plan:
-    """Find the smallest sufficient cube, wavelengths and texture format for a scene.
+    """Search the cheapest sufficient cube, wavelengths and texture format for a scene, or less.
 
     Parameters
     ----------
     scene : SceneFile
         The scene.
     grid : SearchGrid, optional
-        Candidates to try.
+        Candidates to consider.
     progress : ProgressCallback, optional
         Called with each step.
 
     Returns
     -------
     Plan
-        The decisions and the cube that they lead to.
+        The Pareto front, and the choice from it.
 
     Raises
     ------
     PlanFileError
-        If even the reference cube misses the tolerance. The hint gives a feasible one.
+        If no candidate is within the tolerance, or within the limits as well (``no-candidate``).
     AtlasError, TextureError
         If a file cannot be read.
     """
     context = prepare_context(scene, grid or SearchGrid(), progress)
-    progress(Progress("reference cube", 0, 1))
-    tests, reference_error = context.evaluation_set(context.colours.predicting)
-    worst = reference_error.worst
-    if worst.quantile > scene.tolerance:
-        raise PlanFileError(
-            f"tolerance must be at least the error of the reference cube, ΔE00 {format_error(worst.quantile)} of "
-            f"{worst.group} under {worst.light}, got {scene.tolerance:g}",
-            path=scene.path,
-            hint=f"set tolerance = {np.ceil(worst.quantile * 110) / 100:g} or more",
-        )
-
-    def decided(key: str, trials: Iterable[Trial]) -> Decision:
-        title, unit, share = DECISIONS[key]
-        return decide(key, title, unit, share * scene.tolerance, trials)
-
-    coefficients = decided("coefficients", decisions.coefficient_trials(context, tests))
-    count = int(coefficients.trial.choice["coefficients"])
-    lattice = decided("lattice", decisions.lattice_trials(context, tests, count))
-    options = {**context.options, **coefficients.trial.choice, **lattice.trial.choice}
-    cube = context.cube(tests.rgb, **options)
-    wavelengths = decided("wavelengths", decisions.wavelength_trials(context, tests, cube))
-    sampling: Sampling = wavelengths.trial.result
-    pixel = decided("storage", decisions.storage_trials(context, tests, cube, sampling))
-    storage: Storage = pixel.trial.result
-
+    space = CandidateSpace(context)
+    measured = explore(space.estimates(), space.measure, space.floor)
+    finalists = sufficient(measured, scene.tolerance, scene.minimise, scene.limits)
+    if not finalists:
+        raise no_candidate(scene, measured)
+    chosen, confirmed = _confirm(context, space, finalists)
+    candidate = chosen.candidate
+    rendering = space.evaluator.renderings.get(candidate.rendering)
+    textures = space.evaluator.tests.groups[0]
+    spectra = None
+    if candidate.pixel.form == INDEX and rendering is not None and context.colours.few is not None:
+        colours = context.colours.few
+        cube = context.cube(colours, **context.reference_options)
+        spectra = colours, cube.reflectance(colours, rendering.wavelengths)
+    options = {} if candidate.cube is None else {**context.options, **candidate.cube.options}
     progress(Progress("final build", 0, 1))
-    final_build = build_final(context, options)
-    progress(Progress("verification", 0, 1))
-    # The chain on the second sample of pixels.
-    confirming, _ = context.evaluation_set(context.colours.confirming)
-    nm, planned = sampling.wavelengths, final_build.cube
-    spectra = [storage.decoded_reflectance(planned, confirming.groups[0].rgb, nm)]
-    if len(context.materials):  # a sparse cube need not have points for the colours of materials
-        of_materials = context.cube(context.materials, **options)
-        spectra.append(storage.decoded_reflectance(of_materials, context.materials, nm))
-    xyz = sampling.xyz(np.concatenate(spectra))
-    textures = tests.groups[0]
-    expected_error = planned.standard_error(textures.rgb)
     return Plan(
         scene=scene,
-        decisions=(coefficients, lattice, wavelengths, pixel),
+        measured=tuple(measured),
+        considered=space.considered,
+        chosen=chosen,
+        confirmed=confirmed,
+        rendering=rendering,
+        matrices=space.matrices,
+        without_spectra=space.evaluator.errors(None, [WITHOUT_SPECTRA], space.matrices)[0],
         options=options,
-        sampling=sampling,
-        storage=storage,
-        final_build=final_build,
-        predicted=pixel.trial.error,
-        confirmed=confirming.error_of_xyz(xyz),
-        expected_error=None if expected_error is None else float(expected_error @ textures.weights),
+        final_build=_build(context, options, sparse=candidate.sparse) if options else None,
+        spectra=spectra,
+        expected_error=_expected_error(space.evaluator.reference, scene, textures.rgb, textures.weights),
     )
 
 
-def build_final(context: PlanContext, options: Mapping[str, Any]) -> FinalBuild:
-    """Build the cube for the textures, or with all cells unless that saves enough, with the warnings of `build`."""
-    scene = context.scene
-    cube, seconds, sparse_size = _build(context, options, Images(scene.textures, scene.encoding))
-    full_size = sparse_size * cube.data.lattice.size / int(cube.data.points.present.sum())
-    if full_size - sparse_size >= MIN_SAVING:
-        return FinalBuild(cube, sparse_size, seconds, full_size, sparse_size)
-    with warnings.catch_warnings(action="ignore", category=UpliftWarning):  # the sparse build has issued all of them
-        cube, seconds, size = _build(context, options)
-    return FinalBuild(cube, size, seconds, size, sparse_size)
+def _confirm(
+    context: PlanContext, space: CandidateSpace, finalists: Sequence[Measured]
+) -> tuple[Measured, ErrorSummary]:
+    """The first finalist within the tolerance on other pixels, or else the one of the smallest error there."""
+    context.progress(Progress("confirmation", 0, 1))
+    other = Evaluator(*context.evaluation_set(context.colours.confirming), space.evaluator.renderings)
+    tried: list[tuple[Measured, ErrorSummary]] = []
+    for each in finalists:
+        if tried and each.error.quantile > CLEARLY_SMALLER * tried[-1][0].error.quantile:
+            continue
+        choice = each.candidate.cube
+        cube = None if choice is None else context.cube(other.tests.rgb, **choice.options)
+        tried.append((each, other.errors(cube, [each.candidate], space.matrices)[0]))
+        if tried[-1][1].quantile <= context.scene.tolerance or len(tried) == FINALISTS:
+            break
+    return min(tried, key=lambda each: (each[1].quantile > context.scene.tolerance, each[1].quantile))
 
 
-def _build(context: PlanContext, options: Mapping[str, Any], scene: Images | None = None) -> tuple[Cube, float, int]:
-    """Build a cube; also return the CPU time in seconds, and the bytes of its file."""
+def no_candidate(scene: SceneFile, measured: Sequence[Measured]) -> PlanFileError:
+    """The error if no candidate is within the tolerance, or within the limits as well."""
+    enough = sufficient(measured, scene.tolerance, scene.minimise, {})
+    if not enough:
+        best = min(measured, key=lambda each: each.error.quantile).error.worst
+        return PlanFileError(
+            f"no candidate: the smallest error is ΔE00 {format_error(best.quantile)}, of {best.group} under "
+            f"{best.light}; tolerance allows {scene.tolerance:g}",
+            code="no-candidate",
+            path=scene.path,
+            hint=f"set tolerance = {np.ceil(best.quantile * 110) / 100:g} or more",
+        )
+
+    def excess(each: Measured) -> float:
+        return sum(max(getattr(each.cost, key) / limit, 1) for key, limit in scene.limits.items())
+
+    cheapest = min(enough, key=excess)
+    over = [key for key, limit in scene.limits.items() if getattr(cheapest.cost, key) > limit]
+    needs = " and ".join(cost_text(cheapest.cost, key) for key in over)
+    allowed = " and ".join(cost_text(Cost(**{**cheapest.cost._asdict(), **scene.limits}), key) for key in over)
+    return PlanFileError(
+        f"no candidate: the cheapest within {scene.tolerance:g} needs {needs}; limits allow {allowed}",
+        code="no-candidate",
+        path=scene.path,
+        hint=f"raise limits.{over[0]} or the tolerance",
+    )
+
+
+def cost_text(cost: Cost, key: str) -> str:
+    """A cost with its unit."""
+    value = getattr(cost, key)
+    return format_size(value) if key == "memory" else f"{value:,.0f} {'operations' if key == 'time' else key}"
+
+
+def _expected_error(reference: Cube, scene: SceneFile, rgb: Array, weights: Array) -> float | None:
+    """Mean standard error of colours under the worst light; None if the cube has no estimates."""
+
+    def errors() -> Iterator[Array | None]:
+        for light in scene.lights:
+            try:
+                yield reference.standard_error(rgb, light)
+            except OptionError:  # without left-out entries under one light only
+                yield reference.standard_error(rgb)
+
+    return max((float(each @ weights) for each in errors() if each is not None), default=None)
+
+
+def _build(context: PlanContext, options: Mapping[str, Any], *, sparse: bool) -> FinalBuild:
+    """Build the cube with all cells, or with those of the textures."""
+    scene = Images(context.scene.textures, context.scene.encoding) if sparse else None
     begin = time.process_time()
     cube = build(context.atlas, scene=scene, **options)
     seconds = time.process_time() - begin
+    return FinalBuild(cube, file_size(cube), seconds)
+
+
+def file_size(cube: Cube) -> int:
+    """Bytes of the file of a cube."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.uplift"
         cube.save(path)
-        return cube, seconds, path.stat().st_size
+        return path.stat().st_size

@@ -2,9 +2,10 @@
 
 import glob
 import os
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field
 
@@ -15,6 +16,7 @@ from uplift.common.errors import PlanFileError
 from uplift.common.spec_file import InsidePath, SpecFile, SpecModel, problem, read_toml, resolves
 from uplift.common.text import format_value
 from uplift.io.texture.colours import check_encoding
+from uplift.scene.plan.candidates import MINIMISE
 
 MIN_TOLERANCE, MAX_TOLERANCE = 0.01, 100.0
 """ΔE00."""
@@ -41,6 +43,12 @@ class SceneFile:
     quantile : float
         Share of the textures' pixels and of the atlas's entries that must stay within the tolerance under every
         light, in [0.5, 1].
+    minimise : str
+        One of `uplift.scene.plan.candidates.MINIMISE`.
+    limits : mapping
+        Largest cost by name: "memory" in bytes, "time" in operations, "samples".
+    sparse : bool
+        Whether the cube may have the cells of the textures alone.
     encoding : str
         Encoding of the textures: "auto", "linear" or "encoded".
     space, illuminant, observer : str
@@ -53,6 +61,9 @@ class SceneFile:
     lights: tuple[str, ...] = SCENE_LIGHTS
     tolerance: float = 1.0
     quantile: float = 0.975
+    minimise: str = MINIMISE[0]
+    limits: Mapping[str, float] = field(default_factory=dict)
+    sparse: bool = True
     encoding: str = "auto"
     space: str = "sRGB"
     illuminant: str = DEFAULT_ILLUMINANT
@@ -104,6 +115,7 @@ Lights = Annotated[
 ]
 Space = Annotated[str, resolves(observer.sensor)]
 Illuminant = Annotated[str, resolves(observer.illuminant_spd)]
+Limit = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Observer = Annotated[str, resolves(observer.matching_functions)]
 
 
@@ -115,6 +127,9 @@ class _SceneTable(SpecModel):
     lights: Lights = Field(default_factory=lambda: list(SceneFile.lights))
     tolerance: float = Field(SceneFile.tolerance, strict=True, ge=MIN_TOLERANCE, le=MAX_TOLERANCE, allow_inf_nan=False)
     quantile: float = Field(SceneFile.quantile, strict=True, ge=0.5, le=1, allow_inf_nan=False)
+    minimise: Literal["balance", "memory", "time", "samples"] = "balance"
+    limits: dict[Literal["memory", "time", "samples"], Limit] = Field(default_factory=dict)
+    sparse: bool = SceneFile.sparse
     encoding: Annotated[str, resolves(check_encoding)] = SceneFile.encoding
     space: Space = SceneFile.space
     illuminant: Illuminant = SceneFile.illuminant

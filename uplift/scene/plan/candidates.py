@@ -1,0 +1,162 @@
+"""Candidates of a plan, and what they cost: bytes, operations per pixel and light, and samples per ray."""
+
+from dataclasses import asdict, dataclass
+from functools import partial
+from math import prod
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from uplift.common.arrays import Array
+from uplift.common.errors import UpliftError
+from uplift.io import texture
+from uplift.lookup import Cube
+from uplift.lookup.blocks import blockwise
+from uplift.lookup.interpolate import refined_multipliers
+from uplift.models import Sigmoid, evaluate, reflectance
+from uplift.scene.plan.evaluation import ErrorSummary
+
+MINIMISE = ("balance", "memory", "time", "samples")
+"""What the choice minimises: the product of the costs, or one of them."""
+DEPTHS: dict[str, np.dtype[Any]] = {"half": np.dtype(np.float16), "float": np.dtype(np.float32)}
+RGB, INDEX = "rgb", "index"
+"""Forms of pixels besides those of textures: colours, and numbers of a list of spectra."""
+
+
+class Cost(NamedTuple):
+    """Costs of a candidate.
+
+    ``memory``: bytes of the cube file, of a list of spectra, and of the pixels of all textures.
+    ``time``: floating-point operations of a pixel that one light illuminates: its lookup, the product with the light,
+    and the share of a sample in the sum to XYZ.
+    ``samples``: numbers of a ray.
+    """
+
+    memory: float
+    time: float
+    samples: float
+
+    def ranked(self, minimise: str) -> tuple[float, ...]:
+        """Sort key: the minimised cost, and the product of all three where that is equal."""
+        product = prod(self)
+        return (product,) if minimise == MINIMISE[0] else (getattr(self, minimise), product)
+
+
+@dataclass(frozen=True)
+class CubeChoice:
+    """Options of `uplift.build` that a plan chooses."""
+
+    model: str
+    coefficients: int
+    warp: str
+    dim: int
+    axis: str
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Options of a build."""
+        fields = asdict(self)
+        return fields if self.model != Sigmoid.name else {key: fields[key] for key in ("model", "dim", "axis")}
+
+    @property
+    def name(self) -> str:
+        """Short text, with all that differs from the defaults."""
+        spectra = f"{self.coefficients}" if self.model != Sigmoid.name else self.model
+        warp, axis = f", {self.warp}" * (self.warp != "none"), f", {self.axis}" * (self.axis != "srgb")
+        return f"{self.dim}³ × {spectra}{warp}{axis}"
+
+
+@dataclass(frozen=True)
+class Pixel:
+    """What a texture stores per pixel: a pixel encoding, RGB, or an index; and a renderer does with it.
+
+    ``depth`` is "half" or "float", empty for the numbers of the image itself, and ``mode`` the lookup in the cube that
+    RGB need: "spectra" or "moments", as programs of ``uplift export`` have them.
+    """
+
+    form: str
+    depth: str = ""
+    mode: str = ""
+
+    @property
+    def name(self) -> str:
+        """Short text."""
+        return f"RGB, lookup of {self.mode}" if self.mode else f"{self.form}, {self.depth}" if self.depth else self.form
+
+    @property
+    def cli_args(self) -> str:
+        """Options of ``uplift texture``."""
+        return f"--representation {self.form} --depth {self.depth}"
+
+    def size(self, count: int, samples: int) -> int:
+        """Bytes of a pixel of a texture for a cube of ``count`` coefficients, 0 for the numbers of the image itself."""
+        numbers = samples if self.form == texture.Spectrum.name else count
+        return numbers * DEPTHS[self.depth].itemsize if self.depth else 0
+
+    def operations(self, choice: CubeChoice, samples: int) -> int:
+        """Floating-point operations until the reflectances of a pixel are known.
+
+        Sums of cosines by Clenshaw's recurrence and an arctangent are 4 C + 15 for each sample, a sigmoid 10. From
+        moments to multipliers there are 28 C² (docs/mathematics.md, 4), between eight nodes 16 for each number.
+        """
+        count, is_sigmoid = choice.coefficients, choice.model == Sigmoid.name
+        evaluation = samples * (10 if is_sigmoid else 4 * count + 15)
+        conversion = 0 if is_sigmoid else 28 * count**2
+        return {
+            texture.Spectrum.name: 0,
+            texture.Moments.name: conversion + evaluation,
+            texture.Multipliers.name: evaluation,
+            "spectra": 8 * evaluation + 16 * samples,
+            "moments": 16 * count + conversion + evaluation,
+        }[self.mode or self.form]
+
+    def decoded(self, cube: Cube, rgb: Array, nm: Array) -> Array:
+        """Reflectances (n, W) at wavelengths (W,) in nm that a renderer reads for linear RGB (n, 3).
+
+        NaN where no spectrum has the rounded moments.
+        """
+        kind = DEPTHS[self.depth or "float"]
+        if self.mode or self.form == texture.Spectrum.name:
+            return cube.reflectance(rgb, nm, self.mode or "spectra").astype(kind).astype(float)
+        if self.form == texture.Multipliers.name:
+            values = blockwise(partial(refined_multipliers, cube.data), rgb, cube.coefficient_count, kind, 1)
+            return evaluate(cube.data.model, values.astype(float), nm)
+        try:
+            return reflectance(cube.data.model, cube.coefficients(rgb).astype(kind).astype(float), nm)
+        except UpliftError:
+            return np.full((len(rgb), len(nm)), np.nan)
+
+
+PIXELS = (
+    *(Pixel(name, depth) for name, form in texture.PIXEL_ENCODINGS.items() for depth in form().depths),
+    *(Pixel(RGB, mode=mode) for mode in ("spectra", "moments")),
+)
+"""Pixels that need a cube."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A complete choice: a cube, with all cells or those of the textures, pixels, and the name of a `Rendering`.
+
+    Without a cube, pixels are RGB or an index.
+    """
+
+    rendering: str
+    pixel: Pixel
+    cube: CubeChoice | None = None
+    sparse: bool = False
+
+    @property
+    def name(self) -> str:
+        """Short text."""
+        cube = f"{self.cube.name}{' sparse' * self.sparse}; " if self.cube else ""
+        return f"{cube}{self.rendering}; {self.pixel.name}"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A candidate with its costs and its error on the test colours."""
+
+    candidate: Candidate
+    cost: Cost
+    error: ErrorSummary

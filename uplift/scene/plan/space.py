@@ -1,0 +1,197 @@
+"""The candidates for a scene: their costs, lower bounds of their errors, and their measurement.
+
+What a model of spectra, a lattice, and a rendering change is measured once each. Changes of XYZ by a model and by a
+lattice add, to predict the error of a cube. The squares of the errors of a cube and of a rendering add.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from uplift.colorimetry import observer
+from uplift.common.arrays import Array
+from uplift.common.progress import Progress
+from uplift.cube.file import POINTS, contents
+from uplift.io import texture
+from uplift.io.scene_colours import cells_touched
+from uplift.lattice import Lattice
+from uplift.lookup import Cube
+from uplift.models import Moments, Sigmoid
+from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, CubeChoice, Measured, Pixel
+from uplift.scene.plan.context import PlanContext
+from uplift.scene.plan.evaluation import ErrorSummary, EvaluationSet
+from uplift.scene.plan.renderings import Rendering, fit_matrices, renderings
+from uplift.scene.plan.search import Estimate
+
+FLOOR, CEILING = 0.5, 2.0
+"""Shares of the tolerance below which errors count as equal, and above which candidates are not measured."""
+MARGIN = 0.85
+"""Share of a predicted error that is its lower bound."""
+FINE = 64
+"""Nodes along each axis of the cubes that measure models."""
+PROBE = 9
+"""Coefficients of the cubes that measure lattices."""
+LEAST_BYTES, POINT_NUMBER = 4, 4
+"""Bytes of a coefficient, unless colours need 8, and of the number of a point in a sparse file."""
+WITHOUT_SPECTRA = Candidate("RGB × light", Pixel(RGB))
+"""RGB, and a matrix for each light."""
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluator:
+    """Errors of candidates on test colours, with the ``reference`` cube of these colours."""
+
+    tests: EvaluationSet
+    reference: Cube
+    renderings: dict[str, Rendering]
+
+    def errors(self, cube: Cube | None, candidates: Sequence[Candidate], matrices: Array) -> list[ErrorSummary]:
+        """Errors of candidates that share a cube. ``matrices`` (K, 3, 3) are those of RGB."""
+        names = dict.fromkeys(each.rendering for each in candidates if each != WITHOUT_SPECTRA)
+        needed = [self.renderings[name].wavelengths for name in names]
+        nm, ends = np.concatenate([[], *needed]), np.cumsum([0, *map(len, needed)])
+        columns = dict(zip(names, map(slice, ends, ends[1:]), strict=False))
+        spectra: dict[Pixel, Array] = {}
+        found = []
+        for each in candidates:
+            if each == WITHOUT_SPECTRA:
+                found.append(self.tests.error_of_xyz(self.tests.rgb @ matrices.mT))
+                continue
+            if each.pixel not in spectra:
+                pixel = Pixel(texture.Spectrum.name, each.pixel.depth) if cube is None else each.pixel
+                spectra[each.pixel] = pixel.decoded(cube or self.reference, self.tests.rgb, nm)
+            values = spectra[each.pixel][:, columns[each.rendering]]
+            found.append(self.tests.error_of_xyz(self.renderings[each.rendering].xyz(values)))
+        return found
+
+
+class CandidateSpace:
+    """Candidates for a scene, measured with the pixels of the first sample."""
+
+    def __init__(self, context: PlanContext) -> None:
+        self.context = context
+        self.floor, self.ceiling = (share * context.scene.tolerance for share in (FLOOR, CEILING))
+        context.progress(Progress("reference cube", 0, 1))
+        tests, reference = context.evaluation_set(context.colours.predicting)
+
+        def spectra(nm: Array) -> Array:
+            return reference.reflectance(tests.rgb, nm)
+
+        found = renderings(context, tests, spectra, self.floor)
+        self.evaluator = Evaluator(tests, reference, {each.name: each for each in found})
+        self.matrices = fit_matrices(tests)
+        self.base = tests.xyz(reference.reflectance(tests.rgb))
+        arrays = contents(reference.data)[0]
+        rows = {name: array for name, array in arrays.items() if name in POINTS}
+        self.row_bytes = sum(array[0].nbytes for name, array in rows.items() if name != "coefficients")
+        self.other_bytes = sum(array.nbytes for name, array in arrays.items() if name not in rows)
+        self.built = self.considered = 0
+
+    def estimates(self) -> list[Estimate]:
+        """All candidates with their costs and the lower bounds of their errors.
+
+        Cubes are left out where they cannot save anything: where RGB have no error, or colours are few.
+        """
+        colours = self.context.colours
+        found = [Estimate(WITHOUT_SPECTRA, Cost(colours.size, 21, 3), 0.0)]
+        if colours.few is not None:
+            for each in self.evaluator.renderings.values():
+                if each.sampling is not None:
+                    cost = Cost(colours.pixels + 2 * len(colours.few) * each.surface, each.operations, each.samples)
+                    found.append(Estimate(Candidate(each.name, Pixel(INDEX, "half")), cost, 0.0))
+        self.considered = len(found)
+        if colours.few is None and self.measure(None, found)[0].error.quantile > self.floor:
+            found += self._with_cubes()
+        return found
+
+    def measure(self, choice: CubeChoice | None, estimates: Sequence[Estimate]) -> list[Measured]:
+        """Build the cube that candidates share, and measure their errors."""
+        candidates = [each.candidate for each in estimates]
+        cube = None
+        if choice is not None:
+            self.built += 1
+            self.context.progress(Progress(f"cube {self.built}: {choice.name}", 0, 1))
+            cube = self.context.cube(self.evaluator.tests.rgb, **choice.options)
+        errors = self.evaluator.errors(cube, candidates, self.matrices)
+        return [Measured(each.candidate, each.cost, error) for each, error in zip(estimates, errors, strict=True)]
+
+    def _with_cubes(self) -> Iterator[Estimate]:
+        """Candidates that need a cube and whose bounds are below the ceiling."""
+        tests, renderings = self.evaluator.tests, self.evaluator.renderings.values()
+        base = _quantiles(tests.error_of_xyz(self.base))
+        lattices, models = self._lattices(), self._models()
+        points = {name: self._points(*name) for name in lattices}
+        for (model, by_model), (lattice, by_lattice) in product(models.items(), lattices.items()):
+            choice = CubeChoice(*model, *lattice)
+            of_cube = _quantiles(tests.error_of_xyz(self.base + by_model + by_lattice))
+            for rendering in renderings:
+                # Errors of independent choices add in squares; both include that of the reference.
+                squares = of_cube**2 + _quantiles(rendering.error) ** 2 - base**2
+                bound = MARGIN * float(np.sqrt(squares.max()))
+                candidates = list(self._with_pixels(choice, points[lattice], rendering, bound))
+                self.considered += len(candidates)
+                if bound <= self.ceiling:
+                    yield from candidates
+
+    def _with_pixels(
+        self, choice: CubeChoice, points: tuple[int, int], rendering: Rendering, bound: float
+    ) -> Iterator[Estimate]:
+        """Candidates of a cube, of ``points`` with all cells and with those of the textures, and a rendering."""
+        colours, count = self.context.colours, round(rendering.surface)
+        for sparse, pixel in product((False, True)[: 1 + self.context.scene.sparse], PIXELS):
+            if choice.model == Sigmoid.name and pixel.form == texture.Moments.name:
+                continue
+            if rendering.sampling is None and pixel.form != texture.Spectrum.name:
+                continue  # a texture has the numbers of the representation
+            row = self.row_bytes + POINT_NUMBER * sparse + LEAST_BYTES * choice.coefficients
+            texels = colours.pixels * pixel.size(choice.coefficients, count) if pixel.depth else colours.size
+            memory = self.other_bytes + points[sparse] * row + texels
+            time = pixel.operations(choice, count) + rendering.operations
+            yield Estimate(
+                Candidate(rendering.name, pixel, choice, sparse), Cost(memory, time, rendering.samples), bound
+            )
+
+    def _models(self) -> dict[tuple[str, int, str], Array]:
+        """Changes of XYZ (K, n, 3) by models of spectra, on a fine lattice: of each warp up to one without error."""
+        grid, plain = self.context.grid, "none"
+        dim = min(FINE, grid.reference)
+        finest = self._xyz(dim, Moments.name, grid.models[plain][-1], plain)
+        names = [(Sigmoid.name, 3, plain)]
+        names += [(Moments.name, count, warp) for warp, counts in grid.models.items() for count in counts]
+        return self._changes("models of spectra", [(name, name[2], (dim, *name)) for name in names], finest)
+
+    def _lattices(self) -> dict[tuple[int, str], Array]:
+        """Changes of XYZ (K, n, 3) by lattices, with a usual model: of each axis up to one without error."""
+        grid, model = self.context.grid, (Moments.name, PROBE, "none")
+        names = product(grid.dims, grid.axes)
+        steps = [((dim, axis), axis, (dim, *model, axis)) for dim, axis in names]
+        return self._changes("lattices", steps, self._xyz(grid.reference, *model))
+
+    def _changes(self, stage: str, steps: Sequence[tuple[Any, str, Any]], finest: Array) -> dict[Any, Array]:
+        """Changes of XYZ from the ``finest``, by name, of each series up to the first below the floor."""
+        found, done = dict[Any, Array](), set[str]()
+        for number, (name, series, cube) in enumerate(steps):
+            self.context.progress(Progress(stage, number, len(steps)))
+            if series not in done:
+                found[name] = self._xyz(*cube) - finest
+                if self.evaluator.tests.error_of_xyz(self.base + found[name]).quantile <= self.floor:
+                    done.add(series)
+        return found
+
+    def _xyz(self, dim: int, model: str, count: int, warp: str, axis: str = "srgb") -> Array:
+        tests = self.evaluator.tests
+        cube = self.context.cube(tests.rgb, **CubeChoice(model, count, warp, dim, axis).options)
+        return tests.xyz(cube.reflectance(tests.rgb))
+
+    def _points(self, dim: int, axis: str) -> tuple[int, int]:
+        """Points of a lattice, and those around one colour of every bin of the textures."""
+        lattice = Lattice(observer.axis_nodes(axis, dim))
+        needed = lattice.corner_points(lattice.mask(cells_touched(lattice, self.context.colours.colour_bins)))
+        return lattice.size, int(needed.sum())
+
+
+def _quantiles(error: ErrorSummary) -> Array:
+    return np.array([part.quantile for part in error.parts])
