@@ -13,9 +13,11 @@ from typing import Any
 
 from benchmarks import ATLASES, DOCS, record
 from benchmarks.pictures import pictures
+from uplift.io.scene_colours import MAX_LIST, MAX_PIXELS
 from uplift.lab.panels import Panel, Point, write_panels
 from uplift.samples import copy_samples
 from uplift.scene.plan.context import SearchGrid
+from uplift.scene.plan.space import CEILING, FLOOR, MARGIN
 from uplift.viz.figure import ACCENT, INK
 from uplift.viz.format import format_size
 
@@ -56,6 +58,7 @@ CASES = (
     Case(("coffee.png",), "", FIVE, 0.3, quick=False),
 )
 """The front of the first case is shown."""
+LIMITS = {"margin": MARGIN, "floor": FLOOR, "ceiling": CEILING, "colours": MAX_LIST, "pixels": MAX_PIXELS}
 
 
 def main() -> None:
@@ -74,6 +77,7 @@ def main() -> None:
         confirming=grid.confirming,
         reference_dim=grid.reference,
         reference_coefficients=grid.models["none"][-1],
+        **LIMITS,
         scenes=scenes,
     )
 
