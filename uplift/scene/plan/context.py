@@ -38,7 +38,7 @@ class SearchGrid:
     """
 
     models: Mapping[str, tuple[int, ...]] = field(default_factory=lambda: MODELS)
-    dims: tuple[int, ...] = (8, 12, 16, 24, 32, 48, 64)
+    dims: tuple[int, ...] = (8, 12, 16, 24, 32, 48, 64, 96)
     axes: tuple[str, ...] = AXES
     samples: tuple[int, ...] = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20)
     others: bool = True

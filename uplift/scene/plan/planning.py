@@ -101,7 +101,18 @@ class Plan:
         return self.confirmed.quantile <= self.scene.tolerance
 
     def cheapest(self, tolerance: float) -> Measured | None:
-        """The cheapest measured candidate within another tolerance and the limits of the scene."""
+        """Find what the scene would need with another tolerance.
+
+        Parameters
+        ----------
+        tolerance : float
+            ΔE00.
+
+        Returns
+        -------
+        Measured or None
+            The cheapest measured candidate within it and the limits of the scene.
+        """
         found = sufficient(self.measured, tolerance, self.scene.minimise, self.scene.limits)
         return found[0] if found else None
 
