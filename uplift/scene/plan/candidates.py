@@ -20,7 +20,7 @@ MINIMISE = ("balance", "memory", "time", "samples")
 """What the choice minimises: the product of the costs, or one of them."""
 DEPTHS: dict[str, np.dtype[Any]] = {"half": np.dtype(np.float16), "float": np.dtype(np.float32)}
 RGB, INDEX = "rgb", "index"
-"""Forms of pixels that are no textures of a cube: colours, and numbers of a list of spectra."""
+"""Forms of pixels without a pixel encoding: colours, and numbers of a list of spectra."""
 
 
 class Cost(NamedTuple):
