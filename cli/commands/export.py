@@ -135,42 +135,34 @@ def command(
 def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     """Write a cube, and return a description of the file."""
     from uplift.common.files import write_text
-    from uplift.io.export import (
-        write_coeff,
-        write_csv,
-        write_film,
-        write_fourier,
-        write_lut,
-        write_npz,
-        write_program,
-    )
+    from uplift.io import export
     from uplift.report.live_page import page
 
     data = cube.data
     if style in LUTS:
-        error = write_lut(cube, path=path, **settings)
+        error = export.write_lut(cube, path=path, **settings)
         shown = f"mean {error.mean:.2g}, largest {error.largest:.2g}"
         return f"colours under {settings['light']}, ΔE00 from the cube's: {shown}"
     if style == "fourier":
-        error = write_fourier(cube, path, **settings)
+        error = export.write_fourier(cube, path, **settings)
         shader = path.with_suffix(".glsl")
         return f"shader in {shader}, ΔE00 of colours in 8 bits: mean {error.mean:.2g}, largest {error.largest:.2g}"
     if style == "film":
-        film = write_film(cube, path, **settings)
+        film = export.write_film(cube, path, **settings)
         return f"{film.inside:.0%} of the chromaticities from the cube, mean error of exposure {film.stops:.2g} stops"
     if style in SIGMOIDS:
         with progress_bar("fitting sigmoids"):
-            largest = write_coeff(data, path, layout=style, **settings)
+            largest = export.write_coeff(data, path, layout=style, **settings)
         return f"table of sigmoids, largest RGB error {largest:.1e} between its points"
     if style == "npz":
-        return f"{write_npz(data, path, **settings)} arrays"
+        return f"{export.write_npz(data, path, **settings)} arrays"
     if style == "csv":
-        return f"{write_csv(data, path, **settings)} nodes"
+        return f"{export.write_csv(data, path, **settings)} nodes"
     if style == "html":
         write_text(page(data), path, **settings)
         return f"page, {path.stat().st_size / 1e6:.1f} MB"
     form = settings.pop("table", None)
-    written = write_program(data, path, style=style, form=form, **settings)
+    written = export.write_program(data, path, style=style, form=form, **settings)
     size = sum(each.stat().st_size for each in written) / 1e6
     tables = "".join(f", table in {each}" for each in written[1:])
     return f"{data.lattice.size} nodes, {len(data.atlas.names)} atlas entries, {size:.1f} MB{tables}"

@@ -30,7 +30,6 @@ from uplift.common.arrays import Array, StrPath, blocks
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write
 from uplift.cube import CubeData
-from uplift.lattice import CORNERS
 from uplift.lookup.interpolate import around
 from uplift.models import Sigmoid
 from uplift.models.arithmetic import blocked_matmul_columns
@@ -223,14 +222,7 @@ def _per_nanometre(multipliers: Array) -> Array:
     """Convert polynomials (n, 3) of [start, end] scaled to [−1, 1] to polynomials of λ in nm."""
     middle, half = (START + END) / 2, (END - START) / 2
     square, linear, constant = (multipliers / half ** np.array([2, 1, 0])).T
-    return np.stack(
-        [
-            square,
-            linear - 2 * middle * square,
-            constant - middle * linear + middle * middle * square,
-        ],
-        axis=-1,
-    )
+    return np.column_stack([square, linear - 2 * middle * square, constant + middle * (middle * square - linear)])
 
 
 def _largest_error(data: CubeData, sensor: Sensor, scale: Array, table: NDArray[np.float32]) -> float:
@@ -241,15 +233,14 @@ def _largest_error(data: CubeData, sensor: Sensor, scale: Array, table: NDArray[
 
 def _interpolated(scale: Array, table: NDArray[np.float32], rgb: Array) -> Array:
     """Return coefficients (n, 3) as rgb2spec interpolates them: linearly between the eight points around a colour."""
-    last, rows = len(scale) - 2, np.arange(len(rgb))
-    largest = rgb.argmax(axis=1)
+    from scipy.ndimage import map_coordinates
+
+    largest, rows = rgb.argmax(axis=1), np.arange(len(rgb))
     level = rgb[rows, largest]
-    shares = np.stack([rgb[rows, (largest + step) % 3] / level for step in (2, 1)], axis=1) * (last + 1)
-    at = np.clip(np.searchsorted(scale, level, side="right") - 1, 0, last)
-    low = np.minimum(shares.astype(int), last)
-    part = np.column_stack([(level - scale[at]) / (scale[at + 1] - scale[at]), shares - low])
+    shares = [rgb[rows, (largest + step) % 3] / level * (len(scale) - 1) for step in (2, 1)]
+    places = np.array([np.interp(level, scale, np.arange(len(scale))), *shares])
     found = np.zeros((len(rgb), 3))
-    for corner in CORNERS:
-        weight = np.where(corner, part, 1 - part).prod(axis=1)
-        found += weight[:, None] * table[largest, at + corner[0], low[:, 0] + corner[1], low[:, 1] + corner[2]]
+    for axis, k in np.ndindex(3, 3):
+        own = largest == axis
+        found[own, k] = map_coordinates(table[axis, ..., k], places[:, own], float, order=1)
     return found
