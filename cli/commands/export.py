@@ -90,8 +90,9 @@ def command(
     cube, clf
            table of the colours under --light, for grading and compositing
     fourier
-           table from sRGB to three numbers for 8-bit textures, and the shader of their spectra
-    film   table of a spectrum per chromaticity, for film simulation; with --light, as light that reaches the film
+           table from sRGB to three numbers for textures of 8 bits, and shader
+    film   table of a spectrum per chromaticity, for film simulation;
+           with --light, as light that reaches the film
     html   page that relights images in a browser
     npz    all arrays of the cube, for numpy
     csv    one line per node

@@ -123,6 +123,8 @@ def test_bad_input_writes_nothing(three, small_cube, tmp_path):
     for cube, res in ((small_cube, 2), (wide, 2), (three, 1)):
         with raises(OptionError, "option"):
             write_fourier(cube, tmp_path / "a.cube", res=res)
+    with raises(OptionError, "option"):
+        write_fourier(three, tmp_path / "a.png", res=33)
     (tmp_path / "a.glsl").touch()
     with raises(OutputError, "file-exists"):
         write_fourier(three, tmp_path / "a.cube", res=2)

@@ -33,7 +33,7 @@ from uplift.models.moments import WARPS
 COUNT, LEVEL = 3, 16
 
 
-def write_fourier(cube: Cube, path: StrPath, *, res: int = SIZE, force: bool = False) -> LutError:
+def write_fourier(cube: Cube, path: StrPath, *, res: int | None = None, force: bool = False) -> LutError:
     """Write the table from sRGB to Fourier sRGB, and the shader of its spectra as a ``.glsl`` file.
 
     Parameters
@@ -42,8 +42,8 @@ def write_fourier(cube: Cube, path: StrPath, *, res: int = SIZE, force: bool = F
         Cube of three moments, of sRGB or another space with its curve.
     path : path-like
         ``.png``, or else a ``.cube`` file.
-    res : int, default 33
-        Nodes of a ``.cube`` table along each axis, 2 to 129.
+    res : int, optional
+        Nodes of a ``.cube`` table along each axis, 2 to 129, by default 33. An image has all codes.
     force : bool, default False
         Replace existing files.
 
@@ -63,16 +63,17 @@ def write_fourier(cube: Cube, path: StrPath, *, res: int = SIZE, force: bool = F
     if np.abs(data.sensor.decoding - decode(np.arange(256) / 255)).max() > 1e-6:
         raise OptionError(f"Fourier sRGB needs the curve of sRGB, got {data.sensor.space}")
     is_image = path.suffix.lower() == ".png"
-    if not MIN_SIZE <= res <= MAX_SIZE:
-        raise OptionError(f"res must be from {MIN_SIZE} to {MAX_SIZE}, got {res}", hint=f"{SIZE} is usual")
+    if res is not None and (is_image or not MIN_SIZE <= res <= MAX_SIZE):
+        raise OptionError(f"res must be from {MIN_SIZE} to {MAX_SIZE}, and of a .cube table, got {res}")
+    size = LEVEL**2 if is_image else res or SIZE
     matrix = _to_moments(data)
-    table = _table(cube, np.linspace(0, 1, LEVEL**2 if is_image else res), matrix)
+    table = _table(cube, np.linspace(0, 1, size), matrix)
     with atomic_write(path, force=force) as temporary:
         if is_image:
             _write_image(table, temporary)
         else:
             title = f"uplift: {data.sensor.space} to Fourier sRGB"
-            temporary.write_text(cube_text(table.transpose(2, 1, 0, 3), title, res), encoding="utf-8", newline="\n")
+            temporary.write_text(cube_text(table.transpose(2, 1, 0, 3), title, size), encoding="utf-8", newline="\n")
         write_text(_shader(data.model, matrix, path.stem), path.with_suffix(".glsl"), force=force)
     return _error(cube, table, matrix)
 
