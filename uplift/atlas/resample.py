@@ -1,6 +1,7 @@
 """Resampling of entries to one wavelength grid."""
 
 import warnings
+from collections import defaultdict
 from dataclasses import dataclass
 
 import numpy as np
@@ -113,39 +114,44 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
     Resampled
     """
     grid = np.asarray(wavelengths, dtype=np.float64)
-    raw, clips = np.empty((len(atlas), len(grid))), []
-    for row, entry in zip(raw, atlas, strict=True):
-        row[:] = pchip(entry.wavelengths, entry.values, grid)
-        # Distance from [0, 1]: x − 1 above, −x below
-        excess = np.maximum(row - 1.0, -row)
-        if excess.max(initial=0) > NOISE:
-            worst = int(excess.argmax())
-            clips.append(Clip(entry.name, float(row[worst]), float(grid[worst])))
+    raw, alike = np.empty((len(atlas), len(grid))), defaultdict[bytes, list[int]](list)
+    for row, entry in enumerate(atlas):
+        alike[entry.wavelengths.tobytes()].append(row)
+    for rows in alike.values():
+        values = np.stack([atlas[row].values for row in rows])
+        raw[rows] = pchip(atlas[rows[0]].wavelengths, values, grid)
+    # Distance from [0, 1]: x − 1 above, −x below
+    excess = np.maximum(raw - 1.0, -raw)
+    clips = []
+    for row in np.flatnonzero(excess.max(axis=1, initial=0) > NOISE).tolist():
+        worst = int(excess[row].argmax())
+        clips.append(Clip(atlas[row].name, float(raw[row, worst]), float(grid[worst])))
     return Resampled(np.clip(raw, 0.0, 1.0), tuple(clips))
 
 
 def pchip(x: Array, y: Array, at: Array) -> Array:
-    """Interpolate y (n,), n ≥ 2, from increasing x (n,) to (N,) by a monotone cubic that is constant outside.
+    """Interpolate y (…, n), n ≥ 2, from increasing x (n,) to (…, N) by a monotone cubic that is constant outside.
 
     That of scipy's ``PchipInterpolator``, whose import takes as long as a small fit. Fritsch & Butland 1984.
     """
     step, place = np.diff(x), np.clip(at, x[0], x[-1])
     rise = np.diff(y) / step
-    slope = np.full(len(x), rise[0])
+    slope = np.repeat(rise[..., :1], len(x), axis=-1)
     if len(x) > 2:
         # Weighted harmonic means of the slopes of neighbouring intervals, 0 at extremes
-        left, right = rise[:-1], rise[1:]
+        left, right = rise[..., :-1], rise[..., 1:]
         first, second = step[:-1] + 2 * step[1:], 2 * step[:-1] + step[1:]
         with np.errstate(all="ignore"):
             mean = 1 / ((first / left + second / right) / (first + second))
-        slope[1:-1] = np.where((np.sign(left) == np.sign(right)) & (left != 0), mean, 0)
+        slope[..., 1:-1] = np.where((np.sign(left) == np.sign(right)) & (left != 0), mean, 0)
         # At the ends that of a parabola through three points, limited to 0 … 3 times that of the interval
-        near, width, far, other = rise[[0, -1]], step[[0, -1]], rise[[1, -2]], step[[1, -2]]
-        parabola = ((2 * width + other) * near - width * far) / (width + other)
-        slope[[0, -1]] = np.clip(parabola, np.minimum(0, 3 * near), np.maximum(0, 3 * near))
+        near, other = rise[..., [0, -1]], rise[..., [1, -2]]
+        width, far = step[[0, -1]], step[[1, -2]]
+        parabola = ((2 * width + far) * near - width * other) / (width + far)
+        slope[..., [0, -1]] = np.clip(parabola, np.minimum(0, 3 * near), np.maximum(0, 3 * near))
     row = np.clip(np.searchsorted(x, place, side="right") - 1, 0, len(x) - 2)
     # The cubic of Hermite of each interval
-    bend = (slope[:-1] + slope[1:] - 2 * rise) / step
-    cubic, square = bend / step, (rise - slope[:-1]) / step - bend
+    bend = (slope[..., :-1] + slope[..., 1:] - 2 * rise) / step
+    cubic, square = bend / step, (rise - slope[..., :-1]) / step - bend
     t = place - x[row]
-    return np.asarray(y[row] + slope[row] * t + square[row] * (t * t) + cubic[row] * (t * t * t))
+    return np.asarray(y[..., row] + slope[..., row] * t + square[..., row] * (t * t) + cubic[..., row] * (t * t * t))

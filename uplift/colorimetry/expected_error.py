@@ -20,7 +20,7 @@ MIN_VARIANCE = 0.02
 """Lower limit of the variance assigned to a left-out entry."""
 FAMILIAR = 0.95
 """Share of the entries that are nearer to another one than colours that are like the atlas may be."""
-BLOCK_NUMBERS = 1 << 20
+BLOCK_NUMBERS = 1 << 17
 """Numbers of the matrix of weights held at a time."""
 TINY = np.finfo(float).tiny
 MAX_ROWS = 1000
@@ -85,31 +85,28 @@ def expected_products(
 
     Shapes: ``locations`` (E, 3), ``left_out``, ``kept`` (E,), ``left_out_products``, ``kept_products`` (E, K).
     """
+    parts = list(blocks(len(locations), max(BLOCK_NUMBERS // len(locations), 1)))
 
-    # Weights k = exp(−ΔE / length) of the other entries, and the variance v = 1 − k² that a left-out entry has.
-    def weighted(columns: Array) -> tuple[Array, Array]:
-        sums, nearest = np.empty((len(locations), columns.shape[1])), np.empty(len(locations))
-        for part in blocks(len(locations), max(BLOCK_NUMBERS // len(locations), 1)):
-            weights = np.exp(_distances(locations[part], locations) / -LENGTH)
-            weights[np.arange(len(weights)), np.arange(part.start, part.start + len(weights))] = 0
-            sums[part], nearest[part] = weights @ columns, weights.max(axis=1)
-        return sums, nearest
+    def others(part: slice) -> Array:
+        apart = _distances(locations[part], locations)
+        np.fill_diagonal(apart[:, part], np.inf)
+        return apart
 
-    total, nearest = (each.ravel() for each in weighted(np.ones((len(locations), 1))))
-    variance = np.maximum(1 - nearest**2, MIN_VARIANCE)
-    floor = (kept**2).mean()
+    # The variance v = 1 − k² that a left-out entry has, by the weight k = exp(−ΔE / length) of the nearest other one
+    nearest = np.concatenate([others(part).min(axis=1) for part in parts])
+    variance = np.maximum(1 - np.exp(nearest / -LENGTH) ** 2, MIN_VARIANCE)
+    floor, products_floor = (kept**2).mean(), kept_products.mean(axis=0)
     # Part of each square that the other entries explain, per unit of variance: (e² − f) / v e².
     share = np.maximum(1 - floor / np.maximum(left_out**2, TINY), 0) / variance
-    products, product_floor = left_out_products * share[:, None], kept_products.mean(axis=0)
-
-    def expected(squares: Array, remaining: Array) -> Array:
-        sums = weighted(squares)[0] + PRIOR_COUNT * squares.mean(axis=0)
-        return variance[:, None] * sums / (total + PRIOR_COUNT)[:, None] + remaining
-
-    roots = np.sqrt(expected((left_out**2 * share)[:, None], floor))[:, 0]
+    columns = np.column_stack([left_out_products * share[:, None], left_out**2 * share, np.ones(len(share))])
+    # What the other entries let expect: v (Σ k e² + n₀ mean e²) / (Σ k + n₀) + f
+    sums = np.concatenate([np.exp(others(part) / -LENGTH) @ columns for part in parts])
+    expected = sums[:, :-1] + PRIOR_COUNT * columns[:, :-1].mean(axis=0)
+    expected *= (variance / (sums[:, -1] + PRIOR_COUNT))[:, None]
+    roots = np.sqrt(expected[:, -1] + floor)
     radii = Radii(*learn_radii(left_out / np.maximum(roots, TINY), COVERAGE))
-    columns = np.concatenate([products, np.ones((len(products), 1))], axis=1)
-    return ExpectedError(locations, columns, product_floor, expected(products, product_floor), radii)
+    columns = np.delete(columns, -2, axis=1)
+    return ExpectedError(locations, columns, products_floor, expected[:, :-1] + products_floor, radii)
 
 
 def mahalanobis(covariance: Array, difference: Array) -> Array:

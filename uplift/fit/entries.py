@@ -9,14 +9,13 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import equinox
-import jax
 import numpy as np
 import optimistix
 
 from uplift.colorimetry.delta_e import delta_e_spectra, lab_jacobian, lab_of
-from uplift.common.arrays import Array, Mask, blocks
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.fit.problem import Problem
-from uplift.fit.solver import NO_TAGS, Options, solve_singly
+from uplift.fit.solver import Options, iterate_rows, solve_in_numpy
 from uplift.models.model import Model
 
 LIGHTS_WEIGHT, SMOOTHNESS = 0.03, 1e-3
@@ -33,8 +32,6 @@ FLATNESS = 1e-5
 MAX_STEPS = 256
 PRECISION = 1e-8
 """Relative reduction of the objective and relative change of the multipliers at which a fit ends."""
-BLOCK = 256
-"""Entries that are fitted at a time."""
 FIRST_DAMPING = 1e-3
 """Initial μ relative to the largest diagonal element of JᵀJ."""
 
@@ -79,14 +76,9 @@ class Objective:
         change = self.model.derivative(x)[..., None] * self.basis  # g = S(B p), so ∂g/∂p = S′(B p) B
         xyz = (self.lights @ self.model.to_reflectance(x)[..., None, :, None])[..., 0]
         colours = lab_jacobian(xyz, self.whites) @ (self.lights @ change[..., None, :, :])
-        return np.concatenate(
-            [
-                self.values[:, None] * change,
-                self.weight * colours.reshape(*shape, -1, count),
-                np.broadcast_to(np.diag(self.multipliers), (*shape, count, count)),
-            ],
-            axis=-2,
-        )
+        own = np.broadcast_to(np.diag(self.multipliers), (*shape, count, count))
+        change *= self.values[:, None]
+        return np.concatenate([change, self.weight * colours.reshape(*shape, -1, count), own], axis=-2)
 
 
 def objective(
@@ -187,22 +179,14 @@ class Marquardt(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
 
 def minimise(goal: Objective, measured: Array) -> Array:
     """Multipliers (E, C) that minimise the objective of measured reflectances (E, N), starting from grey."""
-    solver, multipliers = Marquardt(), np.zeros((len(measured), goal.model.count))
-    colours, options = goal.colours(measured), {"jacobian": goal.jacobian}
+    colours, grey = goal.colours(measured), np.zeros((len(measured), goal.model.count))
 
-    def fn(y: Array, rows: Array) -> tuple[Array, None]:
+    def fn(y: Array, rows: Indices) -> tuple[Array, None]:
         return goal.residuals(y, measured[rows], colours[rows]), None
 
-    for block in blocks(len(measured), BLOCK):
-        rows = np.arange(len(measured))[block]
-        state = solver.init(fn, multipliers[rows], rows, options, None, None, NO_TAGS)
-        for _ in range(MAX_STEPS):
-            multipliers[rows], state, _ = solver.step(fn, multipliers[rows], rows, options, state, NO_TAGS)
-            kept = ~state.done
-            rows, state = rows[kept], jax.tree.map(lambda each, kept=kept: each[kept], state)
-            if solver.terminate(fn, multipliers[rows], rows, options, state, NO_TAGS)[0]:
-                break
-    return multipliers
+    return iterate_rows(
+        Marquardt(), fn, grey, lambda _: {"jacobian": goal.jacobian}, lambda state: state.done, MAX_STEPS
+    )
 
 
 class FittedEntries(NamedTuple):
@@ -230,7 +214,7 @@ def fit_entries(problem: Problem, measured: Array, rgb: Array, **weights: float)
     goal = objective(problem, **weights)
     near = minimise(goal, measured)
     # The minimum has nearly the colour; of all spectra that have it exactly, the nearest to the minimum is taken.
-    multipliers = solve_singly(problem.forward, near, rgb, problem.tolerance, MAX_STEPS)
+    multipliers = solve_in_numpy(problem.forward, near, rgb, problem.tolerance, MAX_STEPS)
     spectra = np.asarray(problem.model.to_reflectance(multipliers @ problem.forward.basis.T))
     return FittedEntries(
         rgb, measured, multipliers, delta_e_spectra(problem.error_light or problem.sensor.light, spectra, measured)

@@ -101,8 +101,11 @@ def krige(lab: Array, deviations: Array, kernel: Kernel, variances: Array | None
 
     ``variances`` (E,) are those of the noise of the entries, relative to that of the kernel, 1 by default.
     """
-    points = average_close(lab * METRIC, deviations)
-    variances = np.ones(len(lab)) if variances is None else variances
+    return _krige(average_close(lab * METRIC, deviations), deviations, kernel, variances)
+
+
+def _krige(points: Points, deviations: Array, kernel: Kernel, variances: Array | None = None) -> tuple[Kriging, Array]:
+    variances = np.ones(len(deviations)) if variances is None else variances
     noise = kernel.noise * np.bincount(points.point, variances) / points.counts
     distance, spread = distances(points.locations, points.locations), np.sqrt(noise)
     white = WHITE * noise / points.counts
@@ -122,8 +125,9 @@ def learn_kriging(lab: Array, deviations: Array, visible: Array) -> tuple[Krigin
     The entries have L*a*b* (E, 3) and deviations (E, C), whose `visible_change` is (E, L, 3, C). Few entries lean
     towards `DEFAULT`.
     """
+    points = average_close(lab * METRIC, deviations)
     if len(lab) < MIN_ENTRIES:
-        return krige(lab, deviations, DEFAULT)
+        return _krige(points, deviations, DEFAULT)
 
     def changes(errors: Array) -> Array:
         return np.linalg.norm(np.einsum("elkc,ec->elk", visible, errors), axis=-1).mean(axis=1) + INVISIBLE
@@ -131,16 +135,16 @@ def learn_kriging(lab: Array, deviations: Array, visible: Array) -> tuple[Krigin
     def loss(kernel: Kernel) -> float:
         # Visible leave-one-out error, and the surprise at a kernel that is not the default
         doublings, quadruplings = np.log2(np.divide(kernel, DEFAULT)) / (1, 2)
-        error = changes(krige(lab, deviations, kernel)[1]).mean()
+        error = changes(_krige(points, deviations, kernel)[1]).mean()
         return float(np.log(error) + DOUBT / len(lab) * (doublings**2 + quadruplings**2))
 
     # Entries vary as they deviate: weights 1 / v of squares |e|² with v = |e| minimise the sum of |e|, a median.
     kernel = min(KERNELS, key=loss)
-    kriging, errors = krige(lab, deviations, kernel)
+    kriging, errors = _krige(points, deviations, kernel)
     for _ in range(MEDIAN_STEPS):
         missed = changes(errors)
         missed += DOUBTFUL * missed.mean()
-        kriging, errors = krige(lab, deviations, kernel, missed / np.exp(np.log(missed).mean()))
+        kriging, errors = _krige(points, deviations, kernel, missed / np.exp(np.log(missed).mean()))
     return kriging, errors
 
 

@@ -17,7 +17,7 @@ import numpy as np
 import optimistix
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices, Mask, blocks
 from uplift.fit.batch import map_batches
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import MAX_MULTIPLIER
@@ -30,6 +30,8 @@ SINGLE_STEPS, MORE_STEPS = 2, 8
 MIN_GAIN, PATIENCE = 1e-3, 8
 """A problem is abandoned after `PATIENCE` consecutive passes that each reduce its distance by less than `MIN_GAIN`.
 Otherwise unrealisable colours, frequent in wide gamuts, would remain until the last pass."""
+NUMPY_ROWS = 128
+"""Problems of a block that is stepped in numpy."""
 
 Options = dict[str, Any]
 """Options of a solver's ``init``: arrays with a row for each problem."""
@@ -239,19 +241,42 @@ def iterate(solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps
     return y, equinox.combine(arrays, static), count
 
 
-def solve_singly(forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int) -> Array:
-    """Find multipliers (n, C) of linear RGB (n, 3), one problem after another, each nearest to its own start.
+def iterate_rows(
+    solver: Any,
+    fn: Callable[[Array, Indices], tuple[Array, None]],
+    start: Array,
+    options: Callable[[slice], Options],
+    done: Callable[[Any], Mask],
+    max_steps: int,
+) -> Array:
+    """Step a batch solver in numpy from ``start`` (n, C), in blocks of rows; those that are done leave their block.
 
-    The steps are those of numpy: nothing needs to be compiled for a few problems.
+    Nothing is compiled, which pays for a few problems. ``fn`` maps ``y`` and the numbers of its rows to residuals.
     """
-    fn, solver, multipliers = _without_aux(forward), LeastChange(forward, tolerance), start.copy()
-    for row, goal in enumerate(target):
-        y = start[row : row + 1]
-        options = LeastChange.options(y, None)
-        state = solver.init(fn, y, goal, options, None, None, NO_TAGS)
+    found = start.copy()
+    for block in blocks(len(found), NUMPY_ROWS):
+        rows = np.arange(block.start, block.stop)
+        state = solver.init(fn, found[rows], rows, options(block), None, None, NO_TAGS)
         for _ in range(max_steps):
-            if solver.terminate(fn, y, goal, options, state, NO_TAGS)[0]:
+            found[rows], state, _ = solver.step(fn, found[rows], rows, options(block), state, NO_TAGS)
+            kept = ~done(state)
+            rows, state = rows[kept], jax.tree.map(lambda each, kept=kept: each[kept], state)
+            if not rows.size:
                 break
-            y, state, _ = solver.step(fn, y, goal, options, state, NO_TAGS)
-        multipliers[row] = y[0]
-    return multipliers
+    return found
+
+
+def solve_in_numpy(forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int) -> Array:
+    """Find multipliers (n, C) of linear RGB (n, 3), each nearest to its own start."""
+
+    def fn(y: Array, rows: Indices) -> tuple[Array, None]:
+        return forward.residual(y, target[rows]), None
+
+    return iterate_rows(
+        LeastChange(forward, tolerance),
+        fn,
+        start,
+        lambda block: LeastChange.options(start[block], None),
+        lambda state: state.distance <= tolerance,
+        max_steps,
+    )

@@ -100,15 +100,15 @@ def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, Measu
     if (len(atlas) or atlas.skipped) and not inside.any():
         problem = f"no entry of the atlas is within {sensor.space}: {len(atlas)} outside, {len(atlas.skipped)} skipped"
         raise AtlasError(problem, code="atlas-out-of-gamut", hint=hint)
+    names = np.array(atlas.names, dtype=object)
     for row in np.flatnonzero(~inside):
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
         warn(
             f"outside {sensor.space}, at linear RGB ({values}): kept for XYZ and wider spaces",
             code="entry-out-of-gamut",
-            entry=atlas.names[row],
+            entry=names[row],
             hint=hint,
         )
-    names = np.array(atlas.names, dtype=object)
     return (
         MeasuredEntries(tuple(names[inside]), np.clip(rgb[inside], 0, 1), measured[inside]),
         MeasuredEntries(tuple(names[~inside]), rgb[~inside], measured[~inside]),
@@ -163,10 +163,11 @@ def _listed(names: Sequence[str]) -> str:
 
 def describe_atlas(atlas: Atlas, names: Sequence[str]) -> dict[str, Any]:
     """Files by name, digest and the scale of their values if the caller gave it, and the entries that are not used."""
+    used = set(names)
     atlases = [{"name": each.name, "digest": each.digest, "measured": each.measured} for each in atlas.sources]
     return {
         "atlases": [{key: each[key] for key in each if (key, each[key]) != ("measured", "auto")} for each in atlases],
-        "left_out": [name for name in atlas.names if name not in names],
+        "left_out": [name for name in atlas.names if name not in used],
         "skipped": [entry.name for entry in atlas.skipped],
     }
 

@@ -19,7 +19,7 @@ from uplift.fit.entries import MAX_STEPS, join_entries
 from uplift.fit.looks import MET, LookGoal, design_reflectance, fit_designs
 from uplift.fit.prior import Prior
 from uplift.fit.problem import Problem
-from uplift.fit.solver import solve_singly
+from uplift.fit.solver import solve_in_numpy
 from uplift.models import evaluate
 from uplift.models.model import Model
 from uplift.pipeline.entries import Constraints, MeasuredEntries
@@ -55,7 +55,7 @@ class LookTargets:
             return self, entries, prior
         # The target becomes w y + (1 − w) y₀ in XYZ, with the colours y₀ of the spectrum p₀ that is expected at x.
         rgb = np.array([goal.rgb for goal in self.goals])
-        expected = solve_singly(problem.forward, prior(rgb), rgb, problem.tolerance, MAX_STEPS)
+        expected = solve_in_numpy(problem.forward, prior(rgb), rgb, problem.tolerance, MAX_STEPS)
         expected = evaluate(problem.model, expected, problem.sensor.wavelengths)
         parts = list(zip(self.looks, self.goals, expected, strict=True))
         goals = tuple(goal.softened(spectrum, look.weight) for look, goal, spectrum in parts)
