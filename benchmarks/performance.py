@@ -25,6 +25,7 @@ RUNS, FEW_RUNS = 5, 3
 """Runs, and those of large lattices, which take long and vary little."""
 MODELS = (("sigmoid", 3), *(("moments", count) for count in (3, 5, 9, 13, 17)))
 DIMS, MODEL_DIM = (16, 32, 64, 128), 64
+MIXTURE_DIM, MIXTURES = 32, (24, 396, 10_000)
 WAVELENGTHS = np.linspace(400, 700, 16)
 COLOURS = {"coefficients": 1_000_000, "spectra": 1_000_000, "moments": 200_000, "refined": 50_000}
 """Queries by what is looked up: fewer where lookups are slow."""
@@ -52,6 +53,7 @@ def main() -> None:
         lookups=time_lookups(cube),
         bulk=time_bulk(cube),
     )
+    record("performance", "atlases", dim=MIXTURE_DIM, rows=[time_atlas(count) for count in MIXTURES])
     if compiler := shutil.which("cc"):
         version = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=True).stdout
         colours = np.random.default_rng(1).random((PROGRAM_COLOURS, 3)).astype(np.float32)
@@ -97,6 +99,24 @@ def time_build(model: str, count: int, dim: int, runs: int) -> Row:
         "whole_us": cpu.scaled(1e6 / dim**3),
         "worst": worst,
     }
+
+
+def time_atlas(count: int) -> Row:
+    """Time a build from mixtures of shipped spectra: arithmetic or geometric means of two or three."""
+    import uplift
+    from benchmarks.materials import SENSOR, materials
+    from uplift.atlas import Atlas, Entry, shipped_atlases
+
+    known = np.concatenate([materials(each.path.stem).measured for each in shipped_atlases()])
+    random, entries = np.random.default_rng(1), []
+    for number in range(count):
+        rows = random.integers(0, len(known), random.integers(2, 4))
+        logarithmic, weights = random.random() < 0.5, random.dirichlet(np.full(len(rows), 0.6))
+        mixed = np.exp(weights @ np.log(known[rows] + 1e-3)) if logarithmic else weights @ known[rows]
+        entries.append(Entry(str(number), SENSOR.wavelengths, np.clip(mixed, 0, 1)))
+    with warnings.catch_warnings(action="ignore", category=uplift.UpliftWarning):
+        _, cpu = time_calls(partial(uplift.build, Atlas(tuple(entries)), dim=MIXTURE_DIM), 1)
+    return {"entries": count, "cpu_s": cpu.median}
 
 
 def time_processes() -> list[Row]:

@@ -91,6 +91,9 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     "--prior", default="learnt", help="Spectra of colours without measurements: learnt (from real materials) or smooth."
 )
 @click.option(
+    "--neutral", default="expected", help="Spectra of greys: expected (of real materials) or flat (docs/prior.md)."
+)
+@click.option(
     "--library",
     multiple=True,
     metavar="FILE",

@@ -9,7 +9,7 @@ import uplift
 from tests.conftest import ATLASES
 from tests.helpers import raises, warns
 from uplift.atlas import Atlas, Entry, read_atlas
-from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.observer import light
 from uplift.common.errors import CubeFileError, OptionError, UnknownNameError
 from uplift.lookup import load
@@ -57,12 +57,41 @@ def test_a_library_without_a_file_cannot_be_repeated(tmp_path):
         rebuild(load(path), path)
 
 
+@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
+def test_neutral_flat_flattens_greys_but_neither_colours_nor_entries(tmp_path):
+    path = tmp_path / "flat.uplift"
+    plain, flat = (uplift.build(TCS, dim=16, neutral=name) for name in ("expected", "flat"))
+    flat.save(path)
+    np.testing.assert_array_equal(rebuild(load(path), path).reflectance([0.99] * 3), flat.reflectance([0.99] * 3))
+
+    def deviation(cube, levels):
+        return np.abs(cube.reflectance(np.repeat(levels, 3, axis=1)) - levels).max()
+
+    levels = np.array([[0.01], [0.05], [0.45], [0.7], [0.99]])
+    assert deviation(flat, levels) < 0.01 < 0.1 < deviation(plain, levels)
+    lab = rgb_to_lab(plain.data.sensor, colours := np.random.default_rng(1).random((200, 3)))
+    far = colours[np.hypot(lab[:, 1], lab[:, 2]) > 40]
+    np.testing.assert_allclose(flat.reflectance(far), plain.reflectance(far), atol=1e-4)
+    np.testing.assert_array_equal(*(cube.reflectance(cube.data.atlas.rgb) for cube in (flat, plain)))
+
+
+def test_neutral_flat_in_a_wide_gamut_and_of_a_model_without_a_choice():
+    grey = [0.6] * 3
+    assert np.ptp(uplift.build(dim=9, space="ACEScg", neutral="flat").reflectance(grey)) < 0.03
+    spectra = (uplift.build(dim=5, model="sigmoid", neutral=name).reflectance(grey) for name in ("flat", "expected"))
+    np.testing.assert_array_equal(*spectra)
+
+
 def test_options_that_contradict_or_do_not_exist_are_errors():
     for options in ({"prior": "smooth"}, {"model": "sigmoid"}, {"coefficients": 3}):
         with raises(OptionError, "option"):
             uplift.build(dim=2, library=TCS, **options)
     with raises(UnknownNameError, "unknown-name"):
         uplift.build(dim=2, prior="flat")
+    with raises(UnknownNameError, "unknown-name"):
+        uplift.build(dim=2, neutral="grey")
+    with raises(OptionError, "option"):
+        uplift.build(dim=2, neutral="flat", growth="neighbours")
     with raises(UnknownNameError, "unknown-name"):
         uplift.build(dim=2, leave_out=["absent"])
 

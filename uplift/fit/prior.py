@@ -12,11 +12,13 @@ from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.expected_error import LENGTH, ExpectedError, expected_error
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
-from uplift.fit.base import NO_FREEDOM, Base, learn_base
+from uplift.fit.base import NO_FREEDOM, Base, learn_base, moment_matrix
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import DEFAULT, MIN_ENTRIES, Kernel, Kriging, kernel_sums, krige, learn_kriging, visible_change
 from uplift.fit.problem import Problem
-from uplift.models import evaluate
+from uplift.lattice import Lattice
+from uplift.models import Moments, evaluate, reflectance
+from uplift.models.duality import MAX_MULTIPLIER
 from uplift.models.model import Model
 
 MAX_PASSES = 32
@@ -31,13 +33,19 @@ STEEP = 100
 """Multipliers that a deviation must not exceed: beyond them a spectrum is nearly a box, which small changes of its
 coefficients reshape."""
 
+FLAT_CHROMA = (4.0, 12.0)
+"""CIE L*a*b* chroma up to which, and to the cells of greys, `Prior.with_flat_greys` applies, and where it has ended."""
+FLAT_LEVELS = (5e-5, 1 - 5e-5)
+"""Limits of flat reflectances, as 0 and 1 have no multipliers."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Prior:
     """Base spectra and, with an atlas, the interpolated deviation of its entries from them.
 
     ``errors`` are the expected squares of ΔE00, and ``left_out`` (E, N) the reflectances expected at the colours of the
-    entries without them, in their order; both None for an atlas of fewer than 8 entries.
+    entries without them, in their order; both None for an atlas of fewer than 8 entries. ``shares`` (3, C) are
+    the coefficients of spectra of the primaries that sum to 1, for `with_flat_greys`.
     """
 
     model: Model
@@ -46,6 +54,7 @@ class Prior:
     kriging: Kriging | None = None
     errors: ExpectedError | None = None
     left_out: Array | None = None
+    shares: Array | None = None
 
     def __call__(self, rgb: Array) -> Array:
         """Multipliers (n, C) expected at linear RGB (n, 3)."""
@@ -55,6 +64,31 @@ class Prior:
         # c = s(x) + k d(x), as multipliers
         deviation = self.base.brightness(rgb) * self.kriging(rgb_to_lab(self.sensor, rgb))
         return _bounded(self.model, coefficients, deviation)
+
+    def at_nodes(self, lattice: Lattice, rgb: Array) -> Array:
+        """Multipliers (n, C) expected at nodes that are fitted to linear RGB (n, 3)."""
+        multipliers = self(rgb)
+        if self.shares is None:
+            return multipliers
+        chroma = np.hypot(*rgb_to_lab(self.sensor, rgb)[:, 1:].T)
+        weight = np.maximum(np.interp(chroma, FLAT_CHROMA, (1, 0)), np.ptp(lattice.to_steps(rgb), axis=1) < 1.5)
+        near, grey = weight > 0, np.clip(self.sensor.grey(rgb), *FLAT_LEVELS)
+        # y + Σ (x_i − y) b_i with Σ b_i = 1, of the grey y of x: flat for greys, linear in x and so flat between nodes
+        flat = grey[near, :1] * self.model.constant()
+        own = _bounded(self.model, flat, (rgb - grey)[near] @ self.shares, MAX_MULTIPLIER)
+        multipliers[near] = blended(self.model, own, multipliers[near], weight[near])
+        return multipliers
+
+    def with_flat_greys(self) -> "Prior":
+        """Expect flat spectra at and near greys; only for models that have a choice.
+
+        Mallett & Yuksel 2019, "Spectral primary decomposition for rendering with sRGB reflectance".
+        """
+        if self.model.count == NO_FREEDOM or not isinstance(self.model, Moments):
+            return self
+        primaries = reflectance(self.model, self.base.coefficients(np.eye(3)), self.sensor.wavelengths)
+        shares = primaries / primaries.sum(axis=0)
+        return replace(self, shares=shares @ moment_matrix(self.model, self.sensor.wavelengths))
 
     def describe(self) -> dict[str, float]:
         """Return the learnt parameters of the kriging, for the provenance of cubes; empty without an atlas."""
@@ -124,12 +158,22 @@ def _deviations(model: Model, base: Base, entries: FittedEntries) -> tuple[Array
     return (model.to_storage(entries.multipliers) - expected) / base.brightness(entries.rgb), expected
 
 
-def _bounded(model: Model, expected: Array, deviation: Array) -> Array:
+def blended(model: Model, own: Array, expected: Array, weight: Array) -> Array:
+    """Multipliers (n, C) of c = w c_own + (1 − w) c_expected, with weights (n,): coefficients mix as spectra do."""
+    multipliers = np.where(weight[:, None] == 1, own, expected)
+    mixed = (weight > 0) & (weight < 1)
+    part = weight[mixed, None]
+    coefficients = part * model.to_storage(own[mixed]) + (1 - part) * model.to_storage(expected[mixed])
+    multipliers[mixed] = model.from_storage(coefficients)
+    return multipliers
+
+
+def _bounded(model: Model, expected: Array, deviation: Array, steep: float = STEEP) -> Array:
     """Multipliers (n, C) of expected coefficients plus their deviation (n, C), shrunk as little as is necessary."""
     multipliers, rows, fraction = np.empty_like(expected), np.arange(len(expected)), 1.0
     for _ in range(MAX_SHRINKS + 1):
         multipliers[rows], valid = model.try_from_storage(expected[rows] + fraction * deviation[rows])
-        rows = rows[~valid | ~(np.abs(multipliers[rows]).max(axis=1, initial=0) <= STEEP)]
+        rows = rows[~valid | ~(np.abs(multipliers[rows]).max(axis=1, initial=0) <= steep)]
         fraction *= SHRINK
     multipliers[rows] = model.from_storage(expected[rows])
     return multipliers

@@ -12,7 +12,7 @@ from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.observer import AXES, axis_nodes
 from uplift.common.arrays import Array, Indices, Mask, blocks
 from uplift.fit.entries import FittedEntries
-from uplift.fit.prior import Prior
+from uplift.fit.prior import Prior, blended
 from uplift.fit.problem import Problem
 from uplift.lattice import CORNERS, Lattice, weighted_sum
 from uplift.models import evaluate
@@ -80,6 +80,7 @@ class Seeds:
     ``primary`` (S,) marks the node nearest to its entry. ``crowded`` are entries whose nearest node a closer one has.
     """
 
+    lattice: Lattice
     rgb: Array
     points: Indices
     entry: Indices
@@ -109,7 +110,7 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
             if free is not None:
                 owner[free] = int(entry)
     points, entries = (np.array(list(each), dtype=np.int64) for each in (owner, owner.values()))
-    return Seeds(rgb, points, entries, np.arange(len(owner)) < primaries, tuple(crowded))
+    return Seeds(lattice, rgb, points, entries, np.arange(len(owner)) < primaries, tuple(crowded))
 
 
 Blend = tuple[float, float]
@@ -133,20 +134,13 @@ def initial_guess(points: Indices, rgb: Array, prior: Prior, seeds: Seeds, entri
     The primary node of an entry starts from its multipliers in ``entries`` (E, C), the other corners of its cell from a
     blend of these with the prior, and all other nodes from the prior.
     """
-    model, multipliers = prior.model, prior(rgb)
+    multipliers = prior.at_nodes(seeds.lattice, rgb)
     _, seeded, row = np.intersect1d(points, seeds.points, assume_unique=True, return_indices=True)
     entry = seeds.entry[row]
-    own, expected = entries[entry], multipliers[seeded]
-
     node_lab, entry_lab = (rgb_to_lab(prior.sensor, colours) for colours in (rgb[seeded], seeds.rgb))
     near = np.interp(delta_e_1976(node_lab, entry_lab[entry]), (NEAR, FAR), blend)
     weight = np.where(seeds.primary[row], 1.0, near)
-    full, mixed = weight == 1, (weight > 0) & (weight < 1)
-    multipliers[seeded[full]] = own[full]
-    # c = w c_entry + (1 − w) c_prior: coefficients mix as spectra do.
-    part = weight[mixed, None]
-    coefficients = part * model.to_storage(own[mixed]) + (1 - part) * model.to_storage(expected[mixed])
-    multipliers[seeded[mixed]] = model.from_storage(coefficients)
+    multipliers[seeded] = blended(prior.model, entries[entry], multipliers[seeded], weight)
     return multipliers
 
 

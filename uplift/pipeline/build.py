@@ -51,6 +51,7 @@ from uplift.pipeline.options import (
     SOLVERS,
     GrowthName,
     ModelName,
+    NeutralName,
     Options,
     PriorName,
     SolverName,
@@ -97,6 +98,7 @@ def build(
     step: float = observers.STEP,
     lights: Sequence[str] = SCENE_LIGHTS,
     prior: PriorName = "learnt",
+    neutral: NeutralName = "expected",
     library: AtlasLike = None,
     looks: LooksLike | None = None,
     leave_out: Sequence[str] = (),
@@ -148,6 +150,9 @@ def build(
         Illuminants under which fitted atlas entries must keep their measured colours.
     prior : {"learnt", "smooth"}, default "learnt"
         Spectra of colours that no entry constrains: those expected of real materials, or smooth ones.
+    neutral : {"expected", "flat"}, default "expected"
+        Spectra of colours with equal components: as of all other colours, or flat, fading to those expected of real
+        materials from a CIE L*a*b* chroma of 4 to 12. Entries keep their measured spectra.
     library : Atlas, path-like or sequence of path-like, optional
         Measured spectra that shape the learnt prior but are not constraints. Each file is a family of materials like
         those to be expected; with an atlas, its weight is learnt.
@@ -227,6 +232,7 @@ def build(
         step=step,
         lights=(lights,) if isinstance(lights, str) else tuple(lights),
         prior=prior,
+        neutral=neutral,
         leave_out=(leave_out,) if isinstance(leave_out, str) else tuple(leave_out),
         threshold=threshold,
         auto_tolerance=auto_tolerance,
@@ -318,6 +324,8 @@ def _build(
     constraints = spectra.fit_constraints(problem, entry_model, measured)
     base, relevance = learn_base(problem, families, constraints.at_nodes)
     prior = fit_prior(problem, constraints.at_nodes, base)
+    if options.neutral == "flat":
+        prior = prior.with_flat_greys()
     if targets is not None:
         targets, constraints, prior = targets.fit(problem, constraints, prior)
 

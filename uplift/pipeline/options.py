@@ -23,6 +23,8 @@ ModelName = Literal["moments", "sigmoid"]
 MODELS: tuple[ModelName, ...] = ("moments", "sigmoid")
 PriorName = Literal["learnt", "smooth"]
 PRIORS: tuple[PriorName, ...] = ("learnt", "smooth")
+NeutralName = Literal["expected", "flat"]
+NEUTRALS: tuple[NeutralName, ...] = ("expected", "flat")
 GrowthName = Literal["outward", "coarse-to-fine", "neighbours"]
 GROWTHS: tuple[GrowthName, ...] = ("outward", "coarse-to-fine", "neighbours")
 SolverName = Literal["least-change", "dogleg", "levenberg-marquardt", "gauss-newton"]
@@ -71,6 +73,7 @@ class Options:
     step: float = STEP
     lights: tuple[str, ...] = SCENE_LIGHTS
     prior: str = "learnt"
+    neutral: str = "expected"
     leave_out: tuple[str, ...] = ()
     threshold: float = 1e-4
     auto_tolerance: float = 0.5
@@ -96,11 +99,17 @@ class Options:
         for name, names, kind in (
             (self.axis, AXES, "axis spacing"),
             (self.prior, PRIORS, "prior"),
+            (self.neutral, NEUTRALS, "kind of neutral"),
             (self.growth, GROWTHS, "growth"),
             (self.solver, (*SOLVERS, CUSTOM), "solver"),
         ):
             if name not in names:
                 raise unknown_name(name, [known for known in names if known != CUSTOM], kind)
+        _require(
+            self.neutral == NEUTRALS[0] or self.growth != "neighbours",
+            "neutral='flat' does not apply to growth='neighbours', whose nodes start from their neighbours",
+            "use another growth",
+        )
         count, most = len(self.lights), f"in [{self.coefficients}, {MAX_COUNT}]"
         _require(1 <= count <= MAX_LIGHTS, f"lights must name 1 to {MAX_LIGHTS} illuminants, got {count}")
         _require(
