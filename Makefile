@@ -9,7 +9,7 @@ OUT := out
 PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 
-.PHONY: golden golden-before build lint test bare basic site demo measure peers library nightly munsell docs atlases cubes lock clean pictures axe examples
+.PHONY: golden golden-before build lint test bare basic site notebooks demo measure peers library nightly munsell docs atlases cubes lock clean pictures axe examples
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -57,6 +57,14 @@ docs: $(INSTALLED)
 site: $(INSTALLED)
 	IPYTHONDIR=$(abspath $(OUT))/cache/ipython $(BIN)/python -m sphinx -W --keep-going -q -b html docs $(OUT)/site
 	$(BIN)/pytest -m site tests/test_site.py
+
+# Run the notebooks and store their output; commit the result.
+notebooks: $(INSTALLED)
+	mkdir -p $(OUT)/notebooks
+	cp docs/notebooks/*.ipynb $(OUT)/notebooks
+	cd $(OUT)/notebooks && IPYTHONDIR=$(abspath $(OUT))/cache/ipython JUPYTER_PLATFORM_DIRS=1 \
+		$(abspath $(BIN))/jupyter execute --inplace --NotebookClient.record_timing=False *.ipynb
+	cp $(OUT)/notebooks/*.ipynb docs/notebooks
 
 # A static folder for any web server, out/demo: pages of the ColorChecker's cube, and the chart of methods.
 demo: $(INSTALLED)

@@ -27,7 +27,7 @@ autodoc_default_options = {"members": True}
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 
-# Notebooks are stored without output and run while the site is built, in an empty folder.
+# Notebooks are stored with their output, and run again while the site is built, in an empty folder.
 nb_execution_mode = "force"
 nb_execution_in_temp = True
 nb_execution_raise_on_error = True
