@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl"}
 LUTS = {"cube": ".cube", "clf": ".clf"}
-SIGMOIDS = {"coeff": ".coeff", "pbrt": ".cpp", "luisa": ".cpp"}
+SIGMOIDS = {"coeff": ".coeff", "luisa": ".cpp", "pbrt": ".cpp"}  # of one suffix the last is the default
 SUFFIXES = {
     **SIGMOIDS,
     **PROGRAMS,
@@ -117,7 +117,7 @@ def command(
     suffix = "" if output is None else Path(output).suffix.lower()
     style = style or {SUFFIXES[name]: name for name in SUFFIXES}.get(".cuh" if suffix == ".cu" else suffix)
     if style is None:
-        raise click.UsageError(f"Give --format, or --output ending in {', '.join(SUFFIXES.values())}.")
+        raise click.UsageError(f"Give --format, or --output ending in {', '.join(dict.fromkeys(SUFFIXES.values()))}.")
     given = {"res": res, "light": light, "adapt": adapt, "mode": mode, "table": table}
     settings = {name: value for name, value in given.items() if value is not None}
     for name in settings:

@@ -5,6 +5,8 @@ import shutil
 import numpy as np
 import pytest
 
+from uplift.io.export import write_coeff
+
 STEM = "moments-8-macbeth"
 
 
@@ -39,8 +41,11 @@ def test_the_table_of_a_program_is_a_choice(run, refuse, home, cube):
     assert not (home / "a.glsl").exists()
 
 
-def test_format_follows_the_suffix_of_out(run, home, cube):
+def test_format_follows_the_suffix_of_out(run, home, cube, monkeypatch):
     assert run("export", cube, "-o", "table.coeff", "--res", 3).stdout.startswith("table.coeff: ")
+    monkeypatch.setattr(write_coeff, "__kwdefaults__", {**write_coeff.__kwdefaults__, "res": 2})
+    run("export", cube, "-o", "table.cpp")
+    assert (home / "table.cpp").read_text().startswith("namespace pbrt {")
     assert (home / "table.coeff").read_bytes()[:8] == b"SPEC" + bytes([3, 0, 0, 0])
     run("export", cube, "-o", "ANY.NPZ")
     run("export", cube, "-o", "points.txt", "--format", "csv")
