@@ -7,7 +7,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import IO, TYPE_CHECKING
 
@@ -15,6 +15,8 @@ import click
 
 from uplift.common.errors import ColourError
 from uplift.common.text import format_value, parse_float
+
+from .inputs import find_input_space
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
@@ -120,17 +122,33 @@ class ColourReader:
         return values if matrix is None else np.asarray(values @ matrix.T)
 
 
-def find_source(
+@dataclass(frozen=True)
+class ColourSource:
+    """The only source of colours: XYZ, the ``path`` of a file, '-' for standard input, or else words."""
+
+    xyz: tuple[float, float, float] | None
+    path: str | None
+    words: tuple[str, ...]
+    encoded: bool
+    space: ImageSpace | None
+
+    def blocks(self, sensor: Sensor, *, bounded: bool = False) -> Iterable[Array]:
+        """Return blocks of linear RGB (n, 3) from the words or the file; see `ColourReader`."""
+        reader = ColourReader(sensor, self.encoded, bounded, self.space)
+        return [reader.parse(self.words)] if self.path is None else reader.read(self.path)
+
+
+def find_colours(
     colour: tuple[str, ...],
     input_path: str | None,
     xyz: tuple[float, float, float] | None,
     xy: tuple[float, float] | None,
     luminance: float | None,
-) -> tuple[tuple[float, float, float] | None, str | None]:
-    """Return the only source of colours: XYZ of --xyz or --xy, or a file, '-' for standard input; both None for words.
-
-    Raises click's error if there is not exactly one source.
-    """
+    encoded: bool,
+    input_space: str | None,
+) -> ColourSource:
+    """Return the source that the values of `options.colours` name. Raises click's error for none or several."""
+    space = find_input_space(input_space)
     if colour == ("-",):
         colour, input_path = (), input_path or "-"
     if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
@@ -142,7 +160,7 @@ def find_source(
         xyz = x * luminance / y, luminance, (1 - x - y) * luminance / y
     if (xyz is not None) + bool(colour) + (input_path is not None) != 1:
         raise click.UsageError("Give one colour, --input FILE, '-', --xyz or --xy. See 'uplift query --help'.")
-    return xyz, input_path
+    return ColourSource(xyz, input_path, colour, encoded, space)
 
 
 def _row_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, list[str]]]]:

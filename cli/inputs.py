@@ -11,10 +11,14 @@ from typing import TYPE_CHECKING
 
 from uplift.common.text import format_value, parse_float
 
+from .output.diagnostics import warn
+
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
+    from uplift.colorimetry.sensor import Sensor
     from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array, StrPath
+    from uplift.io.texture.picture import Picture
 
 LOCAL = "atlases/*.txt"
 DEFAULT_ATLASES = f"{LOCAL} if there are any, or else the shipped atlases"
@@ -23,6 +27,8 @@ UDIM = "<UDIM>"
 """Placeholder for the number of a tile, 1001 to 9999."""
 UDIM_DIGITS = "[1-9][0-9][0-9][0-9]"
 MAX_WAVELENGTHS = 100_000
+MAX_SIDE = 960
+"""Pixels of the longer side of an image, as shown and compared."""
 
 
 def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
@@ -53,6 +59,17 @@ def _expand(source: str) -> list[str]:
     if not paths:
         raise TextureError(f"no file matches the pattern '{source}'", hint="check the pattern")
     return paths
+
+
+def read_pictures(paths: Sequence[str], sensor: Sensor, *, space: str | None = None, **options: str) -> list[Picture]:
+    """Return images, reduced to `MAX_SIDE`, with the options of `options.pixels`, and emit their warnings."""
+    from uplift.io.texture.picture import read_picture
+
+    found = find_input_space(space)
+    pictures = [read_picture(path, sensor, max_side=MAX_SIDE, space=found, **options) for path in paths]
+    for picture in pictures:
+        warn(picture.warnings)
+    return pictures
 
 
 def parse_wavelengths(text: str) -> Array:

@@ -34,6 +34,7 @@ GROUPS = {
     "Materials": {
         "atlas": "List the entries of atlas files.",
         "bounds": "Compute the bounds of all reflectances of a colour.",
+        "advise": "Name the colours of images to measure next.",
         "mix": "Mix colours as spectra: paints, dyes, filters, lights.",
         "palette": "Design the unknown spectra of a palette.",
     },

@@ -194,10 +194,11 @@ def encoding(subject: str = "colours") -> Decorator:
     return choice("--encoding", "auto", "linear", "encoded", help=f"Encoding of {subject}. {text}")
 
 
-def input_space(subject: str, default: str = "as the file states") -> Decorator:
+def input_space(subject: str, default: str = "as the file states", name: str = "input_space") -> Decorator:
     """``--input-space``: text for `uplift.colorimetry.spaces.find_space`."""
     return click.option(
         "--input-space",
+        name,
         metavar="NAME",
         shell_complete=complete_space,
         help=f"RGB space of {subject}: a name of OpenColorIO or colour-science such as ACEScg or lin_rec2020, or x,y "
@@ -205,14 +206,21 @@ def input_space(subject: str, default: str = "as the file states") -> Decorator:
     )
 
 
-def out_of_gamut(default: str = "error", subject: str = "linear RGB") -> Decorator:
-    """``--out-of-gamut`` as ``method``: names of `uplift.colorimetry.gamut.METHODS`, which is not imported here."""
+def out_of_gamut(default: str = "error", subject: str = "linear RGB", name: str = "method") -> Decorator:
+    """``--out-of-gamut``: names of `uplift.colorimetry.gamut.METHODS`, which is not imported here."""
     methods = ("error", "clip", "scale", "desaturate", "desaturate-oklab")
     text = (
         f"Treatment of {subject} outside [0, 1]: raise an error, clip, darken, or desaturate at constant luminance and "
         "dominant wavelength or at constant lightness and hue of Oklab."
     )
-    return choice("--out-of-gamut", *methods, name="method", default=default, help=text)
+    return choice("--out-of-gamut", *methods, name=name, default=default, help=text)
+
+
+def pixels() -> Decorator:
+    """``--encoding``, ``--input-space`` and ``--out-of-gamut`` of images, as `uplift.io.texture` names them."""
+    return stacked(
+        encoding("the images"), input_space("the images", name="space"), out_of_gamut("clip", "pixels", "out_of_gamut")
+    )
 
 
 def output_format(*choices: str) -> Decorator:
@@ -263,14 +271,25 @@ coefficients = click.option(
 output_wavelengths = wavelengths(
     "Wavelengths as START:END:STEP or a list such as 450,550,650. [default: those of the cube]"
 )
-xy = click.option(
-    "--xy", type=NUMBER, nargs=2, metavar="X Y", help="Colour by chromaticity, with --luminance, as for --xyz."
-)
-luminance = click.option("--luminance", type=NUMBER, metavar="Y", help="Luminance of --xy, where white has 1.")
-input_file = click.option(
-    "--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input."
-)
-encoded = click.option("--encoded", is_flag=True, help="Numbers are encoded 8-bit codes from 0 to 255.")
+
+
+def colours(xyz: str, space: str) -> Decorator:
+    """COLOUR and the other sources of colours, for `uplift_cli.colours.find_colours`."""
+    return stacked(
+        click.argument("colour", nargs=-1),
+        click.option(
+            "--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input."
+        ),
+        click.option("--xyz", type=NUMBER, nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."),
+        click.option(
+            "--xy", type=NUMBER, nargs=2, metavar="X Y", help="Colour by chromaticity, with --luminance, as for --xyz."
+        ),
+        click.option("--luminance", type=NUMBER, metavar="Y", help="Luminance of --xy, where white has 1."),
+        click.option("--encoded", is_flag=True, help="Numbers are encoded 8-bit codes from 0 to 255."),
+        input_space("the colours", default=space),
+    )
+
+
 fill = click.option(
     "--fill-missing", is_flag=True, help="Take colours that a cube built with --scene lacks from the packaged cube."
 )

@@ -13,6 +13,7 @@ FEW = (
     "uplift build --atlas macbeth --dim 32",
     "uplift query --cube macbeth-32.uplift --input colours.csv --format csv --mode refined > spectra.csv",
     "uplift bounds '#8a2a20'",
+    "uplift advise wood.png --cube macbeth-32.uplift",
     "uplift texture wood.png -o wood.exr",
     "uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5",
     "uplift export macbeth-32.uplift -o cube.h",

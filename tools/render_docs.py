@@ -24,6 +24,7 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, Undefined
 
 from uplift.common.csv import csv_text
+from uplift.lab.chart.table import SITUATIONS, recommend_cube, shipped_chart
 from uplift.viz import format as viz_format
 
 ROOT = Path(__file__).parents[1]
@@ -120,6 +121,12 @@ def pick(rows: Iterable[Row], **conditions: Any) -> Row:
     return found[0]
 
 
+def recommended() -> list[Row]:
+    """Return the cubes that ``uplift chart --recommend`` names, by situation."""
+    chart = shipped_chart()
+    return [{"title": name, "needed": each, "cube": recommend_cube(chart, each)} for name, each in SITUATIONS.items()]
+
+
 def pages() -> list[str]:
     """Return the names of the pages that have a template."""
     return sorted(path.relative_to(TEMPLATES).as_posix().removesuffix(".md.j2") for path in TEMPLATES.rglob("*.md.j2"))
@@ -166,7 +173,7 @@ def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
     environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, **style)
     environment.filters |= {"num": number, "mean": statistics.fmean}
     functions = {"load": read_data, "rows": read_rows, "text": read_text, "table": table, "where": where, "pick": pick}
-    environment.globals |= functions | {"long_table": long_table}
+    environment.globals |= functions | {"long_table": long_table, "recommended": recommended}
     text = environment.get_template(f"{name}.md.j2").render(read_data(name) if data is None else data)
     return {page: text} | tables
 

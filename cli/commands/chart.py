@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from .. import options
 from ..inputs import DEFAULT_ATLASES, read_atlases
-from ..output.console import make_table, say, show
+from ..output.console import make_table, paragraph, say, show
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache, use_one_blas_thread
 
@@ -39,7 +39,11 @@ FILES = ("chart.csv", "chart.png", "chart.html")
 )
 @click.option("--quick", is_flag=True, help="Few methods and repeats: about a minute instead of half an hour.")
 @click.option("--from", "source", metavar="CSV", help="Table of an earlier chart to draw or to recommend from.")
-@click.option("--recommend", is_flag=True, help="Recommend a cube to build, from the packaged chart or --from.")
+@click.option(
+    "--recommend",
+    is_flag=True,
+    help="Recommend a cube for common situations, or for limits, by the packaged chart or --from.",
+)
 @click.option("--time-ns", type=options.NUMBER, help="With --recommend: largest CPU time per RGB, in ns.")
 @click.option(
     "--tolerance", "delta_e", metavar="ΔE00", type=options.NUMBER, help="With --recommend: largest mean ΔE00."
@@ -48,8 +52,13 @@ FILES = ("chart.csv", "chart.png", "chart.html")
     "--light", help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: mean of five]"
 )
 @click.option(
-    "--atlas-materials", is_flag=True, help="With --recommend: ΔE00 of the atlas entries instead of unseen materials."
+    "--atlas-materials",
+    "own",
+    is_flag=True,
+    help="With --recommend: ΔE00 of the atlas entries instead of unseen materials.",
 )
+@click.option("--no-atlas", "plain", is_flag=True, help="With --recommend: a cube without an atlas.")
+@click.option("--smallest", is_flag=True, help="With --recommend: the smallest sufficient cube, not the fastest.")
 @options.force
 def command(
     output: str,
@@ -59,11 +68,8 @@ def command(
     quick: bool,
     source: str | None,
     recommend: bool,
-    time_ns: float | None,
-    delta_e: float | None,
-    light: str | None,
-    atlas_materials: bool,
     force: bool,
+    **required: Any,
 ) -> None:
     """Measure speed and accuracy of spectral upsampling methods, of this package and from the literature.
 
@@ -80,6 +86,7 @@ def command(
       uplift chart --quick
       uplift chart --atlas paints.csv -o paints
       uplift chart --methods 'moments9-32-*' --methods mallett2019 -o few
+      uplift chart --recommend
       uplift chart --recommend --time-ns 500
       uplift chart --recommend --tolerance 0.5 --light FL11 --atlas-materials
       uplift chart --recommend --from paints/chart.csv --tolerance 1
@@ -87,10 +94,10 @@ def command(
     enable_jit_cache()
     use_one_blas_thread()
     if recommend:
-        _recommend(source, time_ns, delta_e, light, own=atlas_materials)
+        _recommend(source, required)
         return
-    if atlas_materials or any(value is not None for value in (time_ns, delta_e, light)):
-        raise click.UsageError("--time-ns, --tolerance, --light and --atlas-materials require --recommend.")
+    if any(value not in (None, False) for value in required.values()):
+        raise click.UsageError("The limits of a recommendation require --recommend.")
     from uplift.common.files import check_folder, write_text
     from uplift.lab.chart.picture import render_chart, write_picture
     from uplift.lab.chart.table import chart_csv, read_chart
@@ -105,21 +112,21 @@ def command(
     say(f"{folder}: {', '.join(FILES)}", err=True)
 
 
-def _recommend(
-    source: str | None, time_ns: float | None, delta_e: float | None, light: str | None, *, own: bool
-) -> None:
-    from uplift.lab.chart.table import Requirement, read_chart, recommend_cube, shipped_chart
+def _recommend(source: str | None, required: dict[str, Any]) -> None:
+    """Print the cube that meets the requirement, or those of common situations."""
+    from uplift.lab.chart.table import SITUATIONS, Requirement, read_chart, recommend_cube, shipped_chart
     from uplift.viz.format import format_error, format_size, format_time
 
-    requirement = Requirement(time_ns, delta_e, light, own)
-    row = recommend_cube(read_chart(source) if source is not None else shipped_chart(), requirement)
-    numbers = row.numbers
-    say(
-        f"{row.title}: {format_time(numbers['time_ns'])} per RGB, mean ΔE00 {format_error(numbers[requirement.error])} "
-        f"{requirement.description}, {format_size(numbers['bytes'])}"
-    )
-    say(f"  {row.build}")
-    say(f"  {row.call}")
+    chart = read_chart(source) if source is not None else shipped_chart()
+    is_given = any(value not in (None, False) for value in required.values())
+    for title, each in {"": Requirement(**required)}.items() if is_given else SITUATIONS.items():
+        row = recommend_cube(chart, each)
+        paragraph(
+            f"{title}{': ' * bool(title)}{row.title}: {format_time(row.numbers['time_ns'])} per RGB, mean ΔE00 "
+            f"{format_error(row.numbers[each.error])} {each.description}, {format_size(row.numbers['bytes'])}"
+        )
+        say(f"  {row.build}")
+        say(f"  {row.call}")
 
 
 def _measure(files: tuple[str, ...], patterns: tuple[str, ...], colours: int, *, quick: bool) -> Chart:

@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-import warnings
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from .. import options
-from ..inputs import check_page, expand_patterns, find_input_space
+from ..inputs import check_page, expand_patterns, read_pictures
 from ..output.console import make_table, print_json, say, show
 from ..output.progress import progress_bar
-
-if TYPE_CHECKING:
-    from uplift.common.arrays import Array
-    from uplift.lookup import Cube
-
-MAX_SIDE = 960
-"""Pixels of the longer side of an image, as compared."""
 
 
 @click.command("diff")
@@ -35,9 +27,7 @@ MAX_SIDE = 960
 @click.option(
     "--worst", type=options.Whole(0), default=5, show_default=True, help="Number of worst colours of each set."
 )
-@options.encoding("the images")
-@options.input_space("the images")
-@options.out_of_gamut("clip", "pixels")
+@options.pixels()
 @options.output("HTML page with pictures of where the cubes differ.")
 @options.output_format("table", "json")
 @options.force
@@ -48,12 +38,10 @@ def command(
     lights: tuple[str, ...],
     tolerance: float | None,
     worst: int,
-    encoding: str,
-    input_space: str | None,
-    method: str,
     output: str | None,
     style: str,
     force: bool,
+    **pixels: Any,
 ) -> None:
     """Compare two cubes: ΔE00 of their answers at nodes, atlas entries, and the colours of images.
 
@@ -81,7 +69,8 @@ def command(
         check_page(output)
         check_output(output, inputs=(first, second, *paths), force=force)
     with progress_bar("comparing answers"):
-        pictures = {path: _read(path, next(iter(cubes.values())), encoding, input_space, method) for path in paths}
+        read = read_pictures(paths, next(iter(cubes.values())).data.sensor, **pixels)
+        pictures = {path: picture.rgb.astype(float) for path, picture in zip(paths, read, strict=True)}
         found = diff_cubes(cubes, lights or SCENE_LIGHTS, pictures)
         if output is not None:
             from uplift.report.diff_page import render_diff
@@ -96,20 +85,6 @@ def command(
             say(f"{output}: where they differ")
     if tolerance is not None and not found.is_within(tolerance):
         raise SystemExit(1)
-
-
-def _read(path: str, cube: Cube, encoding: str, input_space: str | None, method: str) -> Array:
-    import numpy as np
-
-    from uplift.io.texture.picture import read_picture
-
-    space = find_input_space(input_space)
-    picture = read_picture(
-        path, cube.data.sensor, max_side=MAX_SIDE, encoding=encoding, out_of_gamut=method, space=space
-    )
-    for warning in picture.warnings:
-        warnings.warn(warning, stacklevel=1)
-    return np.asarray(picture.rgb, dtype=float)
 
 
 def _print(figures: dict[str, Any]) -> None:

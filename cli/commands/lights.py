@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import options
-from ..colours import ColourReader, find_source
-from ..inputs import find_input_space
+from ..colours import find_colours
 from ..output.answers import format_rgb, print_columns, sparkline
 from ..output.console import csv_writer, emit, print_fields, print_json_answers, say
 from .info import print_facts
@@ -170,16 +169,9 @@ def export(table_path: str, output: str, form: str | None, force: bool) -> None:
 @table_option
 @options.output_wavelengths
 @click.option("--depth", type=click.Choice(("float", "half")), help="32 or 16 bits per channel. [default: float]")
-@options.encoding()
-@options.input_space("the images")
-def texture(
-    table_path: str | None,
-    wavelengths: Array | None,
-    depth: str | None,
-    encoding: str,
-    input_space: str | None,
-    **images: Any,
-) -> None:
+@options.encoding("the images")
+@options.input_space("the images", name="space")
+def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) -> None:
     """Convert images of lights, such as environment maps, to spectral power and write OpenEXR textures.
 
     Pixels have any brightness. The unit of power is that of the equal-energy light of luminance 1; RGB (1, 1, 1) has
@@ -190,36 +182,17 @@ def texture(
       uplift lights texture sky.exr -o sky-spectral.exr --wavelengths 400:700:10
       uplift lights texture sky.exr -o half.exr --depth half
     """
-    from uplift.io.texture import Spectrum, TextureSettings
+    from uplift.io.texture import Spectrum
     from uplift.lights.lookup import find_table
 
-    settings = TextureSettings(
-        (None if table_path is None else os.path.abspath(find_table(table_path)),),
-        Spectrum(as_tuple(wavelengths)),
-        depth=depth,
-        encoding=encoding,
-        space=input_space,
-        emission=True,
-    )
-    convert(settings, **images)
+    table = None if table_path is None else os.path.abspath(find_table(table_path))
+    convert((table,), Spectrum(as_tuple(wavelengths)), emission=True, **settings)
 
 
 @command.command("query", cls=options.Command, everyday=("table_path", "encoded", "wavelengths", "style", "plot_path"))
-@click.argument("colour", nargs=-1)
+@options.colours("where white of the table's space has Y = 1", "that of the table")
 @table_option
-@options.input_file
-@click.option(
-    "--xyz",
-    type=options.NUMBER,
-    nargs=3,
-    metavar="X Y Z",
-    help="Colour by XYZ, where white of the table's space has Y = 1.",
-)
-@options.xy
-@options.luminance
-@options.encoded
 @options.output_wavelengths
-@options.input_space("the colours", default="that of the table")
 @click.option(
     "--out-of-gamut",
     "outside",
@@ -231,19 +204,13 @@ def texture(
 @options.plot("Plot the spectra")
 @options.force
 def query(
-    colour: tuple[str, ...],
     table_path: str | None,
-    input_path: str | None,
-    xyz: tuple[float, float, float] | None,
-    xy: tuple[float, float] | None,
-    luminance: float | None,
-    encoded: bool,
     wavelengths: Array | None,
-    input_space: str | None,
     outside: str,
     style: str,
     plot_path: str | None,
     force: bool,
+    **colours: Any,
 ) -> None:
     """Query the spectral power of a light by its COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
 
@@ -261,16 +228,10 @@ def query(
     from uplift.common.files import check_outputs
     from uplift.lights.lookup import load_emission
 
-    check_outputs((plot_path,), inputs=(table_path, input_path), force=force)
-    space = find_input_space(input_space)
-    point, path = find_source(colour, input_path, xyz, xy, luminance)
+    check_outputs((plot_path,), inputs=(table_path, colours["input_path"]), force=force)
+    source = find_colours(**colours)
     table = load_emission(table_path)
-    blocks: Iterable[Array]
-    if point is not None:
-        blocks = [np.array([point])]
-    else:
-        reader = ColourReader(sensor(table.space), encoded=encoded, space=space)
-        blocks = map(table.xyz, [reader.parse(colour)] if path is None else reader.read(path))
+    blocks = [np.array([source.xyz])] if source.xyz else map(table.xyz, source.blocks(sensor(table.space)))
     results = _answers(table, blocks, table.wavelengths if wavelengths is None else wavelengths, outside)
     if plot_path is not None:
         from uplift.viz.plots import plot_lights
@@ -279,10 +240,10 @@ def query(
         plot_lights([(each.rgb, each.wavelengths, each.power) for each in found], table, plot_path, force=force)
         results = iter(found)
     if style == "json":
-        print_json_answers((result.to_json() for result in results), single=path is None)
+        print_json_answers((result.to_json() for result in results), single=source.path is None)
     elif style == "csv":
         _print_csv(results)
-    elif path is None:
+    elif source.path is None:
         _print_details(table, next(results), complete=wavelengths is not None)
     else:
         _print_lines(results)

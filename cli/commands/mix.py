@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +22,7 @@ from ..output.answers import (
     sparkline,
 )
 from ..output.console import emit, has_colours, print_fields, print_json, say
+from ..output.diagnostics import warn
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
@@ -218,8 +218,7 @@ def command(
         painter = overpainter(cube, coat, recipe, encoding=encoding, out_of_gamut=method, space=space)
         with progress_bar("rows") as progress:
             painted = convert(painter, over, output, force=force, progress=progress)
-        for warning in painted.warnings:
-            warnings.warn(warning, stacklevel=1)
+        warn(painted.warnings)
         say(f"{output}: {painted.counts.pixels:,} pixels painted over")
         return
     from uplift.colorimetry.gamut import map_to_gamut
@@ -233,7 +232,7 @@ def command(
     mapped = map_to_gamut(sensor.rgb(mixed[:, :count]), sensor, method)
     if mapped.outside[0]:
         problem = f"the mixture lies outside [0, 1]: mapped into the gamut ({method})"
-        warnings.warn(UpliftWarning(problem), stacklevel=1)
+        warn([UpliftWarning(problem)])
     mixture = Mixture(kind, names, amounts, further, mixed[0, count:], mapped.rgb)
     if plot_path is not None:
         _plot(cube, mixture, plot_path, force=force)

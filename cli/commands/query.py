@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import sys
-import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -17,7 +16,7 @@ from uplift.common.errors import UpliftWarning
 from uplift.common.text import printable
 
 from .. import options
-from ..colours import ColourReader, find_source
+from ..colours import find_colours
 from ..output.answers import (
     coordinates,
     describe_coordinates,
@@ -28,6 +27,7 @@ from ..output.answers import (
     sparkline,
 )
 from ..output.console import csv_writer, emit, has_colours, print_fields, print_json, print_json_answers, say
+from ..output.diagnostics import warn
 from ..startup import hide_drawing_notes
 
 if TYPE_CHECKING:
@@ -42,26 +42,16 @@ LARGEST = 1e30
 
 
 colour_options = options.stacked(
-    click.argument("colour", nargs=-1),
-    options.cube,
-    options.input_file,
-    click.option(
-        "--xyz",
-        type=options.NUMBER,
-        nargs=3,
-        metavar="X Y Z",
-        help="Colour by XYZ under the cube's illuminant, where white has Y = 1; also outside the cube's space.",
+    options.colours(
+        "under the cube's illuminant, where white has Y = 1; also outside the cube's space", "that of the cube"
     ),
-    options.xy,
-    options.luminance,
-    options.encoded,
+    options.cube,
     options.output_wavelengths,
     options.choice(
         "--mode",
         *("spectra", "moments", "refined", "nearest"),
         help="Interpolate spectra (exact), coefficients (fast), coefficients with refinement, or use the nearest node.",
     ),
-    options.input_space("the colours", default="that of the cube"),
     options.out_of_gamut(),
     options.fill,
 )
@@ -69,29 +59,18 @@ colour_options = options.stacked(
 
 
 def ask(
-    colour: tuple[str, ...],
     cube_path: str | None,
-    input_path: str | None,
-    xyz: tuple[float, float, float] | None,
-    xy: tuple[float, float] | None,
-    luminance: float | None,
-    encoded: bool,
     wavelengths: Array | None,
     mode: str,
-    input_space: str | None,
     method: str,
     fill_missing: bool,
     lights: tuple[str, ...],
+    **colours: Any,
 ) -> tuple[QueryStream, Iterable[Sequence[QueryResult]], bool]:
     """Return answers, their blocks, and whether there is a single colour, from the values of `colour_options`."""
     from uplift.lookup import load
 
-    space = None
-    if input_space is not None:
-        from uplift.colorimetry.spaces import find_space
-
-        space = find_space(input_space)
-    point, path = find_source(colour, input_path, xyz, xy, luminance)
+    source = find_colours(**colours)
     cube = load(cube_path)
     found: list[Light] = []
     if lights:
@@ -100,16 +79,14 @@ def ask(
         lit = (light(name, cube.observer, *cube.data.sensor.range) for name in lights)
         found = list({each.name: each for each in lit}.values())
     atlases = [source["name"] for source in cube.data.provenance.get("atlases", ())]
-    source = {"file": cube_path or PACKAGED, "dim": cube.data.lattice.dim, "atlases": atlases}
-    stream = QueryStream(cube, source, method, wavelengths, mode, found, fill_missing=fill_missing)
-    if point is not None:
+    origin = {"file": cube_path or PACKAGED, "dim": cube.data.lattice.dim, "atlases": atlases}
+    stream = QueryStream(cube, origin, method, wavelengths, mode, found, fill_missing=fill_missing)
+    if source.xyz is not None:
         from uplift.lookup import query_xyz
 
-        return stream, [list(query_xyz(cube, [point], wavelengths, mode, found))], True
-    bounded = method == "error" and input_space is None
-    reader = ColourReader(cube.data.sensor, encoded=encoded, bounded=bounded, space=space)
-    blocks = [reader.parse(colour)] if path is None else reader.read(path)
-    return stream, stream.results(blocks), path is None
+        return stream, [list(query_xyz(cube, [source.xyz], wavelengths, mode, found))], True
+    bounded = method == "error" and source.space is None
+    return stream, stream.results(source.blocks(cube.data.sensor, bounded=bounded)), source.path is None
 
 
 @click.command(
@@ -283,11 +260,11 @@ class QueryStream:
                 f"{self.mapped} of {self.count} colours lie outside [0, 1]: mapped into the gamut ({self.method}), "
                 f"a component by up to {self.max_change:.3g}"
             )
-            warnings.warn(UpliftWarning(problem), stacklevel=1)
+            warn([UpliftWarning(problem)])
         if self.filled:
             count = f"{self.filled} of {self.count} colours"
             problem = f"{count} are not in the cube's scene: filled from the packaged cube"
-            warnings.warn(UpliftWarning(problem), stacklevel=1)
+            warn([UpliftWarning(problem)])
 
 
 def result_object(stream: QueryStream, result: QueryResult) -> dict[str, Any]:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import os
-import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from .. import options
-from ..inputs import expand_patterns, find_input_space
+from ..inputs import expand_patterns, read_pictures
 from ..output.console import make_table, print_json, say, show
+from ..output.diagnostics import warn
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
@@ -24,8 +24,6 @@ SPECTRAL = "spectral"
 """Method of the packaged cube, which knows no atlas."""
 DIM = 32
 """Lattice of the cubes that are built for --atlas."""
-MAX_SIDE = 960
-"""Pixels of the longer side of an image, as shown."""
 
 
 @click.command("relight")
@@ -33,9 +31,7 @@ MAX_SIDE = 960
 @options.light("Illuminant", "A FL11 HP1")
 @click.option("--cube", "cube_path", metavar="FILE", help="Cube whose spectra are shown as well.")
 @options.atlas("Measured spectra; a cube is built from them and shown as well")
-@options.encoding("the images")
-@options.input_space("the images")
-@options.out_of_gamut("clip", "pixels")
+@options.pixels()
 @options.output(
     "File to write: a figure if it ends in .png, .svg or .pdf, a page if in .html, the image itself if in .exr.",
     default="relit.png",
@@ -47,12 +43,10 @@ def command(
     lights: tuple[str, ...],
     cube_path: str | None,
     files: tuple[str, ...],
-    encoding: str,
-    input_space: str | None,
-    method: str,
     output: str,
     style: str,
     force: bool,
+    **pixels: Any,
 ) -> None:
     """Show images under other lights: RGB multiplied by the light, next to spectra.
 
@@ -81,7 +75,6 @@ def command(
     from uplift.common.errors import OutputError
     from uplift.common.files import check_output, write_text
     from uplift.io import texture
-    from uplift.io.texture.picture import read_picture
     from uplift.lookup import load
     from uplift.report.measures import mean_p95_max
     from uplift.report.relight import RGB_PRODUCT, relight, relit_page, write_relit_sheet
@@ -109,12 +102,9 @@ def command(
     if suffix == IMAGE:
         with progress_bar("computing spectra") as progress:
             cube = _cube_of_user(cube_path, files) or load()
-            converter = texture.prepare_relighter(
-                cube, lights, encoding=encoding, out_of_gamut=method, space=input_space, threads=os.cpu_count() or 1
-            )
+            converter = texture.prepare_relighter(cube, lights, threads=os.cpu_count() or 1, **pixels)
             conversion = texture.convert(converter, paths[0], output, force=force, progress=progress)
-        for warning in conversion.warnings:
-            warnings.warn(warning, stacklevel=1)
+        warn(conversion.warnings)
         names = converter.header["uplift.lights"]
         if style == "json":
             print_json({"output": output, "lights": names.split(", "), "pixels": conversion.counts.pixels})
@@ -125,14 +115,10 @@ def command(
         cubes = {SPECTRAL: load()}
         if (own := _cube_of_user(cube_path, files)) is not None:
             cubes[f"{SPECTRAL} with {', '.join(Path(each).stem for each in files or [cube_path or ''])}"] = own
-        sensor, space = cubes[SPECTRAL].data.sensor, find_input_space(input_space)
-        relit = []
-        for path in paths:
-            picture = read_picture(path, sensor, max_side=MAX_SIDE, encoding=encoding, out_of_gamut=method, space=space)
-            for warning in picture.warnings:
-                warnings.warn(warning, stacklevel=1)
-            name, opacity, reduction = Path(path).name, picture.opacity, picture.reduction
-            relit.append(relight(name, picture.rgb, cubes, lights, opacity=opacity, reduction=reduction))
+        relit = [
+            relight(Path(path).name, each.rgb, cubes, lights, opacity=each.opacity, reduction=each.reduction)
+            for path, each in zip(paths, read_pictures(paths, cubes[SPECTRAL].data.sensor, **pixels), strict=True)
+        ]
         if suffix == PAGE:
             write_text(relit_page(relit), output, force=force)
         else:

@@ -7,9 +7,7 @@ import glob
 import os
 import re
 import time
-import warnings
 from collections.abc import Generator, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,13 +19,14 @@ from uplift.common.progress import Progress
 from .. import options
 from ..inputs import UDIM, expand_patterns
 from ..output.console import say
-from ..output.diagnostics import CommandFailure
+from ..output.diagnostics import CommandFailure, warn
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.io.texture import Conversion, Failure, TextureSettings
+    from uplift.io.texture import Conversion, Failure
+    from uplift.io.texture.uplifter import PixelEncoding
 
 
 LARGE = 100.0
@@ -76,21 +75,21 @@ image_options = options.stacked(
     type=click.Choice(("half", "float")),
     help="16 or 32 bits per channel. [default: half for reflectances, else float]",
 )
-@options.encoding()
-@options.input_space("the images")
-@options.out_of_gamut("clip")
+@options.pixels()
 @options.fill
+@click.option(
+    "--errors",
+    multiple=True,
+    metavar="NAME",
+    help="Add a channel with the standard error, ΔE00, under an illuminant, such as error.A; repeatable.",
+    shell_complete=options.complete_light,
+)
 def command(
     cube_paths: tuple[str, ...],
     mask: str | None,
     kind: str,
     wavelengths: Array | None,
-    depth: str | None,
-    encoding: str,
-    input_space: str | None,
-    method: str,
-    fill_missing: bool,
-    **images: Any,
+    **settings: Any,
 ) -> None:
     """Convert every pixel of an image (EXR, HDR, PNG, JPEG, TIFF) to a spectrum and write an OpenEXR texture.
 
@@ -102,6 +101,7 @@ def command(
       uplift texture fire.exr -o bright.exr --out-of-gamut scale
       uplift texture painting.exr -o ap1.exr --input-space ACEScg
       uplift texture shot.*.exr -o uplifted --scheduler tcp://10.0.0.5:8786
+      uplift texture wood.png -o errors.exr --cube macbeth-32.uplift --errors FL11
       uplift texture wood.png -o parts.exr --mask mask.png --cube macbeth-32.uplift --cube looks.uplift
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at --wavelengths. 'moments' can be filtered
@@ -131,21 +131,14 @@ def command(
     if len(cube_paths) > 1 and mask is None:
         raise click.UsageError("Several cubes need --mask, an image of which cube a pixel belongs to.")
     cubes = tuple(os.path.abspath(find_file(path)) for path in cube_paths)
-    settings = texture.TextureSettings(
-        cubes or (None,),
-        texture.Spectrum(as_tuple(wavelengths)) if encode is texture.Spectrum else encode(),
-        depth=depth,
-        encoding=encoding,
-        out_of_gamut=method,
-        space=input_space,
-        mask=None if mask is None else os.path.abspath(mask),
-        fill_missing=fill_missing,
-    )
-    convert(settings, **images)
+    pixels = texture.Spectrum(as_tuple(wavelengths)) if encode is texture.Spectrum else encode()
+    convert(cubes or (None,), pixels, mask=None if mask is None else os.path.abspath(mask), **settings)
 
 
 def convert(
-    settings: TextureSettings,
+    cubes: tuple[str | None, ...],
+    pixel_encoding: PixelEncoding,
+    *,
     sources: tuple[str, ...],
     target: str,
     processes: int | None,
@@ -153,8 +146,9 @@ def convert(
     resume: bool,
     force: bool,
     quiet: bool,
+    **given: Any,
 ) -> None:
-    """Convert images, on as many threads as the processes leave; the other parameters are those of `image_options`."""
+    """Convert images, on as many threads as the processes leave; see `TextureSettings` and `image_options`."""
     enable_jit_cache()
     from uplift.io import texture
     from uplift.io.texture.sequence import converter_for
@@ -162,7 +156,7 @@ def convert(
     pairs = _texture_paths(sources, target)
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
-    settings = replace(settings, threads=max(cores // count, 1))
+    settings = texture.TextureSettings(cubes, pixel_encoding, threads=max(cores // count, 1), **given)
     jobs = [texture.Job(settings, source.absolute(), path.absolute(), force) for source, path in pairs]
     pending = texture.pending(jobs, resume=resume)
     converter_for(settings)  # reports invalid options once, not once per image
@@ -178,8 +172,7 @@ def convert(
         results = _collect(outcomes, len(pending), quiet=quiet)
     converted = [one for one in results if isinstance(one, texture.Conversion)]
     for conversion in converted:
-        for warning in conversion.warnings:
-            warnings.warn(warning, stacklevel=1)
+        warn(conversion.warnings)
     if not quiet:
         skipped = f", {len(jobs) - len(pending)} skipped" if len(jobs) > len(pending) else ""
         pixels = sum(one.counts.pixels for one in converted)

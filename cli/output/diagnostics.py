@@ -3,6 +3,8 @@
 import contextlib
 import os
 import signal
+import warnings
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -104,6 +106,12 @@ def show_usage_error(error: click.ClickException) -> None:
     message = " ".join(error.format_message().split())
     context = getattr(error, "ctx", None)
     _print_error(printable(message) + (f" See '{context.command_path} --help'." if context else ""))
+
+
+def warn(found: Iterable[UpliftWarning]) -> None:
+    """Emit warnings that the library returned as data."""
+    for each in found:
+        warnings.warn(each, stacklevel=1)
 
 
 def show_warning(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:

@@ -105,6 +105,14 @@ def test_chart_can_be_redrawn_from_its_table(quick, run, refuse):
     assert (error.code, error.path.name) == ("file-exists", "chart.csv")
 
 
+def test_page_and_command_recommend_the_same_cubes(run, repository):
+    page = (repository / "docs" / "choosing.md").read_text(encoding="utf-8")
+    printed = [line.strip() for line in run("chart", "--recommend").stdout.splitlines() if line.startswith("  ")]
+    pairs = [f"| `{build}` | `{call}` |" for build, call in zip(printed[::2], printed[1::2], strict=True)]
+    assert len(pairs) > 2
+    assert [pair for pair in pairs if pair not in page] == []
+
+
 def test_recommendations(quick, run, refuse, repository):
     table = quick[0] / "chart.csv"
     result = run("chart", "--recommend", "--from", table, "--tolerance", 0.05, "--light", "D65")
@@ -121,7 +129,7 @@ def test_recommendations(quick, run, refuse, repository):
     [
         (("--methods", "x"), "option"),
         (("--colours", 3), "option"),
-        (("--recommend",), "option"),
+        (("--recommend", "--smallest"), "option"),
         (("--recommend", "--tolerance", 1, "--light", "FL12"), "unknown-name"),
         (("--from", "none.csv"), "file-not-found"),
         (("-o", "file"), "output"),

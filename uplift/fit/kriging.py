@@ -1,6 +1,6 @@
 """Kriging of the deviation of atlas entries from a base predictor over CIE L*a*b* (docs/mathematics.md, 7).
 
-Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25, and 5.4.2 for leave-one-out.
+Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25 and 2.26, and 5.4.2 for leave-one-out.
 """
 
 from dataclasses import dataclass
@@ -146,6 +146,24 @@ def learn_kriging(lab: Array, deviations: Array, visible: Array) -> tuple[Krigin
         missed += DOUBTFUL * missed.mean()
         kriging, errors = _krige(points, deviations, kernel, missed / np.exp(np.log(missed).mean()))
     return kriging, errors
+
+
+def posterior(kernel: Kernel, known: Array, lab: Array) -> Array:
+    """Covariance (n, n) of the deviations of materials at L*a*b* (n, 3), given those of known ones (E, 3).
+
+    It is relative to the variance of a material if none is known.
+    """
+    points, at = average_close(known * METRIC, np.zeros_like(known)), lab * METRIC
+
+    def covariance(first: Array, second: Array) -> Array:
+        distance = distances(first, second)
+        return np.asarray(_shared(distance, kernel.length) + kernel.noise * _own(distance))
+
+    white, across = WHITE * kernel.noise, covariance(at, points.locations)
+    between = covariance(points.locations, points.locations) + np.diag(white / points.counts)
+    # K(x, x) − K(x, X) K(X, X)⁻¹ K(X, x) (eq. 2.26)
+    remaining = covariance(at, at) + white * np.eye(len(at)) - across @ np.linalg.solve(between, across.T)
+    return remaining / (1 + kernel.noise)
 
 
 def kernel_sums(at: Array, locations: Array, columns: Array, length: float, own: Array) -> tuple[Array, Array]:

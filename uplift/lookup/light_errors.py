@@ -117,8 +117,7 @@ def _evidence(data: CubeData) -> tuple[NDArray[Any], NDArray[Any]]:
     """Reflectances (M, N) of the entries as measured, and as answered without each of them."""
     if data.atlas.measured is None or data.atlas.left_out is None:
         raise OptionError(
-            f"standard errors under other lights than {data.error_illuminant} need a cube with the left-out entries "
-            "of its atlas",
+            "standard errors under a light need a cube with the left-out entries of its atlas",
             code="too-few-entries",
             hint="build the cube again, with an atlas of at least 8 entries",
         )

@@ -3,6 +3,7 @@
 import json
 import re
 import shlex
+from dataclasses import replace
 from itertools import pairwise
 
 import click
@@ -142,6 +143,15 @@ CUBES = chart_of(
 )
 def test_fastest_accurate_enough_or_most_accurate_in_time(requirement, name):
     assert recommend_cube(CUBES, requirement).method == name
+
+
+def test_smallest_cube_and_cube_without_an_atlas():
+    small = row_of("small", 900, 0.9, build="uplift build --dim 4")
+    small = replace(small, numbers=dict(small.numbers) | {"bytes": 1.0})
+    chart = chart_of(row_of("atlas", 10, 0.1, build="uplift build --atlas FILE"), *CUBES.results, small)
+    assert recommend_cube(chart, Requirement(delta_e=1)).method == "atlas"
+    assert recommend_cube(chart, Requirement(delta_e=1, plain=True)).method == "good"
+    assert recommend_cube(chart, Requirement(delta_e=1, plain=True, smallest=True)).method == "small"
 
 
 @pytest.mark.parametrize(

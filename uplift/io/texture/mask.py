@@ -171,7 +171,8 @@ def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
     Raises
     ------
     OptionError
-        One cube only, cubes of different spaces, or with different channels or, for moments and multipliers, models.
+        One cube only, standard errors, cubes of different spaces, or with different channels or, for moments and
+        multipliers, models.
     TextureError
         The mask cannot be read.
     """
@@ -189,6 +190,8 @@ def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
             "cubes of one texture must have the same wavelengths or, for moments and multipliers, the same model",
             hint="write spectra at given wavelengths, or build the cubes with the same options",
         )
+    if first.errors:
+        raise OptionError("a texture of several cubes has no standard errors", hint="write one of each cube")
     mask_digest = file_digest(mask, TextureError)
     digests = [each.header["uplift.cube"] for each in uplifters]
     description = json.loads(first.header["uplift.texture"]) | {"cubes": digests, "mask": mask_digest}

@@ -2,7 +2,6 @@
 
 import contextlib
 import json
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -13,7 +12,7 @@ from uplift.colorimetry.spaces import find_space
 from uplift.io import exr
 from uplift.io.texture.colours import Counts, Floats, source_space
 from uplift.io.texture.image import Image, Part
-from uplift.io.texture.uplifter import Converted, Converter, ConvertRows, Sampler
+from uplift.io.texture.uplifter import Converted, Converter, ConvertRows, Sampler, channel_name
 from uplift.lookup import Cube
 from uplift.lookup.node_table import prepare_products
 
@@ -85,7 +84,7 @@ def prepare_relighter(
     sensor = cube.data.sensor
     screens = display_sensors(lights, sensor.observer, *sensor.range, space=sensor.space)
     names = [screen.illuminant for screen in screens]
-    layers = [re.sub(r"[^\w-]", "_", name) for name in names[1:]]
+    layers = map(channel_name, names[1:])
     settings = {"as": "relit", "lights": names, "encoding": encoding, "out_of_gamut": out_of_gamut}
     header = {**exr.attributes(cube.data), "uplift.texture": json.dumps(settings), "uplift.lights": ", ".join(names)}
     return Relighter(

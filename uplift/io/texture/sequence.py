@@ -45,6 +45,8 @@ class TextureSettings:
         Gamut mapping for pixels outside [0, 1]; not used for ``emission``.
     space : str or None
         RGB space of the images, None for the one that each file states.
+    errors : tuple of str
+        Lights whose standard errors have a channel; not used for ``emission``.
     mask : str or None
         Path of the image of which cube a pixel belongs to; see `uplift.io.texture.mask`.
     emission : bool
@@ -61,6 +63,7 @@ class TextureSettings:
     encoding: str = "auto"
     out_of_gamut: str = "clip"
     space: str | None = None
+    errors: tuple[str, ...] = ()
     mask: str | None = None
     emission: bool = False
     fill_missing: bool = False
@@ -81,7 +84,8 @@ class TextureSettings:
         cubes = [load(path) for path in self.cubes]
         if self.fill_missing:
             cubes = [cube.fill_missing(threads=self.threads) for cube in cubes]
-        uplifters = [prepare(cube, self.pixel_encoding, out_of_gamut=self.out_of_gamut, **shared) for cube in cubes]
+        shared |= {"out_of_gamut": self.out_of_gamut, "errors": self.errors}
+        uplifters = [prepare(cube, self.pixel_encoding, **shared) for cube in cubes]
         return uplifters[0] if self.mask is None else prepare_masked(uplifters, Path(self.mask))
 
 

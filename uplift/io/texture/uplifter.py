@@ -5,8 +5,9 @@ A pixel holds a reflectance spectrum, moments, or multipliers.
 
 import contextlib
 import json
+import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, ClassVar
@@ -15,6 +16,7 @@ import numpy as np
 
 from uplift import models
 from uplift.colorimetry.gamut import check_method, map_to_gamut
+from uplift.colorimetry.observer import light
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace, find_space
 from uplift.common.arrays import Array, Indices
@@ -26,6 +28,7 @@ from uplift.lattice.entry_boxes import BoxHits, OutsideBoxes
 from uplift.lookup import Cube
 from uplift.lookup.blocks import as_wavelengths, blockwise
 from uplift.lookup.interpolate import extended_multipliers, inexact_rows, refined_multipliers
+from uplift.lookup.light_errors import LightErrors, light_errors
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models.model import Model
 
@@ -262,18 +265,32 @@ class Uplifter(Converter):
 
     ``sample`` maps linear RGB (…, 3) to the numbers (…, N) of a pixel, the multipliers of ``model``, or linear in the
     spectrum without one. ``outside`` are the numbers (O, N) of the entries outside the RGB space, if there are any.
+    Pixels have a standard error for each of ``errors``.
     """
 
     cube: Cube
     sample: Sampler
     model: Model | None
     outside: Floats | None = None
+    errors: tuple[LightErrors, ...] = ()
 
     @property
     def boxes(self) -> OutsideBoxes:
         return self.cube.data.outside_boxes
 
     def convert(self, rgb: Floats) -> Converted:
+        values, counts = self._convert(rgb)
+        return ((*values, self._standard_errors(rgb)) if self.errors else values), counts
+
+    def _standard_errors(self, rgb: Floats) -> Floats:
+        colours, rows = _different(np.clip(rgb, 0, 1))
+        found = [blockwise(each, colours.astype(float), 2, np.float32)[:, 0] for each in self.errors]
+        errors = np.stack(found, axis=-1)[rows]
+        hits = self.boxes.find(rgb.reshape(-1, 3))
+        errors.reshape(-1, len(found))[hits.rows] *= hits.lattice_weight[:, None]
+        return errors
+
+    def _convert(self, rgb: Floats) -> Converted:
         if self.outside is not None:
             hits = self.boxes.find(rgb.reshape(-1, 3))
             if hits.rows.size:
@@ -293,7 +310,7 @@ class Uplifter(Converter):
         mapped = map_to_gamut(requested, self.sensor, method).rgb
         mixed = weight * mapped + (1 - weight) * self.boxes.rgb[hits.entry]
         colours[hits.rows] = mapped
-        (_, found), counts = self.convert(colours.reshape(rgb.shape))
+        (_, found), counts = self._convert(colours.reshape(rgb.shape))
         numbers = found.reshape(len(colours), -1)
         own = weight * numbers[hits.rows] + (1 - weight) * entries[hits.entry]
         numbers[hits.rows] = own if self.model is None else refine_to_rgb(data, self.model, own, mixed)
@@ -303,8 +320,8 @@ class Uplifter(Converter):
         return (colours.reshape(rgb.shape), numbers.reshape(found.shape)), counts
 
     def multiply(self, values: tuple[Floats, ...], opacity: Floats) -> tuple[Floats, ...]:
-        rgb, numbers = values
-        return rgb * opacity, numbers * opacity if self.model is None else numbers
+        rgb, numbers, *errors = super().multiply(values, opacity)
+        return rgb, numbers if self.model is None else values[1], *errors
 
 
 def prepare(
@@ -315,6 +332,7 @@ def prepare(
     encoding: str = "auto",
     out_of_gamut: str = "clip",
     space: str | None = None,
+    errors: Sequence[str] = (),
     threads: int = 2,
 ) -> Uplifter:
     """Prepare a cube for textures.
@@ -334,6 +352,8 @@ def prepare(
         atlas entry outside the RGB space have its spectrum.
     space : str, optional
         RGB space of images, as for `uplift.colorimetry.spaces.find_space`, by default the one that each file states.
+    errors : sequence of str
+        Lights, as for `uplift.colorimetry.observer.light`, each with a channel of standard errors such as ``error.A``.
     threads : int
         Threads that share a band.
 
@@ -345,18 +365,20 @@ def prepare(
     Raises
     ------
     OptionError
-        The depth is not precise enough, the cube has no moments, the wavelengths do not ascend, or the encoding or
-        gamut mapping is unknown.
+        The depth is not precise enough, the cube has no moments or no standard errors, the wavelengths do not ascend,
+        or the encoding or gamut mapping is unknown.
     UnknownNameError
-        The RGB space is unknown.
+        The RGB space or a light is unknown.
     """
     pixels = Spectrum() if pixel_encoding is None else pixel_encoding
     depth = resolve_depth(depth, pixels.depths, pixels.name)
     check_encoding(encoding)
     check_method(out_of_gamut)
     channels = pixels.channels(cube)
-    settings = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
+    settings: dict[str, Any] = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
     settings |= {} if space is None else {"space": space}
+    lights = [light(name, cube.observer, *cube.data.sensor.range) for name in dict.fromkeys(errors)]
+    settings |= {"errors": [each.name for each in lights]} if lights else {}
     description = json.dumps({**pixels.describe(cube), **settings}, allow_nan=False)
     header = {**exr.attributes(cube.data), "uplift.texture": description, **pixels.header}
     return Uplifter(
@@ -364,14 +386,20 @@ def prepare(
         depth,
         encoding,
         out_of_gamut,
-        channels,
+        (*channels, *(f"error.{channel_name(each.name)}" for each in lights)),
         header,
         cube,
         sample=pixels.make_sampler(cube, threads),
         model=pixels.model(cube),
         outside=pixels.outside(cube),
+        errors=tuple(light_errors(cube.data, each) for each in lights),
         space=None if space is None else find_space(space),
     )
+
+
+def channel_name(light: str) -> str:
+    """Return the name of a light as a part of the name of a channel."""
+    return re.sub(r"[^\w-]", "_", light)
 
 
 def resolve_depth(depth: str | None, depths: tuple[str, ...], name: str) -> str:

@@ -234,6 +234,8 @@ class Requirement:
     ``delta_e``: largest mean ΔE00.
     ``light``: light of the ΔE00, by default all lights of the chart; the illuminant D65 stands for round trips.
     ``own``: whether the ΔE00 is of materials of the atlas itself, not of unseen ones.
+    ``plain``: whether the cube must have no atlas.
+    ``smallest``: whether the smallest cube within the limits is chosen, instead of the fastest.
 
     Raises `OptionError`, `UnknownNameError`.
     """
@@ -242,6 +244,8 @@ class Requirement:
     delta_e: float | None = None
     light: str | None = None
     own: bool = False
+    plain: bool = False
+    smallest: bool = False
 
     def __post_init__(self) -> None:
         limits = [limit for limit in (self.time_ns, self.delta_e) if limit is not None]
@@ -267,13 +271,23 @@ class Requirement:
         return f"{lights}, for {'materials of the atlas' if self.own else 'unseen materials'}"
 
 
+SITUATIONS = {
+    "no measurements": Requirement(delta_e=1.0, plain=True),
+    "no measurements, little memory": Requirement(delta_e=1.0, plain=True, smallest=True),
+    "an atlas whose materials must look right": Requirement(delta_e=0.05, own=True),
+    "such an atlas, little memory": Requirement(delta_e=0.05, own=True, smallest=True),
+}
+"""What is required in common situations."""
+
+
 def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
-    """Choose a cube: the fastest that is accurate enough or, without a limit for the error, the most accurate in time.
+    """Choose the fastest or smallest cube that is accurate enough or, without such a limit, the most accurate in time.
 
     Raises `OptionError`.
     """
     name, longest, largest = requirement.error, requirement.time_ns, requirement.delta_e
     cubes = [result for result in chart.measured if result.build and name in result.numbers]
+    cubes = [cube for cube in cubes if not (requirement.plain and "--atlas" in cube.build)]
     if not cubes:
         raise _unmet(f"the chart has no cube with {name}", "measure a chart with cubes")
     times = {cube: cube.numbers["time_ns"] for cube in cubes if longest is None or cube.numbers["time_ns"] <= longest}
@@ -291,7 +305,7 @@ def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
             f"no cube has at most ΔE00 {largest:g} {requirement.description}",
             f"the most accurate, {best.method}, has {format_error(smallest)}",
         )
-    return min(sufficient, key=times.__getitem__)
+    return min(sufficient, key=lambda cube: (cube.numbers["bytes"] * requirement.smallest, times[cube]))
 
 
 def _unmet(problem: str, hint: str) -> OptionError:

@@ -1,0 +1,96 @@
+"""``uplift advise``: the expected errors of a scene, and what to measure next."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import click
+
+from .. import options
+from ..inputs import expand_patterns, read_pictures
+from ..output.console import make_table, print_json, say, show
+from ..output.progress import progress_bar
+
+SHOWN = 4
+"""Images of a picture."""
+
+
+@click.command("advise")
+@click.argument("images", metavar="IMAGE...", nargs=-1, required=True)
+@click.option(
+    "--cube",
+    "cube_path",
+    metavar="FILE",
+    required=True,
+    help="Cube with an atlas of at least 8 entries.",
+    shell_complete=options.complete_cube,
+)
+@options.light("Illuminant of the scene", "A FL11 HP1")
+@click.option("--count", metavar="N", type=options.Whole(), default=6, help="Number of swatches, up to 100.")
+@options.pixels()
+@options.plot("Draw the first 4 images, their expected errors and the swatches")
+@options.output_format("table", "json")
+@options.force
+def command(
+    images: tuple[str, ...],
+    cube_path: str,
+    lights: tuple[str, ...],
+    count: int,
+    plot_path: str | None,
+    style: str,
+    force: bool,
+    **pixels: Any,
+) -> None:
+    """Estimate the errors of the colours of images, and name the swatches whose measurement lowers them most.
+
+    \b
+    Examples:
+      uplift advise wood.png --cube macbeth-32.uplift
+      uplift advise wood.png still-life.png --cube macbeth-32.uplift --light FL11 --plot advice.png
+      uplift advise wood.png --cube macbeth-32.uplift --count 12 --format json
+
+    Errors are standard errors, ΔE00 under each --light, averaged over the area of the images. A swatch is a colour of
+    the images: measure a material that has it, add it to the atlas, and build the cube again. Its gain is by how much
+    the mean of the errors is expected to fall, after the swatches above it. It supposes that all of a colour is one
+    material, and that colours close to it are like it as far as those of the atlas are.
+    """
+    from uplift.colorimetry.lights import RELIGHT_LIGHTS
+    from uplift.colorimetry.observer import light
+    from uplift.colorimetry.srgb import hex_codes
+    from uplift.common.files import check_output
+    from uplift.io.scene_colours import Images
+    from uplift.lookup import load
+    from uplift.scene import advice
+
+    paths = expand_patterns(images)
+    if plot_path is not None:
+        check_output(plot_path, inputs=(*paths, cube_path), force=force)
+    cube = load(cube_path)
+    sensor = cube.data.sensor
+    lit = [light(name, cube.observer, *sensor.range) for name in lights or RELIGHT_LIGHTS]
+    with progress_bar("choosing swatches"):
+        colours = advice.colour_areas(Images(tuple(map(Path, paths)), **pixels), sensor)
+        before = advice.uncertainty(cube, colours, lit)
+        chosen, after = advice.advise(before, count)
+    rgb = colours.rgb[[each.colour for each in chosen]]
+    if plot_path is not None:
+        shown = paths[:SHOWN]
+        pictures = {path: each.rgb for path, each in zip(shown, read_pictures(shown, sensor, **pixels), strict=True)}
+        chips = [(f"−{each.gain:.2g}", colour) for each, colour in zip(chosen, rgb, strict=True)]
+        advice.plot_advice(cube, pictures, lit, chips, plot_path, force=force)
+    stages = zip(lit, before.by_light(), after.by_light(), strict=True)
+    errors = {each.name: {"before": now, "after": then} for each, now, then in stages}
+    swatches = [{"hex": code, **asdict(each)} for code, each in zip(hex_codes(rgb, sensor), chosen, strict=True)]
+    if style == "json":
+        print_json({"images": paths, "cube": cube_path, "lights": errors, "swatches": swatches})
+        return
+    summary = make_table(("light",), ("expected ΔE00", "95 % of the area", f"after {len(chosen)} swatches", "95 %"))
+    for name, each in errors.items():
+        summary.add_row(name, *(f"{number:.2f}" for stage in each.values() for number in stage.values()))
+    table = make_table(("swatch",), ("area", "expected ΔE00", "gain", "mean ΔE00 after"))
+    for row in swatches:
+        numbers = (f"{row[name]:.2f}" for name in ("error", "gain", "mean_after"))
+        table.add_row(row["hex"], f"{row['area']:.1%}", *numbers)
+    show(summary, table)
+    if plot_path is not None:
+        say(plot_path, err=True)

@@ -1,0 +1,215 @@
+"""Swatches whose measurement would lower the errors of a scene most, by the standard errors of a cube.
+
+The square of a standard error is a part that the measurement of a material lowers and a rest (docs/mathematics.md, 7).
+The first is supposed to fall as the posterior variance of the kriging does. Swatches are chosen one after the other,
+each of the largest gain.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from uplift.colorimetry import Light, Sensor
+from uplift.colorimetry.delta_e import rgb_to_lab
+from uplift.colorimetry.srgb import to_display_codes
+from uplift.common.arrays import Array, StrPath, Values, blocks
+from uplift.common.errors import OptionError
+from uplift.common.machine import single_threaded_blas
+from uplift.fit.kriging import DEFAULT, Kernel, posterior
+from uplift.io.scene_colours import Images
+from uplift.lookup import Cube
+from uplift.lookup.light_errors import light_errors
+from uplift.models.arithmetic import distances
+from uplift.viz.figure import ACCENT, colour_map, figure_text, new_figure, write_figure
+
+BINS = (64, 32, 16, 8)
+"""Bins along each channel of encoded RGB; the first that leave few colours are taken."""
+MAX_COLOURS = 2048
+BLOCK_ROWS = 256
+"""Swatches whose gains are computed at a time."""
+MAX_SWATCHES = 100
+MIN_CHIPS = 8
+"""Swatches that a row of a plot has place for."""
+ALIKE = 1.0
+"""Distance in L*a*b* of pixels that have the colour of a swatch, for a plot."""
+TINY = 1e-9
+"""Variance, relative to that of an unknown material, below which nothing is left to measure."""
+
+
+@dataclass(frozen=True, eq=False)
+class ColourAreas:
+    """Linear RGB (n, 3) of a scene, and the share (n,) of its area that each has; the shares sum to 1."""
+
+    rgb: Array
+    area: Array
+
+
+def colour_areas(images: Images, sensor: Sensor) -> ColourAreas:
+    """Average the pixels of images in bins of encoded RGB. Raises `TextureError`, `ColourError` and `OptionError`."""
+    finest, size = BINS[0], BINS[0] ** 3
+    sums = np.zeros((size, 4))
+    for path in images.paths:
+        for rgb in images.colours(path, sensor):
+            codes = np.minimum(np.interp(rgb, sensor.decoding, np.linspace(0, finest, 256)), finest - 1)
+            index = codes.astype(int) @ (finest**2, finest, 1)
+            for column, values in enumerate((*rgb.T, None)):
+                sums[:, column] += np.bincount(index, values, size)
+    if not sums.any():
+        raise OptionError("images must have pixels, got none", hint="name an image with pixels")
+    for bins in BINS:
+        totals = sums.reshape((bins, finest // bins) * 3 + (4,)).sum(axis=(1, 3, 5)).reshape(-1, 4)
+        found = totals[totals[:, 3] > 0]
+        if len(found) <= MAX_COLOURS:
+            break
+    return ColourAreas(np.clip(found[:, :3] / found[:, 3:], 0, 1), found[:, 3] / found[:, 3].sum())
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """Standard errors of n colours of some area (n,) under L lights, √(c ``unknown`` + ``rest``).
+
+    c is the diagonal of the posterior ``covariance`` (n, n) of kriging, the others are squares of ΔE00 (n, L).
+    """
+
+    area: Array
+    covariance: Array
+    unknown: Array
+    rest: Array
+
+    @property
+    def errors(self) -> Array:
+        """Standard errors (n, L)."""
+        return self._errors(np.diag(self.covariance))
+
+    @property
+    def mean(self) -> float:
+        """Mean error over the area and the lights."""
+        return float(self._means(np.diag(self.covariance)))
+
+    def by_light(self) -> list[dict[str, float]]:
+        """Return the mean error under each light, and the error that 95 % of the area stays within."""
+        p95 = np.quantile(self.errors, 0.95, axis=0, weights=self.area, method="inverted_cdf")
+        pairs = zip((self.area @ self.errors).tolist(), p95.tolist(), strict=True)
+        return [{"mean": mean, "p95": bound} for mean, bound in pairs]
+
+    def gains(self) -> Array:
+        """Return by how much the measurement of each colour (n,) lowers the mean error."""
+        variance = np.diag(self.covariance)
+        found = np.empty(len(variance))
+        for rows in blocks(len(found), BLOCK_ROWS):
+            # c(x) − c(x, s)² / c(s)
+            known = self.covariance[rows] ** 2 / np.maximum(variance[rows], TINY)[:, None]
+            found[rows] = self._means(variance - known)
+        return np.maximum(self.mean - found, 0)
+
+    def measured(self, colour: int) -> "Uncertainty":
+        """Return what remains once a colour, by its number, is measured."""
+        row = self.covariance[colour]
+        return replace(self, covariance=self.covariance - np.outer(row, row / max(row[colour], TINY)))
+
+    def _errors(self, variance: Array) -> Array:
+        return np.asarray(np.sqrt(np.maximum(variance, 0)[..., None] * self.unknown + self.rest))
+
+    def _means(self, variance: Array) -> Any:
+        return self._errors(variance).mean(axis=-1) @ self.area
+
+
+@single_threaded_blas()
+def uncertainty(cube: Cube, colours: ColourAreas, lights: Sequence[Light]) -> Uncertainty:
+    """Return the errors of a cube at the colours of a scene. Raises `OptionError` if it has no left-out entries."""
+    data, prior = cube.data, cube.data.provenance.get("prior", {})
+    kernel = Kernel(prior.get("length", DEFAULT.length), prior.get("noise", DEFAULT.noise))
+    squares, rest = np.empty((2, len(colours.rgb), len(lights)))
+    for column, light in enumerate(lights):
+        errors = light_errors(data, light)
+        squares[:, column] = errors(colours.rgb)[:, 0] ** 2
+        rest[:, column] = errors.expected.radii.standard**2 * errors.expected.floor
+    lab = rgb_to_lab(data.sensor, colours.rgb)
+    covariance = posterior(kernel, data.entry_lab, lab)
+    variance = np.maximum(np.diag(covariance), TINY)
+    rest = np.minimum(rest, squares)
+    return Uncertainty(colours.area, covariance, (squares - rest) / variance[:, None], rest)
+
+
+@dataclass(frozen=True)
+class Swatch:
+    """A colour to measure, by its number in the scene.
+
+    ``error`` is the mean standard error of the colour before anything is measured, ``gain`` the amount by which the
+    mean error of the scene falls, and ``mean_after`` what remains.
+    """
+
+    colour: int
+    area: float
+    error: float
+    gain: float
+    mean_after: float
+
+
+@single_threaded_blas()
+def advise(scene: Uncertainty, count: int) -> tuple[list[Swatch], Uncertainty]:
+    """Choose up to ``count`` swatches, the best first, and return what remains. Those without a gain are left out."""
+    if not 1 <= count <= MAX_SWATCHES:
+        raise OptionError(f"count must be in [1, {MAX_SWATCHES}], got {count}")
+    chosen: list[Swatch] = []
+    errors = scene.errors.mean(axis=1)
+    for _ in range(count):
+        gains = scene.gains()
+        best = int(gains.argmax())
+        if not gains[best] > 0:
+            break
+        scene = scene.measured(best)
+        chosen.append(Swatch(best, float(scene.area[best]), float(errors[best]), float(gains[best]), scene.mean))
+    return chosen, scene
+
+
+def plot_advice(
+    cube: Cube,
+    pictures: Mapping[str, Values],
+    lights: Sequence[Light],
+    swatches: Sequence[tuple[str, Array]],
+    path: StrPath,
+    *,
+    force: bool = False,
+) -> None:
+    """Plot images, linear RGB (height, width, 3) by path, their mean standard errors, and numbered swatches.
+
+    The swatches are linear RGB (3,) and the text below each. Their numbers stand at the pixels of the nearest colours.
+    """
+    sensor, estimates = cube.data.sensor, [light_errors(cube.data, light) for light in lights]
+    flat = {name: rgb.reshape(-1, 3).astype(float) for name, rgb in pictures.items()}
+    maps = {name: np.mean([estimate(rgb)[:, 0] for estimate in estimates], axis=0) for name, rgb in flat.items()}
+    largest = max(float(np.quantile(each, 0.99)) for each in maps.values())
+    heights = [3.5 * rgb.shape[0] / rgb.shape[1] + 0.3 for rgb in pictures.values()]
+    figure = new_figure(7.6, sum(heights) + 1.1)
+    *rows, chips = figure.subfigures(len(pictures) + 1, 1, height_ratios=[*heights, 1.1], squeeze=False)[:, 0]
+    panels = {}
+    for row, (name, rgb) in zip(rows, pictures.items(), strict=True):
+        image, errors = row.subplots(1, 2)
+        image.imshow(to_display_codes(rgb, sensor) / 255)
+        image.set_title(figure_text(Path(name).name), fontsize=9, loc="left")
+        shown = errors.imshow(maps[name].reshape(rgb.shape[:2]), cmap=colour_map(), vmin=0, vmax=largest)
+        errors.set_title(f"expected ΔE00, {', '.join(light.name for light in lights)}", fontsize=9, loc="left")
+        row.colorbar(shown, ax=errors, format="%.1f")
+        image.set(xticks=(), yticks=())
+        errors.set(xticks=(), yticks=())
+        panels[name] = image
+    labs = {name: rgb_to_lab(sensor, rgb) for name, rgb in flat.items()}
+    axes = chips.subplots(1, max(len(swatches), MIN_CHIPS))
+    box = {"boxstyle": "circle", "facecolor": "white", "edgecolor": ACCENT}
+    for number, (text, rgb) in enumerate(swatches):
+        away = {name: distances(lab, rgb_to_lab(sensor, rgb[None]))[:, 0] for name, lab in labs.items()}
+        name = min(away, key=lambda name: away[name].min())
+        like = np.flatnonzero(away[name] <= away[name].min() + ALIKE)
+        y, x = divmod(int(like[len(like) // 2]), pictures[name].shape[1])
+        panels[name].text(x, y, str(number + 1), ha="center", va="center", fontsize=7, bbox=box)
+        axes[number].imshow(to_display_codes(rgb[None, None], sensor) / 255)
+        axes[number].set_title(f"{number + 1}", fontsize=8, pad=2)
+        axes[number].set_xlabel(text, fontsize=7)
+    for each in axes:
+        each.set(xticks=(), yticks=())
+        each.spines[:].set_visible(False)
+    write_figure(figure, path, force=force)
