@@ -1,4 +1,4 @@
-"""Other tools on the task of a build: CPU time per fitted node and accuracy, for docs/performance.md.
+"""Other tools on the task of a build: CPU time per fitted node and accuracy, for docs/speed.md.
 
 The task is the lattice of linear sRGB under D65, without an atlas. Answers are checked before they are timed. The other
 tools must be installed: a record without them would replace one that has them.

@@ -1,4 +1,4 @@
-"""Times of builds, processes, lookups and the exported C header, for docs/performance.md.
+"""Times of builds, processes, lookups and the exported C header, for docs/speed.md.
 
 Results are checked before they are timed.
 """

@@ -1,7 +1,7 @@
 """Fit of atlas entries: the measured spectrum, its colours under several lights, and exactly its RGB.
 
 docs/mathematics.md, 6. `Marquardt`, a solver of optimistix that is stepped in numpy, minimises the objective: nothing
-needs to be compiled for a few entries, and those that have converged leave the batch (docs/performance.md).
+needs to be compiled for a few entries, and those that have converged leave the batch (docs/speed.md).
 """
 
 from collections.abc import Callable
