@@ -69,12 +69,17 @@ def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
         return load(path), seconds, stopwatch(lambda: load(path))[1]
 
 
+def within(cube: Cube, wavelengths: Array) -> Array:
+    """Return the nearest wavelengths (N,) in the range of a cube, outside of which its spectra count as constant."""
+    return np.clip(wavelengths, *cube.wavelengths[[0, -1]])
+
+
 def prepare_lookup(task: Task, options: CubeOptions, mode: str, dtype: str) -> PreparedMethod:
     """Prepare `Cube.reflectance` in a mode."""
     cube, seconds, loading = built_cube(task, options)
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
-        return np.asarray(cube.reflectance(rgb, wavelengths, mode, dtype=dtype))
+        return np.asarray(cube.reflectance(rgb, within(cube, wavelengths), mode, dtype=dtype))
 
     data = cube.data
     size = nbytes(data.points.coefficients, data.lattice.nodes, data.atlas.rgb, data.entry_spectra.coefficients)
@@ -95,7 +100,7 @@ def prepare_bulk(task: Task, options: CubeOptions) -> PreparedMethod:
 
     def uplift(rgb: Values, wavelengths: Array) -> Values:
         usual = np.array_equal(wavelengths, at)
-        return np.asarray((sampler if usual else bulk.spectra(cube, wavelengths, threads=1))(rgb))
+        return np.asarray((sampler if usual else bulk.spectra(cube, within(cube, wavelengths), threads=1))(rgb))
 
     return PreparedMethod(uplift, sampler.nbytes, seconds, loading + preparing + compiling)
 
