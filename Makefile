@@ -94,7 +94,7 @@ library: $(INSTALLED)
 # Malformed input, ten thousand of each kind, and a thousand commands of each class: takes minutes.
 nightly: $(INSTALLED)
 	$(BIN)/python -m tests.fuzz
-	$(BIN)/python -m tests.fuzz.builds 2000
+	$(BIN)/python -m tests.fuzz.builds 0 2000
 
 # Packages with the example images of the pages plan, scenes and textures.
 pictures: $(INSTALLED)

@@ -28,8 +28,10 @@ SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB", "ACES
 OBSERVERS = ("CIE 1931 2 Degree Standard Observer", "CIE 1964 10 Degree Standard Observer")
 CAMERAS = ("Nikon 5100 (NPL)", "Sigma SDMerill (NPL)")
 SHAPES = ("smooth", "equal", "dark", "black", "white", "spiky")
-EXACT, SAME = 1e-4, 1e-3
-"""Largest error of a realisable colour, and largest difference between languages, of reflectances."""
+EXACT, SAME, DEEP = 1e-4, 1e-3, 1e-4
+"""Largest error of a realisable colour, and largest difference of reflectances between languages, of colours that far
+inside the solid. Nearer to its boundary spectra are steps. Single precision cannot place them: an error d of RGB at the
+distance h moves a step by about d / h of its width."""
 AT = (385.0, 450.0, 525.0, 600.0, 675.0, 775.0)
 PROGRAM = """#include <stdio.h>
 #include "cube.h"
@@ -49,16 +51,17 @@ int main(void)
 def odd_options(random: Random, dims: tuple[int, int]) -> dict[str, Any]:
     """Return options of a build, without atlas, library and looks."""
     space, model = choose(random, SPACES), choose(random, ("moments", "moments", "moments", "sigmoid"))
-    count = int(random.integers(3, 18))
+    counts = choose(random, ((3, 3), (4, 9), (5, 17), (9, 9), (9, 13), (17, 17)))  # few, as each is compiled
     options: dict[str, Any] = {"space": space, "dim": int(random.integers(*dims)), "model": model}
     options["illuminant"] = choose(random, ("D65", "D65", "A", "E", "D50", "FL2", "FL11"))
     options["observer"] = choose(random, CAMERAS if space == "camera" else OBSERVERS)
-    options["shortest"], options["longest"] = choose(random, ((380, 780), (380, 780), (360, 830), (320, 900)))
-    options["step"] = 5 if space == "camera" else choose(random, (5, 5, 10))
+    ranges = ((380, 780, 5), (380, 780, 10), (360, 830, 5), (320, 900, 10))
+    sampled = choose(random, ranges[::2] if space == "camera" else ranges)
+    options["shortest"], options["longest"], options["step"] = sampled
     options["axis"], options["warp"] = choose(random, ("srgb", "linear")), choose(random, ("none", "vision"))
     options["prior"] = choose(random, ("learnt", "smooth"))
     if model == "moments":
-        options |= {"coefficients": count, "entry_coefficients": int(random.integers(count, 18))}
+        options |= {"coefficients": counts[0], "entry_coefficients": counts[1]}
     return options
 
 
@@ -115,7 +118,8 @@ def broken_laws(seed: int, folder: Path, dims: tuple[int, int] = (2, 13)) -> Ite
         warnings.simplefilter("ignore", UpliftWarning)
         cube = uplift.build(atlas, library=library, looks=looks, **options)
         cube.save(folder / "cube.uplift")
-        yield from _file_laws(cube, folder)
+        if seed % 3 == 0:
+            yield from _file_laws(cube, folder)
         yield from _colour_laws(cube, colours(random, cube), folder)
 
 
@@ -147,41 +151,45 @@ def _colour_laws(cube: uplift.Cube, rgb: np.ndarray, folder: Path) -> Iterator[s
             yield f"realisable is {answer.get('realisable')}, {missed:.1e} from the nearest: {answer['rgb']}"
         if np.abs(np.array(answer["reflectance"]) - row).max() > 1e-6:
             yield "the command line has other reflectances"
-    inside = off < 1e-9
-    for mode in ("spectra", "moments"):
-        found, limit = _by_program(cube, mode, rgb, folder)
-        if found is None:
-            continue
+    deep = cube.data.solid.signed_distance(rgb) < -DEEP
+    for mode in ("spectra", "moments") if shutil.which("cc") else ():
+        found = _by_program(cube, mode, rgb, folder)
         if not (np.isfinite(found).all() and found.min() >= 0 and found.max() <= 1):
             yield f"C, {mode}: reflectances outside [0, 1]: {found.min()} {found.max()}"
-        difference = np.abs(found - cube.reflectance(rgb, at, mode))[inside].max(axis=1)
-        if difference.max() > limit:
-            yield f"C, {mode}: differs by {difference.max():.1e}: {rgb[inside][difference.argmax()].tolist()}"
+        difference = np.abs(found - cube.reflectance(rgb, at, mode)).max(axis=1) * deep
+        if difference.max() > SAME:
+            yield f"C, {mode}: differs by {difference.max():.1e}: {rgb[difference.argmax()].tolist()}"
     stored = texture.prepare(cube, texture.Spectrum(AT)).sample(rgb.astype(np.float32))
     if np.abs(stored - expected).max() > 1e-5:
         yield f"textures of spectra differ by {np.abs(stored - expected).max():.1e}"
 
 
-def _by_program(cube: uplift.Cube, mode: str, rgb: np.ndarray, folder: Path) -> tuple[np.ndarray | None, float]:
-    """Return reflectances (n, 6) of the program in C, None without a compiler, and how far it may be from Python."""
-    if shutil.which("cc") is None:
-        return None, 0.0
+def _by_program(cube: uplift.Cube, mode: str, rgb: np.ndarray, folder: Path) -> np.ndarray:
+    """Return reflectances (n, 6) of the program in C."""
     write_program(cube.data, folder / "cube.h", mode=mode, form="file", force=True)
     (folder / "main.c").write_text(PROGRAM % ", ".join(map(str, AT)))
     subprocess.run(["cc", "-std=c99", "-O0", "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
     done = subprocess.run(
         [folder / "main"], cwd=folder, input=rgb.astype(np.float32).tobytes(), capture_output=True, check=True
     )
-    return np.frombuffer(done.stdout, np.float32).reshape(-1, len(AT)), SAME
+    return np.frombuffer(done.stdout, np.float32).reshape(-1, len(AT))
 
 
 def broken(seed: int, dims: tuple[int, int] = (2, 13)) -> list[str]:
     """Return the laws that the build of a seed breaks."""
     with tempfile.TemporaryDirectory() as folder:
-        return [f"build {seed}: {law}" for law in broken_laws(seed, Path(folder), dims)]
+        try:
+            return [f"build {seed}: {law}" for law in broken_laws(seed, Path(folder), dims)]
+        except Exception as problem:  # one build must not end a night
+            return [f"build {seed}: {problem!r}"]
 
 
 if __name__ == "__main__":
-    failures = [law for seed in range(int(sys.argv[1])) for law in broken(seed)]
-    print(*failures, f"{len(failures)} laws broken", sep="\n")
+    first, last = map(int, sys.argv[1:])
+    failures = 0
+    for seed in range(first, last):
+        found = broken(seed, (2, 41) if seed % 20 == 0 else (2, 7))
+        failures += len(found)
+        print(*found, sep="\n", end="\n" * bool(found))
+    print(f"{failures} laws broken by {last - first} builds")
     sys.exit(bool(failures))

@@ -22,7 +22,7 @@ CORE = 0.1
 CELL_BLOCK = np.array(list(product((-1, 0, 1), repeat=3)))
 """(27, 3) steps to the cells that a box can touch: its half width is at most one step."""
 MARGIN = 1e-6
-"""Linear RGB by which rounding, to float32 too, can move a colour across the face of a cell."""
+"""Linear RGB by which rounding, to float32 too, can move a colour."""
 
 
 class BoxHits(NamedTuple):
@@ -55,9 +55,14 @@ class EntryBoxes:
 
     @cached_property
     def faces(self) -> tuple[Array, Array]:
-        """Linear RGB (E, 3) of the lowest and of the highest corner of each box, clipped to the lattice."""
-        steps, half = self.lattice.to_steps(self.rgb), self.half_width[:, None]
-        return self.lattice.from_steps(steps - half), self.lattice.from_steps(steps + half)
+        """Linear RGB (E, 3) of the lowest and of the highest corner of each box, clipped to the lattice.
+
+        Where an entry is within `MARGIN` of the edge, the face lies beyond: between the two, rounding would decide.
+        """
+        rgb, steps, half = self.rgb, self.lattice.to_steps(self.rgb), self.half_width[:, None]
+        low, high = self.lattice.from_steps(steps - half), self.lattice.from_steps(steps + half)
+        at_start, at_end = rgb < self.lattice.nodes[0] + MARGIN, rgb > self.lattice.nodes[-1] - MARGIN
+        return np.where(at_start, 2 * rgb - high, low), np.where(at_end, 2 * rgb - low, high)
 
     @cached_property
     def cells(self) -> tuple[Indices, Indices]:

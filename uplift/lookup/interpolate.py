@@ -28,6 +28,8 @@ from uplift.lookup.refine import refine_to_rgb, with_colours
 from uplift.models import evaluate, reflectance
 from uplift.models.model import Model
 
+MAX_SIZE = 500.0
+"""Largest sum of the multipliers' sizes of points that have not their own colours, in mixtures."""
 Mode = Callable[..., Array]
 """From a cube, linear RGB (n, 3) and wavelengths (N,) in nm to reflectance (n, N)."""
 
@@ -118,10 +120,21 @@ def mixed_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     nodes = around(data, rgb)
     # Each lattice point is evaluated once, although neighbouring colours share points.
     points, row = np.unique(nodes.points, return_inverse=True)
-    values = reflectance(data.model, data.points.coefficients[points], wavelengths)
+    values = evaluate(data.model, smoothed(data, points), wavelengths)
     # g = Σ w g_i has the colour W g = Σ w W g_i = Σ w r_i = x, as trilinear weights reproduce x.
     lattice = weighted_sum(values, row.reshape(nodes.points.shape), nodes.weights)
     return _mix_entries(data, nodes, lattice, wavelengths)
+
+
+def smoothed(data: CubeData, points: Indices) -> Array:
+    """Return multipliers (m, C) of lattice points, with less steep steps where points have not their own colours.
+
+    Spectra near the boundary of the solid are steps, which single precision cannot place; answers there are moved.
+    """
+    multipliers = data.model.from_storage(data.points.coefficients[points])
+    rows = np.flatnonzero(data.points.distance[points] > data.threshold)
+    multipliers[rows] *= np.minimum(1, MAX_SIZE / np.abs(multipliers[rows]).sum(axis=1))[:, None]
+    return multipliers
 
 
 def inexact_rows(data: CubeData, rgb: Array) -> Indices:

@@ -31,8 +31,9 @@ TRACE = [0, 2, 5]
 """Diagonal elements of a lower triangle, row by row."""
 MIN_CURVATURE = 0.01
 """Least ratio of the curvatures after and before a step."""
-LEAST = 3e-4
-"""Mixtures that are moved are clipped to this distance from 0 and 1, so that programs in single precision follow."""
+LEAST, SLOPE, MOST = 3e-4, 0.03, 1e-2
+"""Mixtures that are moved are clipped to a distance from 0 and 1, so that programs in single precision follow: the
+first, plus the second times the residual, at most the third."""
 BLOCK_COLUMNS = 1024
 """Spectra processed at a time: their temporary arrays fit into the cache."""
 
@@ -83,16 +84,17 @@ def with_colours(data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, 
     ``spectra`` (n, N) are reflectances in [0, 1] at any wavelengths (N,) in nm, ``at_sensor`` (n, M) the same at those
     of the sensor. They need not be of the model. Those that have their colour stay to the last bit.
     """
-    model, pulled = data.model, pull(data.sensor)
-    moved, linear = spectra.copy(), model.from_reflectance(np.clip(at_sensor.T, LEAST, 1 - LEAST))
+    model, pulled, moved = data.model, pull(data.sensor), spectra.copy()
     shapes = np.array([np.interp(wavelengths, data.sensor.wavelengths, shape) for shape in pulled.shapes])
-    rows = np.flatnonzero(np.abs(data.sensor.rgb(at_sensor) - rgb).max(axis=1) > TOLERANCE)
-    goal = pulled.scale @ within_solid(data, rgb[rows]).T
-    for first in range(0, rows.size, BLOCK_COLUMNS):
-        block = rows[first : first + BLOCK_COLUMNS]
-        change = _pull(model, pulled, linear[:, block], goal[:, first : first + BLOCK_COLUMNS])
-        start = model.from_reflectance(np.clip(spectra[block], LEAST, 1 - LEAST))
-        moved[block] = model.to_reflectance(start + change.T @ shapes)
+    pending = np.flatnonzero(np.abs(data.sensor.rgb(at_sensor) - rgb).max(axis=1) > TOLERANCE)
+    for first in range(0, pending.size, BLOCK_COLUMNS):
+        rows = pending[first : first + BLOCK_COLUMNS]
+        goal = pulled.scale @ within_solid(data, rgb[rows]).T
+        # Near 0 and 1 the linear part is large: the farther it moves, the farther it starts from there.
+        least = np.minimum(LEAST + SLOPE * np.abs(goal - pulled.sensor @ at_sensor[rows].T).max(axis=0), MOST)
+        change = _pull(model, pulled, model.from_reflectance(np.clip(at_sensor[rows].T, least, 1 - least)), goal)
+        start = model.from_reflectance(np.clip(spectra[rows].T, least, 1 - least))
+        moved[rows] = model.to_reflectance(start + shapes.T @ change).T
     return moved
 
 

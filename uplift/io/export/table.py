@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
-from uplift.lookup.refine import LEAST, pull
+from uplift.lookup.interpolate import smoothed
+from uplift.lookup.refine import LEAST, MOST, SLOPE, pull
 from uplift.models import Moments, Sigmoid
 from uplift.models.moments import WARPS, warped
 
@@ -47,7 +48,7 @@ def make_table(data: CubeData, mode: str) -> Table:
     lists, tags = _lists(data)
     stored = [data.points.coefficients, data.atlas.coefficients]
     if mode == "spectra":
-        stored = [model.from_storage(coefficients) for coefficients in stored]
+        stored = [smoothed(data, np.arange(size)), model.from_storage(data.atlas.coefficients)]
     rows = np.zeros((size + len(data.atlas.names), stride), dtype=np.float32)
     rows[:, : model.count] = np.concatenate(stored)
     rows[:size, model.count] = tags
@@ -69,7 +70,7 @@ def make_table(data: CubeData, mode: str) -> Table:
         "BIN_COUNT": BIN_COUNT,
         "SPECTRA": int(mode == "spectra"),
         "INEXACT": int(data.inexact_cells is not None),
-        "PLACE": 4 if data.inexact_cells is None else 7,
+        "PLACE": 4 if data.inexact_cells is None else 8,
         **how,
         **offsets,
         **model_constants(model),
@@ -125,16 +126,17 @@ def _moving(data: CubeData) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
     }
     first, _, step = sensor.range
     how = {"SAMPLES": len(sensor.wavelengths), "FIRST": first, "STEP": step, "FACET_COUNT": half}
-    return sections, how | {"MARGIN": data.threshold / 2, "LEAST": LEAST}
+    return sections, how | {"MARGIN": data.threshold / 2, "LEAST": LEAST, "SLOPE": SLOPE, "MOST": MOST}
 
 
 def _boxes(boxes: EntryBoxes) -> Floats:
-    """Return centres and reciprocals of the distances to the faces, (E, 9); 0 for no distance."""
+    """Return centres, the rest that they round off, and reciprocals of distances to the faces, (E, 12); 0 for none."""
     low, high = boxes.faces
     below, above = (
         np.divide(1, room, out=np.zeros_like(room), where=room > 0) for room in (boxes.rgb - low, high - boxes.rgb)
     )
-    return np.concatenate([boxes.rgb, below, above], axis=1).astype(np.float32)
+    centre = boxes.rgb.astype(np.float32)
+    return np.concatenate([centre, boxes.rgb - centre, below, above], axis=1).astype(np.float32)
 
 
 def model_constants(model: object) -> dict[str, float]:

@@ -213,12 +213,12 @@ UP_FUNCTION int up_locate(UP_READS UP_IN float rgb[3], UP_OUT float place[UP_PLA
         while (listed < last) {
             listed += 1;
             int candidate = UP_INT(up_number(UP_TABLE UP_LISTS + listed));
-            int box = UP_BOXES + 9 * candidate;
+            int box = UP_BOXES + 12 * candidate;
             float reached = 0.0f;
             for (int axis = 0; axis < 3; ++axis) {
-                float ray = query[axis] - up_number(UP_TABLE box + axis);
-                float part = ray > 0.0f ? ray * up_number(UP_TABLE box + 6 + axis)
-                                        : -ray * up_number(UP_TABLE box + 3 + axis);
+                float ray = query[axis] - up_number(UP_TABLE box + axis) - up_number(UP_TABLE box + 3 + axis);
+                float part = ray > 0.0f ? ray * up_number(UP_TABLE box + 9 + axis)
+                                        : -ray * up_number(UP_TABLE box + 6 + axis);
                 reached = part > reached ? part : reached;
             }
             if (reached < 1.0f) {
@@ -230,8 +230,9 @@ UP_FUNCTION int up_locate(UP_READS UP_IN float rgb[3], UP_OUT float place[UP_PLA
     }
     if (entry >= 0 && place[3] > 0.0f)
         for (int axis = 0; axis < 3; ++axis) {
-            float centre = up_number(UP_TABLE UP_BOXES + 9 * entry + axis);
-            place[axis] = up_clip(centre + (query[axis] - centre) / place[3]);
+            int centre = UP_BOXES + 12 * entry + axis;
+            float ray = query[axis] - up_number(UP_TABLE centre) - up_number(UP_TABLE centre + 3);
+            place[axis] = up_clip(up_number(UP_TABLE centre) + ray / place[3]);
         }
     return entry;
 }
@@ -457,11 +458,11 @@ UP_FUNCTION void up_blend(
 
 #if UP_INEXACT
 
-/* The argument x of a reflectance 1/2 + deviation(x), away from 0 and 1. */
-UP_FUNCTION float up_linear(float reflectance)
+/* The argument x of a reflectance 1/2 + deviation(x), at least a distance away from 0 and 1. */
+UP_FUNCTION float up_linear(float reflectance, float away)
 {
     float middle = reflectance - 0.5f;
-    float size = UP_ABS(middle) < 0.5f - UP_LEAST ? UP_ABS(middle) : 0.5f - UP_LEAST;
+    float size = UP_ABS(middle) < 0.5f - away ? UP_ABS(middle) : 0.5f - away;
 #if UP_SIGMOIDS
     float x = size / UP_SQRT((0.5f - size) * (0.5f + size));
 #else
@@ -543,7 +544,7 @@ UP_FUNCTION void up_step(UP_IN UP_FINE found[9], UP_FINE part, UP_OUT UP_FINE ch
 }
 
 /* Set place[4] to place[6], by which arguments move along the curves of the sensor, so that the answer has its colour:
-   the minimum of a convex function [uplift.lookup.refine]. */
+   the minimum of a convex function [uplift.lookup.refine]. place[7] is how far from 0 and 1 they start. */
 UP_FUNCTION void up_pull(UP_READS UP_IN float rgb[3], int entry, UP_OUT float place[UP_PLACE])
 {
     UP_ARRAY(colour, 3);
@@ -560,7 +561,7 @@ UP_FUNCTION void up_pull(UP_READS UP_IN float rgb[3], int entry, UP_OUT float pl
     for (int start = 0; start < UP_SAMPLES; start += UP_WIDTH) {
         for (int w = 0; w < UP_WIDTH; ++w) at[w] = UP_FIRST + UP_STEP * UP_REAL(start + w);
         up_blend(UP_TABLE place, entry, at, total);
-        for (int w = 0; w < UP_WIDTH && start + w < UP_SAMPLES; ++w) given[start + w] = up_linear(total[w]);
+        for (int w = 0; w < UP_WIDTH && start + w < UP_SAMPLES; ++w) given[start + w] = total[w];
     }
     for (int axis = 0; axis < 3; ++axis) colour[axis] = up_clip(rgb[axis]);
     up_realise(UP_TABLE colour);
@@ -569,6 +570,15 @@ UP_FUNCTION void up_pull(UP_READS UP_IN float rgb[3], int entry, UP_OUT float pl
         for (int k = 0; k < 3; ++k)
             goal[axis] += UP_EXACT(up_number(UP_TABLE UP_SCALES + 3 * axis + k)) * colour[k];
     }
+    place[7] = 0.0f;
+    for (int k = 0; k < 3; ++k) {
+        float rest = UP_REAL(goal[k]);
+        for (int row = 0; row < UP_SAMPLES; ++row) rest -= up_number(UP_TABLE UP_PULL + 6 * row + k) * given[row];
+        place[7] = UP_ABS(rest) > place[7] ? UP_ABS(rest) : place[7];
+    }
+    place[7] = UP_LEAST + UP_SLOPE * place[7];
+    place[7] = place[7] < UP_MOST ? place[7] : UP_MOST;
+    for (int row = 0; row < UP_SAMPLES; ++row) given[row] = up_linear(given[row], place[7]);
     up_residual(UP_TABLE given, goal, change, found);
     for (int turn = 0; turn < UP_STEPS && off > UP_TOLERANCE; ++turn) {
         UP_FINE before = UP_EXACT(0.0f), beyond = UP_EXACT(0.0f);
@@ -614,7 +624,7 @@ UP_FUNCTION void up_move(
 {
     if (place[4] != 0.0f || place[5] != 0.0f || place[6] != 0.0f)
         for (int w = 0; w < UP_WIDTH; ++w) {
-            float position = (wavelengths[w] - UP_FIRST) / UP_STEP, x = up_linear(total[w]);
+            float position = (wavelengths[w] - UP_FIRST) / UP_STEP, x = up_linear(total[w], place[7]);
             position = up_clip(position / UP_REAL(UP_SAMPLES - 1)) * UP_REAL(UP_SAMPLES - 1);
             int row = UP_INT(position) < UP_SAMPLES - 1 ? UP_INT(position) : UP_SAMPLES - 2;
             float share = position - UP_REAL(row);
