@@ -111,7 +111,7 @@ def broken_laws(seed: int, folder: Path, dims: tuple[int, int] = (2, 13)) -> Ite
         library = folder / "library.csv"
         write_atlas(odd_atlas(random, 12), library)
     looks = None
-    if options["model"] == "moments" and options["space"] != "camera" and random.random() < 0.15:
+    if options.get("entry_coefficients", 3) > 3 and options["space"] != "camera" and random.random() < 0.15:
         light = "A" if options["illuminant"] != "A" else "D65"
         looks = uplift.Look(tuple(random.uniform(0.2, 0.6, 3)), {light: tuple(random.uniform(0.2, 0.6, 3))})
     with warnings.catch_warnings():

@@ -3,6 +3,7 @@
 import pytest
 
 from tests.fuzz import fuzzing
+from tests.fuzz.builds import broken
 from tests.fuzz.commands import COMMANDS
 from tests.fuzz.fuzzing import Target, fuzz
 from tests.fuzz.readers import READERS
@@ -40,3 +41,9 @@ def test_inputs_that_once_failed_are_rejected(tmp_path, name, content):
     target = Target(name, lambda random, path: path.write_bytes(content), READERS[name].use)
     (outcome,) = fuzz(target, 0, range(1), tmp_path, tmp_path)
     assert outcome == ("rejected" if name != "colour table" or b"x" in content else "accepted")
+
+
+@pytest.mark.parametrize("seed", [9, 10, 14])
+def test_odd_builds_keep_the_laws(seed):
+    """The cheapest kinds; `make nightly` runs thousands of all kinds."""
+    assert not broken(seed, (2, 4))

@@ -21,10 +21,12 @@ from uplift.common.errors import OptionError, UpliftWarning, unknown_name
 from uplift.common.files import atomic_write, check_output
 from uplift.common.version import VERSION
 from uplift.cube import CubeData, digest
-from uplift.io.export.table import COLUMNS, MODES, Table, make_table
+from uplift.io.export.table import COLUMNS, MODES, Table, make_table, rounding_error
 
 LARGE = 16_000_000
 """Size in bytes above which compilation of a header is slow."""
+VISIBLE = 1e-3
+"""Error of reflectances that is stated."""
 LOOP = re.compile(
     r"^(?P<indent> *)UP_UNROLL\n *for \(int (?P<name>\w+) = (?P<start>.+); \w+ < (?P<stop>.+); \+\+\w+\) "
     r"(?P<body>\{\n(?:(?P=indent) .*\n)*(?P=indent)\}\n|[^{].*\n)",
@@ -88,6 +90,9 @@ def write_program(
     path, form, table = Path(path), check_form(style, form), make_table(data, mode)
     text = cube_program(data, table, style, mode, path.stem, form)
     written = write_files(text, table, path, form, per_line=table.constants["STRIDE"], force=force)
+    if (error := rounding_error(data, table)) > VISIBLE:
+        problem = f"single precision changes reflectances of nodes by up to {error:.1g}"
+        warnings.warn(UpliftWarning(problem, path=path, hint="use fewer coefficients"), stacklevel=2)
     size = path.stat().st_size
     if size > LARGE:
         problem = f"the header has {size / 1e6:.0f} MB and is slow to compile"

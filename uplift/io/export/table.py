@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.common.arrays import blocks
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
 from uplift.lookup.interpolate import smoothed
 from uplift.lookup.refine import LEAST, MOST, SLOPE, pull
-from uplift.models import Moments, Sigmoid
+from uplift.models import Moments, Sigmoid, evaluate
 from uplift.models.moments import WARPS, warped
 
 BIN_COUNT = 1024
@@ -21,6 +22,8 @@ TEXEL = 4
 COLUMNS = 2048
 """Texels in a row of the table as an image: every graphics card that can run the program has textures of this width."""
 MODES = ("spectra", "moments")
+BLOCK = 4096
+"""Nodes whose spectra are in memory at once."""
 
 Floats = NDArray[np.float32]
 
@@ -76,6 +79,23 @@ def make_table(data: CubeData, mode: str) -> Table:
         **model_constants(model),
     }
     return Table(numbers, constants)
+
+
+def rounding_error(data: CubeData, table: Table) -> float:
+    """Return the largest change of spectra of nodes by the rounding of their numbers: a bound for their mixtures.
+
+    Nodes without their own colours do not count: answers around them are moved, and their steps are smoothed.
+    """
+    model, stride, worst = data.model, table.constants["STRIDE"], 0.0
+    exact = np.flatnonzero(data.points.distance <= data.threshold)
+    rows = table.numbers[: data.lattice.size * stride].reshape(-1, stride)[:, : model.count].astype(float)
+    for block in blocks(len(exact), BLOCK):
+        points = exact[block]
+        expected = model.from_storage(data.points.coefficients[points])
+        found = rows[points] if table.constants["SPECTRA"] else model.from_storage(rows[points])
+        spectra = (evaluate(model, each, data.sensor.wavelengths) for each in (found, expected))
+        worst = max(worst, float(np.abs(np.subtract(*spectra)).max()))
+    return worst
 
 
 def concatenate(sections: Mapping[str, NDArray[Any]]) -> tuple[Floats, dict[str, int]]:
