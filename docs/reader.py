@@ -16,7 +16,8 @@ import numpy as np
 
 TYPES = {"F64": "<f8", "F32": "<f4", "U8": "|u1", "I32": "<i4", "I16": "<i2", "U32": "<u4"}
 GREY = (0, 1e-10, 1e-8, 1e-6, 1e-4)  # weights of grey, until the moments have a spectrum
-LEAST = 3e-4  # distance from 0 and 1 of the mixtures that are moved
+LEAST, SLOPE, MOST = 3e-4, 0.03, 0.01  # distance from 0 and 1 of the mixtures that are moved
+MAX_SIZE, EDGE = 500, 1e-6  # of multipliers that are mixed without their own colour; of entries from the edge
 TERMS = {"none": [], "vision": [(1, 0.0072, 538)], "colour": [(1, 0.0263, 480), (1.066, 0.0227, 578)]}
 
 
@@ -62,7 +63,10 @@ class Cube:
         if is_exact or np.abs(self.matrix @ at_sensor - rgb).max() <= 1e-8:
             return mixed
         # g′ = S(x + K y) with W g′ = t, by Newton's steps, which are shortened where they go too far
-        goal, x, y, part = self.realisable(rgb), self.linear(at_sensor), np.zeros(3), 1.0
+        goal, y, part = self.realisable(rgb), np.zeros(3), 1.0
+        scale = np.linalg.inv(np.linalg.cholesky(self.matrix @ self.curves))
+        least = min(LEAST + SLOPE * np.abs(scale @ (goal - self.matrix @ at_sensor)).max(), MOST)
+        x = self.linear(at_sensor, least)
         off = goal - self.matrix @ self.squash(x)
         for _ in range(100):
             if np.abs(off).max() < 1e-12:
@@ -73,7 +77,7 @@ class Cube:
             part, good = (min(4 * part, 1), True) if after @ step >= -off @ step / 2 else (part / 4, False)
             y, off = (y + step, after) if good else (y, off)
         curves = np.array([np.interp(wavelengths, sensor, curve) for curve in self.curves.T])
-        return self.squash(self.linear(mixed) + y @ curves)
+        return self.squash(self.linear(mixed, least) + y @ curves)
 
     def mixture(self, rgb, wavelengths):
         """Weighted reflectances of nodes and entry, and whether all nodes have their own colours."""
@@ -85,10 +89,12 @@ class Cube:
             red, green, blue = low + corner
             rows.append(self.row[int((red * len(self.nodes) + green) * len(self.nodes) + blue)])
             weights.append(np.where(corner, along, 1 - along).prod())
-        value = weights @ self.spectra(self.arrays["coefficients"][rows].astype(float), wavelengths)
+        is_exact = self.arrays["distance"][rows] <= self.threshold
+        limits = np.where(is_exact, np.inf, MAX_SIZE)
+        value = weights @ self.spectra(self.arrays["coefficients"][rows].astype(float), wavelengths, limits)
         if entry is not None:
             value = share * value + (1 - share) * self.spectra(self.entries[[entry]], wavelengths)[0]
-        return value, (self.arrays["distance"][rows] <= self.threshold).all()
+        return value, is_exact.all()
 
     def box(self, rgb):
         """The entry in whose box a colour lies, the weight of the lattice, and the colour at which it is evaluated."""
@@ -96,6 +102,10 @@ class Cube:
         for entry, (centre, reach) in enumerate(zip(self.arrays["atlas.rgb"], self.arrays["atlas.reach"], strict=True)):
             at = np.interp(centre, self.nodes, steps)
             low, high = (np.interp(at + reach * sign, steps, self.nodes) for sign in (-1, 1))
+            low, high = (
+                np.where(centre < EDGE, 2 * centre - high, low),
+                np.where(centre > 1 - EDGE, 2 * centre - low, high),
+            )
             if reach > 0 and (rgb >= low).all() and (rgb <= high).all():
                 ray = rgb - centre
                 room = np.where(ray > 0, high - centre, centre - low)
@@ -103,19 +113,19 @@ class Cube:
                 return entry, share, np.clip(centre + ray / share, 0, 1) if share > 0 else rgb
         return None, 1.0, rgb
 
-    def spectra(self, coefficients, wavelengths):
-        """Reflectances (n, N) of coefficients (n, C)."""
+    def spectra(self, coefficients, wavelengths, limits=np.inf):
+        """Reflectances (n, N) of coefficients (n, C), with multipliers Σ |p| up to a limit."""
         model = self.meta["model"]
         first, last = (model.get(key, model.get("phase", {}).get(key)) for key in ("start", "end"))
         at = np.clip(wavelengths, first, last)
         if self.sigmoid:
             s = 2 * (at - first) / (last - first) - 1
-            return self.squash(coefficients @ [s * s, s, np.ones_like(s)])
+            return self.squash(limited(coefficients, limits) @ [s * s, s, np.ones_like(s)])
         low, at, high = (warp(model["phase"]["warp"], each) for each in (first, at, last))
         phase = np.pi * (at - low) / (high - low) - np.pi
         basis = 2 * np.cos(np.outer(np.arange(coefficients.shape[1]), phase))
         basis[0] = 1
-        return self.squash(multipliers(coefficients) @ basis)
+        return self.squash(limited(multipliers(coefficients), limits) @ basis)
 
     def squash(self, x, derivative=False):
         """S(x) or S′(x)."""
@@ -123,9 +133,9 @@ class Cube:
             return 0.5 / (1 + x * x) ** 1.5 if derivative else 0.5 + x / (2 * np.sqrt(1 + x * x))
         return 1 / (np.pi * (1 + x * x)) if derivative else 0.5 + np.arctan(x) / np.pi
 
-    def linear(self, reflectance):
-        """S⁻¹ of reflectances, away from 0 and 1."""
-        half = np.clip(reflectance, LEAST, 1 - LEAST) - 0.5
+    def linear(self, reflectance, least):
+        """S⁻¹ of reflectances, at least a distance away from 0 and 1."""
+        half = np.clip(reflectance, least, 1 - least) - 0.5
         return 2 * half / np.sqrt(1 - 4 * half * half) if self.sigmoid else np.tan(np.pi * half)
 
     @cached_property
@@ -149,6 +159,12 @@ class Cube:
         out = speed > 0
         reach = ((room - normals @ grey)[out] / speed[out]).min() - margin / max(margin, np.abs(chroma).max())
         return grey + np.clip(reach, 0, 1) * chroma
+
+
+def limited(found, limits):
+    """Multipliers (n, C), scaled down to sums of magnitudes (n,)."""
+    with np.errstate(divide="ignore"):
+        return found * np.minimum(1, limits / np.abs(found).sum(axis=1))[:, None]
 
 
 def multipliers(moments):

@@ -43,7 +43,7 @@ def test_inputs_that_once_failed_are_rejected(tmp_path, name, content):
     assert outcome == ("rejected" if name != "colour table" or b"x" in content else "accepted")
 
 
-@pytest.mark.parametrize("seed", [9, 10, 14])
+@pytest.mark.parametrize("seed", [10, 14])
 def test_odd_builds_keep_the_laws(seed):
     """The cheapest kinds; `make nightly` runs thousands of all kinds."""
     assert not broken(seed, (2, 4))
