@@ -19,7 +19,6 @@ from uplift.io.export import coeff, write_coeff
 from uplift.models.sigmoid import evaluate_unscaled
 
 RES = 5
-
 DARK_RED = [0.00010678071, 0, 0.000010491596]
 """A colour of pbrt's tests: its table gave it reflectances near 1 (mmp/pbrt-v4, issue 82)."""
 STRONG_RED = [0.78594791889190674, 0.10324395447969437, 0.12402211874723434]
@@ -103,6 +102,29 @@ def test_colour_science_and_mitsuba_read_it(table, sensor):
     np.testing.assert_allclose(ours, reader.RGB_to_coefficients(rgb), rtol=1e-4)
     found = sensor.rgb(evaluate_unscaled(ours, sensor.wavelengths))
     np.testing.assert_allclose(found, rgb, rtol=0, atol=1e-4)
+
+
+def test_the_largest_reflectance_is_at_an_end_or_where_the_polynomial_turns(table):
+    """MaxValue of pbrt: a closed form, of which samples at every 0.01 nm come short by little."""
+    content = np.frombuffer(table.read_bytes(), "<f4", 9 * RES**3, 8 + 4 * RES).reshape(-1, 3).astype(float)
+    square, linear, _ = content.T
+    turn = np.divide(-linear, 2 * square, out=np.full_like(linear, 360), where=square < 0)
+    places = np.stack([np.full_like(turn, 360), np.full_like(turn, 830), np.clip(turn, 360, 830)], axis=-1)
+    t = np.stack([(content * np.stack([x**2, x, x**0], axis=-1)).sum(axis=-1) for x in places.T])
+    largest = (0.5 + t / (2 * np.sqrt(1 + t**2))).max(axis=0)
+    samples = evaluate_unscaled(content, np.linspace(360, 830, 4701)).max(axis=1)
+    assert ((turn > 360) & (turn < 830)).sum() > RES**2
+    assert samples.max() <= 1
+    np.testing.assert_allclose(samples, largest, rtol=0, atol=5e-3)
+
+
+def test_greys_have_constant_spectra(table):
+    """The greys of Mitsuba's test_spectra.py."""
+    reader = colour.recovery.LUT3D_Jakob2019()
+    reader.read(table)
+    scale = np.array(struct.unpack_from(f"<{RES}f", table.read_bytes(), 8))
+    found = evaluate_unscaled(reader.RGB_to_coefficients(np.repeat(scale[:, None], 3, axis=1)), np.arange(360, 831.0))
+    np.testing.assert_allclose(found, np.repeat(scale[:, None], 471, axis=1), atol=1e-3)
 
 
 @pytest.mark.parametrize("res", [1, 257])
