@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 from PIL import Image
+from scipy.ndimage import map_coordinates
 
 import uplift
 from benchmarks import DOCS, record
@@ -18,12 +19,16 @@ from benchmarks.checker import BACKGROUND, Layout, chart, draw
 from tests.examples import build_wheel, run_lines, unpack
 from uplift.colorimetry import Light, delta_e_2000, lab
 from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS
-from uplift.colorimetry.observer import light, sensor
+from uplift.colorimetry.observer import DEFAULT_OBSERVER, grid, illuminant_spd, light, matching_functions, sensor
+from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
 from uplift.common.files import atomic_write
+from uplift.io.export import write_film
+from uplift.io.export.film import CAT02, LAYER_WIDTH, LAYERS
 from uplift.lab.chart import mitsuba3
 from uplift.report.relight import relight, write_relit_sheet
 from uplift.samples import sample_path
+from uplift.viz.figure import new_figure, write_png
 
 FOLDER = DOCS / "showcase"
 MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
@@ -33,6 +38,7 @@ MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
     "uplift, no atlas",
     "uplift, with the chart",
 )
+FILM_LIGHT, FILM_SIZE = "D55", (11.2, 2.9)
 LAYOUT = Layout(patch=32, gap=4)
 SIZE = (11.2, 5.2)
 JPEG_WIDTH, JPEG_QUALITY = 1500, 88
@@ -59,6 +65,7 @@ def main() -> None:
     }
     draw_charts(lamps, methods, errors)
     draw_still_life()
+    expose_film()
     record(
         "showcase",
         session=session(),
@@ -144,3 +151,37 @@ def draw_still_life() -> None:
     small.save(buffer, "JPEG", quality=JPEG_QUALITY, subsampling=0)
     with atomic_write(FOLDER / "relit.jpg", force=True) as temporary:
         temporary.write_bytes(buffer.getvalue())
+
+
+def expose_film() -> None:
+    """Expose the chart on a film by tables, draw the layers as red, green and blue, and store the errors in stops."""
+    painted, daylight, luminous = chart(), light(FILM_LIGHT), matching_functions(DEFAULT_OBSERVER)[:, 1]
+    power = illuminant_spd(FILM_LIGHT) / (illuminant_spd(FILM_LIGHT) @ luminous / luminous.sum())
+    layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS[::-1]) / LAYER_WIDTH) ** 2)
+    exposures, figures = {MEASURED: painted.measured * power @ layers}, {}
+    for name, cube in ((PLAIN, uplift.load()), (ATLAS, uplift.build("macbeth", dim=DIM))):
+        with tempfile.TemporaryDirectory() as folder:
+            stated = write_film(cube, Path(folder) / "film.npy", light=FILM_LIGHT).stops
+            table = np.load(Path(folder) / "film.npy").astype(float) @ layers
+        # As readers do: adapt to the light of the film, look up the chromaticity, scale by X + Y + Z.
+        gain = (CAT02 @ daylight.white) / (CAT02 @ cube.data.sensor.light.white)
+        xyz = np.linalg.solve(CAT02, gain[:, None] * (CAT02 @ cube.data.sensor.xyz(painted.painted).T))
+        (x, y, _), total = xyz / xyz.sum(axis=0), xyz.sum(axis=0)
+        places = np.array([(1 - x) ** 2, y / (1 - x)]) * (len(table) - 1)
+        found = np.stack([map_coordinates(table[..., each], places, order=1) for each in range(3)], axis=1)
+        exposures[name] = found * total[:, None]
+        stops = np.abs(np.log2(exposures[name] / exposures[MEASURED])).mean(axis=1)
+        figures[name] = {"stated": stated, "mean": stops.mean(), "largest": stops.max(), "patches": stops.tolist()}
+    figure = new_figure(*FILM_SIZE)
+    for axes, (name, exposure) in zip(figure.subplots(1, len(exposures)), exposures.items(), strict=True):
+        image = np.full((*LAYOUT.size[::-1], 3), BACKGROUND)
+        for number, place in enumerate(LAYOUT.patches()):
+            image[place] = exposure[number] / (power @ layers)
+            if name in figures:
+                corner, dark = (place[1].start + 2, place[0].stop - 3), image[place].mean() < 0.25
+                axes.text(*corner, f"{figures[name]['patches'][number]:.2f}", fontsize=8, color="w" if dark else "k")
+        axes.imshow(encode(np.clip(image, 0, 1)), interpolation="nearest")
+        axes.set(xticks=(), yticks=(), title=name)
+        axes.spines[:].set_visible(False)
+    write_png(figure, FOLDER / "film.png", force=True)
+    record("showcase", "film", light=FILM_LIGHT, cubes=[{"cube": name, **each} for name, each in figures.items()])
