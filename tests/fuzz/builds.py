@@ -107,7 +107,7 @@ def broken_laws(seed: int, folder: Path, dims: tuple[int, int] = (2, 13)) -> Ite
     if size:
         atlas = folder / "atlas.csv"
         write_atlas(odd_atlas(random, size), atlas)
-    if options["prior"] == "learnt" and random.random() < 0.15:
+    if options["prior"] == "learnt" and options.get("coefficients", 3) > 3 and random.random() < 0.15:
         library = folder / "library.csv"
         write_atlas(odd_atlas(random, 12), library)
     looks = None
