@@ -108,3 +108,15 @@ def check_page(path: StrPath) -> None:
 
     if not os.fspath(path).lower().endswith(".html"):
         raise OutputError("the name of a page must end in .html", path=path, hint="name the page .html")
+
+
+def check_range(wavelengths: Array | None, own: Array) -> None:
+    """Check that wavelengths (N,) lie in the range of those of a cube or table."""
+    from uplift.common.errors import OptionError
+
+    first, last = own[[0, -1]]
+    outside = [] if wavelengths is None else [each for each in wavelengths if not first <= each <= last]
+    if outside:
+        micrometres = f"give nm: {outside[0]:g} µm are {1000 * outside[0]:g} nm"
+        hint = micrometres if outside[0] < 10 else "stay in this range, or build with a wider one"
+        raise OptionError(f"wavelengths must lie in {first:g}-{last:g} nm, got {outside[0]:g}", hint=hint)

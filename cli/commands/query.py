@@ -17,6 +17,7 @@ from uplift.common.text import printable
 
 from .. import options
 from ..colours import find_colours
+from ..inputs import check_range
 from ..output.answers import (
     coordinates,
     describe_coordinates,
@@ -72,6 +73,7 @@ def ask(
 
     source = find_colours(**colours)
     cube = load(cube_path)
+    check_range(wavelengths, cube.wavelengths)
     found: list[Light] = []
     if lights:
         from uplift.colorimetry.observer import light

@@ -55,7 +55,7 @@ def inputs(home, cubes, macbeth):
         "plan scene.toml -o image.exr",
         "query --cube cube.uplift #c8342a --plot cube.svg",
         "query --input colours.csv --plot colours.pdf",
-        "report cube.uplift --atlas atlas.txt -o atlas.txt",
+        "report cube.uplift --atlas atlas.txt --format json -o atlas.txt",
         "slices cube.uplift -o cube.uplift",
         "slices cube.uplift --plot cube.uplift",
         "texture image.exr -o link.exr",

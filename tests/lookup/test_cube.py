@@ -44,13 +44,6 @@ def test_spectra_are_in_0_to_1(small_cube, small_sigmoid_cube, mode):
         assert values.max() <= 1
 
 
-@pytest.mark.parametrize("wavelengths", [[379.9], [400, 780.1], [0.4, 0.7], [np.nan], [], "red", [[500]]])
-def test_wavelengths_outside_the_range_of_the_cube_are_errors(small_cube, wavelengths):
-    with pytest.raises(OptionError) as caught:
-        small_cube.reflectance([0.2, 0.3, 0.4], wavelengths)
-    assert ("µm" in caught.value.hint) == (wavelengths == [0.4, 0.7])
-
-
 def test_rounding_moves_no_colour_out_of_gamut_and_no_input(small_cube, mode):
     for bit in (1e-12, -1e-12):
         rgb = np.array([(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), (1.0, 0.5, 0.0)]) + bit

@@ -16,8 +16,6 @@ from uplift.cube import CubeData
 BLOCK = 4096
 """Rows per block: their temporary arrays fit into a core's cache."""
 
-MICROMETRES = 10.0
-"""Wavelengths below are probably in micrometres."""
 FLOAT_TYPES = (np.dtype(np.float64), np.dtype(np.float32))
 Function = Callable[[Array], NDArray[Any]]
 """From rows (k, K) to rows (k, N)."""
@@ -59,22 +57,15 @@ def as_colours(rgb: ArrayLike, sensor: Sensor) -> Array:
     return np.clip(array, 0, 1)
 
 
-def as_wavelengths(wavelengths: ArrayLike | None, own: Array) -> Array:
-    """Convert to wavelengths (N,) in nm, None to those of the cube; `OptionError` for others than in their range."""
+def as_wavelengths(wavelengths: ArrayLike | None, default: Array) -> Array:
+    """Convert to wavelengths (N,) in nm, None to the default; `OptionError` if they are not positive numbers."""
     if wavelengths is None:
-        return own
-    array = np.zeros(0)
+        return default
     with contextlib.suppress(TypeError, ValueError):
         array = np.atleast_1d(np.asarray(wavelengths, dtype=float))
-    first, last = own[[0, -1]]
-    outside = array[~((array > first - SLACK) & (array < last + SLACK))]  # NaN, too
-    if array.ndim == 1 and array.size and not outside.size:
-        return array
-    got = f", got {outside[0]:g}" if outside.size else ""
-    hint = "stay in this range, or build with a wider one"
-    if outside.size and 0 < outside[0] < MICROMETRES:
-        hint = f"give nm: {outside[0]:g} µm are {1000 * outside[0]:g} nm"
-    raise OptionError(f"wavelengths must be numbers in {first:g}–{last:g} nm{got}", hint=hint)
+        if array.ndim == 1 and array.size and (np.isfinite(array) & (array > 0)).all():
+            return array
+    raise OptionError("wavelengths must be a list of positive numbers in nm")
 
 
 def as_float_type(dtype: DTypeLike) -> np.dtype[Any]:

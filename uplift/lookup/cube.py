@@ -158,7 +158,7 @@ class Cube:
         rgb : array_like, shape (..., 3)
             Linear RGB in [0, 1], in the RGB space of the cube.
         wavelengths : array_like, shape (N,), optional
-            Wavelengths in nm, within the range of the sensor, by default its own.
+            Wavelengths in nm, by default those of the sensor. Spectra are constant outside the range of the model.
         mode : {"spectra", "moments", "refined", "nearest"}, default "spectra"
             ``"spectra"`` interpolates spectra, with exact colours. ``"moments"`` interpolates coefficients, with
             nearly exact colours. ``"refined"`` moves those to the exact colour. ``"nearest"`` is the spectrum of
