@@ -75,10 +75,16 @@ def _open_tab() -> None:
         assert tab.evaluate("1 + 1") == 2
 
 
-def _open_device() -> None:
+def vulkan_device():
+    """Return a device of Vulkan: by OpenGL, wgpu's translation of SPIR-V gives other numbers."""
     import wgpu
 
-    wgpu.gpu.request_adapter_sync().request_device_sync()
+    adapters = wgpu.gpu.enumerate_adapters_sync()
+    return next(each for each in adapters if each.info["backend_type"] == "Vulkan").request_device_sync()
+
+
+def _open_device() -> None:
+    vulkan_device()
 
 
 MITSUBA = Part("Mitsuba 3", "pip install '.[mitsuba]'", partial(_evaluate_texture, "scalar_spectral"))

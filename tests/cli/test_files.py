@@ -22,6 +22,7 @@ LINKS = {
     "colours.pdf": "colours.csv",
     "cube.svg": "cube.uplift",
     "palette.png": "palette.toml",
+    "atlas.html": "atlas.txt",
 }
 """Other names of inputs, with suffixes of outputs."""
 
@@ -55,7 +56,7 @@ def inputs(home, cubes, macbeth):
         "plan scene.toml -o image.exr",
         "query --cube cube.uplift #c8342a --plot cube.svg",
         "query --input colours.csv --plot colours.pdf",
-        "report cube.uplift --atlas atlas.txt --format json -o atlas.txt",
+        "report cube.uplift --atlas atlas.html -o atlas.html",
         "slices cube.uplift -o cube.uplift",
         "slices cube.uplift --plot cube.uplift",
         "texture image.exr -o link.exr",

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.io.export import webgl
-from tests.parts import CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need
+from tests.parts import CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need, vulkan_device
 from uplift.common.processes import call_in_child
 
 HOST = r"""
@@ -125,7 +125,7 @@ def _by_vulkan(path, rgb, count):
     """Run in a child process: drivers may crash."""
     import wgpu
 
-    device = wgpu.gpu.request_adapter_sync().request_device_sync()
+    device = vulkan_device()
     storage, source = wgpu.BufferUsage.STORAGE, wgpu.BufferUsage.COPY_SRC
     colours = padded(rgb, count)
     table = device.create_buffer_with_data(data=path.with_suffix(".bin").read_bytes(), usage=storage)
