@@ -47,7 +47,7 @@ def sources():
     """Pages written by hand, and templates in place of the pages that they make."""
     generated = {ROOT / "docs" / f"{name}.md" for name in pages()}
     written = {*ROOT.glob("docs/**/*.md")} - generated
-    exempt = {"bibliography.md", "coverage.md"}
+    exempt = {"coverage.md"}
     return [
         *(path for path in sorted(written) if path.name not in exempt),
         *sorted(ROOT.glob("docs/templates/**/*.md.j2")),
