@@ -46,7 +46,7 @@ def main(names: list[str]) -> int:
     failed = []
     for name in names:
         print(name, file=sys.stderr)
-        command = [sys.executable, "-c", f"from benchmarks.{name.replace('-', '_')} import main; main()"]
+        command = [sys.executable, "-c", f"from benchmarks import measure; measure('{name}')"]
         if subprocess.run(command, cwd=ROOT, env=os.environ | ONE_THREAD, check=False).returncode:
             failed.append(name)
     if failed:

@@ -1,6 +1,5 @@
 """Round trips, ranges, orders of growth and solvers of cubes, for docs/accuracy.md."""
 
-import warnings
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
@@ -10,7 +9,7 @@ from unittest import mock
 import numpy as np
 
 import uplift
-from benchmarks import MACBETH, ROOT, record
+from benchmarks import MACBETH, ROOT, Row, record
 from benchmarks.materials import errors, materials
 from uplift.atlas import on_grid
 from uplift.colorimetry import Sensor, delta_e_rgb
@@ -24,7 +23,7 @@ from uplift.lattice import Status
 from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
 from uplift.report.diff_page import mosaic
-from uplift.viz.figure import colour_map, new_figure, write_figure
+from uplift.viz.figure import colour_map, new_figure, show_image, write_figure
 
 RANGES = (
     (380, 780, 10),
@@ -44,12 +43,10 @@ SPACES = ("sRGB", "ITU-R BT.2020", "ProPhoto RGB")
 OTHERS = ("rawtoaces", "cie2017")
 """Materials that a cube of the ColorChecker answers for."""
 SOLVERS = ("least-change", "gauss-newton", "dogleg", "levenberg-marquardt")
-Row = dict[str, Any]
 
 
 def main() -> None:
     """Measure and store."""
-    warnings.simplefilter("ignore", uplift.UpliftWarning)
     fitted, round_trips = [], []
     for name, cube in cubes():
         fitted.append({"cube": name, **fit_quality(cube)})
@@ -118,9 +115,7 @@ def draw_rounds() -> None:
     rounds = mosaic(blue_slices(data.points.round.astype(float), ORDER_DIM))
     figure = new_figure(7.2, 6.0)
     axes = figure.subplots()
-    drawn = axes.imshow(rounds, cmap=colour_map(), interpolation="nearest")
-    axes.set(xticks=(), yticks=())
-    axes.spines[:].set_visible(False)
+    drawn = show_image(axes, rounds, cmap=colour_map(), interpolation="nearest")
     bar = figure.colorbar(drawn, ax=axes, fraction=0.04, pad=0.02, label="round")
     bar.outline.set_visible(False)
     write_figure(figure, ROOT / "docs" / "accuracy" / "rounds.png", force=True)

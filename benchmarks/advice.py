@@ -1,6 +1,5 @@
 """Materials that `uplift advise` chooses to measure, against random choice, for docs/advice.md."""
 
-import warnings
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,6 @@ from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import RELIGHT_LIGHTS
 from uplift.common.arrays import Array, Indices
-from uplift.common.errors import UpliftWarning
 from uplift.fit.families import families_with
 from uplift.report.measures import delta_e_under
 from uplift.scene.advice import ColourAreas, advise, uncertainty
@@ -76,8 +74,7 @@ def main() -> None:
         measured = resample(atlas, sensor.wavelengths).values
         rows = np.flatnonzero(sensor.contains(sensor.rgb(measured)))
         atlas, measured = Atlas(tuple(atlas.entries[row] for row in rows)), measured[rows]
-        with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-            found = [row for seed in range(SCENES) for row in run_scene(atlas, measured, seed)]
+        found = [row for seed in range(SCENES) for row in run_scene(atlas, measured, seed)]
         for choice in (ADVICE, PIXELS, COLOURS):
             figures: dict[str, Any] = {"set": name, "choice": choice}
             for count in (0, *COUNTS):
@@ -86,7 +83,6 @@ def main() -> None:
                     f"{key}_{count}": float(np.mean([row[key] for row in some])) for key in ("delta_e", "expected")
                 }
             results.append(figures)
-            print(figures)
     record(
         "advice", results=results, scenes=SCENES, known=KNOWN, materials=MATERIALS, draws=DRAWS, lights=RELIGHT_LIGHTS
     )

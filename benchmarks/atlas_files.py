@@ -1,7 +1,6 @@
 """Formats of atlas files, and how closely files in the layouts of instruments are read, for docs/atlas-files.md."""
 
 import tempfile
-import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +9,6 @@ import numpy as np
 from benchmarks import record
 from tests.atlas.vendor_files import VENDORS, Vendor, sample
 from uplift.atlas import FORMATS, Atlas, read_atlas
-from uplift.common.errors import UpliftWarning
 
 UPLIFT = "uplift"
 """Library of the formats that uplift parses itself."""
@@ -40,8 +38,7 @@ def largest_difference(vendor: Vendor, atlas: Atlas) -> float:
 def main() -> None:
     """Measure all layouts."""
     atlas = sample(read_atlas("macbeth"))
-    with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-        found = {vendor.name: largest_difference(vendor, atlas) for vendor in VENDORS}
+    found = {vendor.name: largest_difference(vendor, atlas) for vendor in VENDORS}
     rows = []
     for each in FORMATS:
         names = [vendor.name for vendor in VENDORS if vendor.format == each.name]

@@ -1,6 +1,5 @@
 """Raw values of cameras to XYZ on held-out patches, by cubes and by matrices, for docs/guides/cameras.md."""
 
-import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -14,7 +13,6 @@ from uplift.colorimetry import Sensor, delta_e_2000, lab, observer, tables
 from uplift.colorimetry.camera import CAMERA
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Indices
-from uplift.common.errors import UpliftWarning
 from uplift.fit.families import families_with, shipped_library
 from uplift.lab.study.held_out import random_halves
 from uplift.lattice import Lattice
@@ -115,7 +113,6 @@ def compare(camera: str, illuminant: str) -> dict[str, Any]:
 
 def main() -> None:
     """Measure, and write the data of the page."""
-    warnings.simplefilter("ignore", UpliftWarning)
     rows = [compare(camera, light) for camera in tables.names("camera") for light in LIGHTS]
     record(
         "cameras",

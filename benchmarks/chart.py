@@ -1,38 +1,32 @@
 """Speed and accuracy of all methods, for docs/speed.md and its pictures, and for ``uplift chart --recommend``."""
 
-import sys
 from typing import Any
 
-from benchmarks import ATLASES, DOCS, ROOT, record
+from benchmarks import ATLASES, DOCS, ROOT, record, show
 from benchmarks.choices import ALONE, OURS, SHIPPED, mark
 from uplift.atlas import read_atlas
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.files import write_text
-from uplift.common.progress import Progress
 from uplift.lab.chart.measure import measure_methods, select_methods
 from uplift.lab.chart.method import Effort, make_task
 from uplift.lab.chart.picture import render_chart, write_picture
-from uplift.lab.chart.table import MEASURED, Chart, MethodResult, State, chart_csv, criteria, read_chart
+from uplift.lab.chart.table import MEASURED, Chart, MethodResult, State, chart_csv, criteria
 
 UNSEEN = ("lights", "rms")
 """Errors of panels that are those of unseen materials."""
 
 
 def main(effort: Effort | None = None) -> None:
-    """Measure, draw and store; with the table of an earlier run as an argument, measure nothing."""
-    if len(sys.argv) > 1:
-        publish(read_chart(sys.argv[1]))
-        return
+    """Measure, draw and store."""
     atlases = {path.stem: read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))}
-    publish(measure_methods(select_methods(), make_task(atlases, effort=effort), _print))
-
-
-def _print(progress: Progress) -> None:
-    print(f"{progress.done} of {progress.total} methods", file=sys.stderr)
+    publish(measure_methods(select_methods(), make_task(atlases, effort=effort), show))
 
 
 def publish(chart: Chart) -> None:
-    """Write the table that the package carries, the pictures and the data of the page."""
+    """Write the table that the package carries, the pictures and the data of the page.
+
+    ``publish(shipped_chart())`` does so without measuring again.
+    """
     folder = DOCS / "chart"
     write_text(chart_csv(chart), ROOT / "uplift" / "lab" / "chart" / MEASURED, force=True)
     write_picture(chart, folder / "chart.png", force=True)
@@ -95,7 +89,3 @@ def optimistic_mark(row: MethodResult) -> str:
     if not row.build or "--model" in row.build:
         return ""
     return mark(SHIPPED, OURS if "--atlas" in row.build else ALONE)
-
-
-if __name__ == "__main__":
-    main()

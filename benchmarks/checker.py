@@ -13,7 +13,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
-from uplift.viz.figure import new_figure, write_png
+from uplift.viz.figure import new_figure, show_image, write_png
 
 COLUMNS, ROWS = 6, 4
 BACKGROUND = 0.03
@@ -105,9 +105,7 @@ def draw(
             height, width, _ = image.shape
             # Means of 2 × 2 pixels halve the noise.
             binned = image.reshape(height // 2, 2, width // 2, 2, 3).mean(axis=(1, 3))
-            axes.imshow(to_display_codes(binned @ matrix.T, SRGB).astype(np.uint8), interpolation="nearest")
-            axes.set(xticks=(), yticks=())
-            axes.spines[:].set_visible(False)
+            show_image(axes, to_display_codes(binned @ matrix.T, SRGB).astype(np.uint8), interpolation="nearest")
             axes.set_xlabel(captions[name, method], fontsize=9, color="0.3")
             if row == 0:
                 axes.set_title(method, fontsize=11, pad=8)

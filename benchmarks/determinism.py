@@ -12,17 +12,14 @@ import tempfile
 import warnings
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
-import click
 import numpy as np
 
 import uplift
-from benchmarks import ROOT, record
+from benchmarks import ROOT, Row, record
 from uplift.atlas import Atlas
 from uplift.report.regression import LIMITS, compare_rebuilt
 
-Row = dict[str, Any]
 CASES: dict[str, tuple[tuple[str, ...], Row]] = {
     "moments, Macbeth, 16³": (("macbeth",), {"dim": 16}),
     "sigmoid, Macbeth, 16³": (("macbeth",), {"dim": 16, "model": "sigmoid"}),
@@ -66,13 +63,11 @@ PREFIXES = {"one core": ("taskset", "-c", "0")}
 """Commands before that of a setting."""
 
 
-@click.command()
-@click.option("--into", metavar="FOLDER", help="Build the cubes into a folder, and compare nothing.")
-def main(into: str | None) -> None:
+BUILD = "import sys; from benchmarks.determinism import build_cubes; build_cubes(sys.argv[1])"
+
+
+def main() -> None:
     """Build under all settings and compare."""
-    if into is not None:
-        build_cubes(Path(into))
-        return
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         run("default", {}, folder)
@@ -87,24 +82,24 @@ def main(into: str | None) -> None:
     )
     failed = [row["setting"] for row in same if row["different"]]
     failed += [row["setting"] for row in apart if row["different_nodes"]]
-    click.echo(f"settings that change bytes, or nodes across instruction sets: {', '.join(failed) or 'none'}")
+    print(f"settings that change bytes, or nodes across instruction sets: {', '.join(failed) or 'none'}")
     raise SystemExit(bool(failed))
 
 
-def build_cubes(folder: Path) -> None:
+def build_cubes(folder: str) -> None:
     """Build the cubes of all cases; names of entries get their atlas as prefix."""
     warnings.simplefilter("ignore", uplift.UpliftWarning)
     for number, (names, options) in enumerate(CASES.values()):
         atlases = [(name, uplift.read_atlas(name)) for name in names]
         entries = [replace(each, name=f"{name} {each.name}") for name, atlas in atlases for each in atlas.entries]
-        uplift.build(Atlas(tuple(entries)), **options).save(folder / f"{number}.uplift")
+        uplift.build(Atlas(tuple(entries)), **options).save(f"{folder}/{number}.uplift")
 
 
 def run(name: str, variables: dict[str, str], folder: Path) -> Path:
     """Build the cubes in a process with a setting, into a folder of its name."""
     into = folder / name
     into.mkdir()
-    command = [*PREFIXES.get(name, ()), sys.executable, "-m", "benchmarks.determinism", "--into", str(into)]
+    command = [*PREFIXES.get(name, ()), sys.executable, "-c", BUILD, str(into)]
     compiled = {"JAX_ENABLE_COMPILATION_CACHE": "false"}  # no code compiled under another setting
     subprocess.run(command, env=os.environ | compiled | variables, cwd=ROOT, check=True)
     return into
@@ -124,7 +119,3 @@ def measure(name: str, variables: dict[str, str], folder: Path) -> Row:
         "measures": {limit: max(each.measures[limit] for each in found) for limit in LIMITS},
         "status_changes": sum(each.stored_counts != each.rebuilt_counts for each in found),
     }
-
-
-if __name__ == "__main__":
-    main()

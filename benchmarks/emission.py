@@ -4,12 +4,11 @@ import re
 from collections.abc import Iterator, Mapping
 from functools import partial
 from itertools import product
-from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import record
+from benchmarks import Row, record
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.lights import Lamps
@@ -43,7 +42,6 @@ TABLE = "emission table"
 DIRECTIONS, STEPS = 720, 101
 COLOURS, RUNS = 200_000, 15
 NEAREST, THIRDS, WORST = 8, 3, 8
-Row = dict[str, Any]
 
 
 def main() -> None:

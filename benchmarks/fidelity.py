@@ -1,6 +1,5 @@
 """Spectra of cubes compared with measured spectra, for docs/materials.md and docs/prior.md."""
 
-import warnings
 from collections.abc import Iterator
 from dataclasses import asdict
 from functools import cache
@@ -9,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import record
+from benchmarks import Row, record
 from benchmarks.choices import ALONE, ALONE_SMOOTH, CHOICES, OURS, OURS_SMOOTH, is_optimistic
 from benchmarks.materials import (
     LARGE,
@@ -46,7 +45,6 @@ SETS = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017")
 TESTED = ("macbeth", "cie2017", "rawtoaces")
 LIBRARY_SETS = tuple(name for names in FAMILIES.values() for name in names)
 PUBLISHED = ("otsu2018", "mallett2019", "smits1999")
-Row = dict[str, Any]
 Splits = tuple[HoldoutSplit, ...]
 Pairs = list[tuple[Cube, Materials]]
 """Cubes and the materials that they are queried for."""
@@ -54,7 +52,6 @@ Pairs = list[tuple[Cube, Materials]]
 
 def main() -> None:
     """Measure and store."""
-    warnings.simplefilter("ignore", uplift.UpliftWarning)
     splits = {
         (name, count): held_out.holdout(
             spectra(name), SPLITS, dim=DIM, coefficients=count, leave_out=shipped_families(name)
@@ -189,9 +186,8 @@ def compare_methods(name: str) -> Row:
     rows = [
         {
             "method": method,
-            "rms": values[0],
+            **as_record(values),
             "mean": means[method],
-            "errors": as_record(values)["errors"],
             "best": means[method] == min(means.values()),
             "optimistic": is_optimistic([name], method),
         }
@@ -277,7 +273,3 @@ def with_library(name: str) -> Iterator[Row]:
     }.items():
         ratio = means(uplift.build(dim=COARSE, **options), queried) / smooth
         yield {"set": name, "cube": label, "mean": ratio.mean(), "worst": ratio.max()}
-
-
-if __name__ == "__main__":
-    main()

@@ -43,7 +43,3 @@ def main() -> None:
         if size > 1e6
     ]
     record("install", ways=ways, distributions=rows)
-
-
-if __name__ == "__main__":
-    main()

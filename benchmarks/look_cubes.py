@@ -1,7 +1,6 @@
 """Cubes with looks, and a scene of two cubes, for docs/looks.md and its picture."""
 
 import tempfile
-import warnings
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -9,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import DOCS, record
+from benchmarks import DOCS, Row, record
 from benchmarks.checker import constant_light, start_mitsuba, xyz_film
 from uplift.colorimetry import delta_e_rgb
 from uplift.colorimetry.gamut import SRGB
@@ -18,17 +17,15 @@ from uplift.colorimetry.srgb import hex_codes, to_display_codes
 from uplift.common.arrays import Array
 from uplift.lookup import Cube
 from uplift.samples import sample_path
-from uplift.viz.figure import figure_text, new_figure, write_png
+from uplift.viz.figure import figure_text, new_figure, show_image, write_png
 
 ATLAS, DIM = "macbeth", 32
 IMPOSSIBLE = (("#4060a0", "A", "#5060a0"), ("#8a2a20", "A", "#8a4020"), ("#40a060", "A", "#50a050"))
 PIXELS, SPP = 220, 256
-Row = dict[str, Any]
 
 
 def main() -> None:
     """Measure, draw and store."""
-    warnings.simplefilter("ignore", uplift.UpliftWarning)
     plain = uplift.build(ATLAS, dim=DIM)
     looked = uplift.build(ATLAS, dim=DIM, looks=sample_path("looks.toml"))
     record(
@@ -79,9 +76,7 @@ def render(plain: Cube, looked: Cube) -> Row:
             middle = slice(PIXELS // 2 - 12, PIXELS // 2 + 12)
             patches = [half[middle, middle].mean(axis=(0, 1)) for half in np.split(image, 2, axis=1)]
             found[lamp] = {"delta_e": delta_e_rgb(here, *patches)}
-            axes.imshow(to_display_codes(image, SRGB).astype(np.uint8), interpolation="nearest")
-            axes.set(xticks=(), yticks=())
-            axes.spines[:].set_visible(False)
+            show_image(axes, to_display_codes(image, SRGB).astype(np.uint8), interpolation="nearest")
             axes.set_ylabel(figure_text(lamp), fontsize=11)
     write_png(figure, DOCS / "look-cubes" / "two-cubes.png", force=True)
     return {"mitsuba": version, "look": look["name"], "lights": found}

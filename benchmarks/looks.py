@@ -5,7 +5,6 @@ finds, the share of held-out materials in the likely region, and a screenshot of
 """
 
 import tempfile
-import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -44,7 +43,6 @@ CHOICE = (("region-1", "ArrowLeft", 6), ("region-1", "ArrowDown", 2))
 
 def main() -> None:
     """Measure and store."""
-    warnings.simplefilter("ignore")
     cube, atlas = load(CUBE), read_atlas(ATLAS)
     sensor = cube.data.sensor
     rgb, drawn = sensor.rgb(resample(atlas, sensor.wavelengths).values), sensor.decode(DRAWN)
@@ -58,7 +56,6 @@ def main() -> None:
     screenshot(cube, search(drawn[:1]))
     record(
         "looks",
-        precision="full",
         lights=LIGHTS,
         colours=[
             {

@@ -1,6 +1,5 @@
 """Measured materials that cubes are tested on, and the errors of answers for them."""
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -42,8 +41,7 @@ class Materials:
 @cache
 def spectra(name: str) -> Atlas:
     """Read a set of measured spectra."""
-    with warnings.catch_warnings(action="ignore", category=uplift.UpliftWarning):
-        return read_atlas(MUNSELL if name == "munsell" else ATLASES / f"{name}.txt")
+    return read_atlas(MUNSELL if name == "munsell" else ATLASES / f"{name}.txt")
 
 
 @cache
@@ -67,8 +65,7 @@ def build(some: str | Materials | None, **options: Any) -> Cube:
     if isinstance(some, Materials):
         grid = tuple(SENSOR.wavelengths)
         atlas = Atlas(tuple(Entry(str(row), grid, tuple(values)) for row, values in enumerate(some.measured)))
-    with warnings.catch_warnings(action="ignore", category=uplift.UpliftWarning):
-        return uplift.build(atlas, **options)
+    return uplift.build(atlas, **options)
 
 
 def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:

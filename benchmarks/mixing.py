@@ -1,16 +1,15 @@
 """Mixing models: criteria, assumed scattering, times and pictures, for docs/mixing.md."""
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 import uplift
-from benchmarks import CUBES, DOCS, REFERENCE, record
+from benchmarks import CUBES, DOCS, Row, read_reference, record
 from uplift.colorimetry import Sensor
 from uplift.colorimetry.delta_e import delta_e_rgb, rgb_to_lab
 from uplift.colorimetry.srgb import to_display_codes
@@ -19,7 +18,7 @@ from uplift.design.mixing import dispersive
 from uplift.design.mixing.coats import ramp
 from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, Pigment, PowerOfReflectance, Scattering, from_opaque
 from uplift.design.mixing.theories import Mixer, mixers, spectral_models
-from uplift.lab.timing import Spread, time_calls
+from uplift.lab.timing import time_laps
 from uplift.lookup import Cube
 from uplift.viz.plots import Strip, plot_strips
 
@@ -31,7 +30,8 @@ ARTISTS = ("#002185", "#fcd200")
 GREEN_MARGIN = 0.01
 """Excess of G over R and B, in linear RGB, that counts as green."""
 MIXTURES = 20_000
-RUNS = 5
+LAP, RUNS = 0.02, 5
+"""Shortest duration of a run in seconds, and runs."""
 CHECKED = 20
 PAIRS = {
     "blue-yellow": ("#005fa0", "#ffd200"),
@@ -46,7 +46,6 @@ DRAWN = (
     "product",
 )  # fmt: skip
 """Shares are the thickness of filters and products, so that a ramp ends at its colours."""
-Row = dict[str, Any]
 
 # --- criteria ---
 
@@ -153,19 +152,19 @@ def acrylics(first: tuple[str, ...] = (), second: str = "") -> Mixtures:
     def wanted(one: str, other: str) -> bool:
         return (not first or one.startswith(first)) and other.endswith(second)
 
-    table = _rows("paint_mixtures.csv")
-    masstones = {row[0]: np.array(row[3:], dtype=float) for row in table if row[0] == row[1]}
+    table = [(row["first"], row["second"], row) for row in read_reference("paint_mixtures.csv")]
+    masstones = {one: _numbers(row, "rgb") for one, other, row in table if one == other}
     names = list(masstones)
-    kept = [row for row in table if row[0] != row[1] and (wanted(*row[:2]) or wanted(row[1], row[0]))]
-    pairs = np.array([[names.index(row[0]), names.index(row[1])] for row in kept])
-    expected = np.array([row[3:] for row in kept], dtype=float)
-    return Mixtures(np.array(list(masstones.values())), pairs, _shares([row[2] for row in kept]), expected)
+    kept = [each for each in table if each[0] != each[1] and (wanted(*each[:2]) or wanted(each[1], each[0]))]
+    pairs = np.array([[names.index(one), names.index(other)] for one, other, _ in kept])
+    expected = np.array([_numbers(row, "rgb") for *_, row in kept])
+    return Mixtures(np.array(list(masstones.values())), pairs, _shares([row for *_, row in kept]), expected)
 
 
 def three_bands(name: str) -> Mixtures:
     """Return the mixtures of all pairs of a set of paints_rgb.csv, whose three bands are taken as linear RGB."""
-    values = np.array([row[1:] for row in _rows("paints_rgb.csv") if row[0] == name], dtype=float)
-    K, S = values[:, :3], values[:, 3:]
+    rows = [row for row in read_reference("paints_rgb.csv") if row["set"] == name]
+    K, S = (np.array([_numbers(row, columns) for row in rows]) for columns in (("Kr", "Kg", "Kb"), ("Sr", "Sg", "Sb")))
     pairs = np.array(list(itertools.combinations(range(len(K)), 2)))
     mixtures = [Pigment(K[pairs], S[pairs]).mix(share).opaque_reflectance() for share in SHARES]
     return Mixtures(
@@ -178,10 +177,10 @@ def three_bands(name: str) -> Mixtures:
 
 def published(tool: str, cube: Cube) -> Mixtures:
     """Return the mixtures that a tool publishes (published_mixtures.csv)."""
-    kept = [row for row in _rows("published_mixtures.csv") if row[0] == tool]
-    linear = np.array([[colour(cube, row[column]) for column in (1, 2, 4)] for row in kept])
+    kept = [row for row in read_reference("published_mixtures.csv") if row["tool"] == tool]
+    linear = np.array([[colour(cube, row[column]) for column in ("first", "second", "mixture")] for row in kept])
     pairs = np.arange(2 * len(kept)).reshape(-1, 2)
-    return Mixtures(linear[:, :2].reshape(-1, 3), pairs, _shares([row[3] for row in kept]), linear[:, 2])
+    return Mixtures(linear[:, :2].reshape(-1, 3), pairs, _shares(kept), linear[:, 2])
 
 
 def colour(cube: Cube, word: str) -> Array:
@@ -191,15 +190,13 @@ def colour(cube: Cube, word: str) -> Array:
     return np.asarray(cube.data.atlas.rgb[cube.data.atlas.names.index(word)], dtype=float)
 
 
-def _shares(second: list[str]) -> Array:
-    share = np.array(second, dtype=float)
+def _numbers(row: dict[str, str], columns: Iterable[str]) -> Array:
+    return np.array([float(row[column]) for column in columns])
+
+
+def _shares(rows: list[dict[str, str]]) -> Array:
+    share = np.array([float(row["share"]) for row in rows])
     return np.stack([1 - share, share], axis=1)
-
-
-def _rows(name: str) -> list[list[str]]:
-    """Return the fields of a table without comments and header."""
-    lines = (REFERENCE / name).read_text(encoding="utf-8").splitlines()
-    return [line.split(",") for line in lines if not line.startswith("#")][1:]
 
 
 def mix(cube: Cube, mixtures: Mixtures, rule: Scattering | None) -> Array:
@@ -304,23 +301,12 @@ def mixture_times(cube: Cube) -> Iterator[Row]:
     spectra, spectral_mixers = cube.reflectance(rgb), spectral_models(cube.data.sensor)
     for mixer in mixers(cube):
         pairs = zip(rgb[:CHECKED], parts[:CHECKED], strict=True)
-        _check(mixer.mix(rgb[:CHECKED], parts[:CHECKED]), [mixer.mix(*pair) for pair in pairs], 1e-9)
+        if not np.allclose(mixer.mix(rgb[:CHECKED], parts[:CHECKED]), [mixer.mix(*pair) for pair in pairs], 0, 1e-9):
+            raise RuntimeError(f"{mixer.title}: wrong result, nothing to time")
         between = spectral_mixers.get(mixer.name)
-        spectral = _ns(partial(between[1], spectra, parts), MIXTURES) if between else None
-        yield {"mixer": mixer.title, "rgb": _ns(partial(mixer.mix, rgb, parts), MIXTURES), "spectra": spectral}
-
-
-def _check(found: Array, expected: Any, tolerance: float) -> None:
-    """Raise `RuntimeError` unless what is timed gives the expected results."""
-    if not np.allclose(found, expected, rtol=0, atol=tolerance):
-        raise RuntimeError("wrong result: nothing to time")
-
-
-def _ns(function: Callable[[], object], count: int) -> Spread:
-    """Return CPU nanoseconds per item, warm."""
-    function()
-    _, cpu = time_calls(function, RUNS)
-    return cpu.scaled(1e9 / count)
+        calls = {"rgb": partial(mixer.mix, rgb, parts), "spectra": between and partial(between[1], spectra, parts)}
+        times = {name: call and time_laps(call, LAP, RUNS).scaled(1e9 / MIXTURES) for name, call in calls.items()}
+        yield {"mixer": mixer.title, **times}
 
 
 def main() -> None:

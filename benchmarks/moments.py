@@ -1,6 +1,5 @@
 """Reconstruction of spectra from moments, compared with Tódová 2020, for docs/reproductions.md and its pictures."""
 
-import warnings
 from collections.abc import Mapping
 from typing import Any
 
@@ -28,7 +27,6 @@ Errors = Mapping[tuple[Technique, int], Pair]
 
 def main() -> None:
     """Measure, draw and store."""
-    warnings.simplefilter("ignore", uplift.UpliftWarning)
     atlases = {path.stem: uplift.read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))}
     study, thesis = study_moments(atlases), read_thesis()
     counts = range(study.max_moments + 1)

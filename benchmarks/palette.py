@@ -1,13 +1,11 @@
 """Accuracy of the palette's factor model, and pictures of the examples, for docs/palette.md."""
 
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-import uplift
 from benchmarks import ATLASES, DOCS, record
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import Sensor, delta_e_rgb, observer
@@ -89,7 +87,6 @@ DEFAULT = 7
 
 def main() -> None:
     """Draw the examples, measure and store."""
-    warnings.simplefilter("ignore", uplift.UpliftWarning)
     sensor = observer.sensor()
     models = {count: standard_model(sensor, count) for count in COUNTS}
     for name in EXAMPLES:

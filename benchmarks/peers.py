@@ -9,7 +9,6 @@ import os
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, partial
 from itertools import product
@@ -23,11 +22,9 @@ from benchmarks import ROOT, record
 from uplift.colorimetry import Sensor, observer
 from uplift.common.arrays import Array
 from uplift.common.processes import call_in_child
-from uplift.lab.chart.method import stopwatch
-from uplift.lab.timing import Spread, spread
+from uplift.lab.timing import Spread, spread, time_calls
 from uplift.lattice import Lattice
 from uplift.models import Moments, Sigmoid, evaluate, reflectance
-from uplift.models.model import Model
 
 THRESHOLD = 1e-4
 """Largest |linear RGB| between a fitted spectrum and its colour: the threshold of cubes."""
@@ -74,11 +71,6 @@ def lattice() -> Lattice:
     return Lattice(observer.axis_nodes("srgb", DIM))
 
 
-def model_of(name: str, count: int) -> Model:
-    """Return a spectrum model by name."""
-    return Sigmoid() if name == "sigmoid" else Moments(count)
-
-
 def judge(rgb: ArrayLike, target: ArrayLike, *, least: float) -> dict[str, float]:
     """Compare linear RGB (n, 3) with ``target`` (n, 3): the share within `THRESHOLD`, and the largest residual.
 
@@ -93,17 +85,6 @@ def judge(rgb: ArrayLike, target: ArrayLike, *, least: float) -> dict[str, float
     return {"share": share, "worst": float(residual.max())}
 
 
-def judge_multipliers(model: Model, multipliers: Array, target: Array, *, least: float) -> dict[str, float]:
-    """`judge` the spectra with multipliers (n, C)."""
-    return judge(sensor().rgb(evaluate(model, multipliers, sensor().wavelengths)), target, least=least)
-
-
-def measured(solve: Callable[[], Array], points: int, runs: int) -> tuple[Array, Spread]:
-    """Return the result of ``solve``, and µs of CPU per node. Some tools are too slow for a separate first run."""
-    results, seconds = zip(*(stopwatch(solve) for _ in range(runs)), strict=True)
-    return results[-1], spread(list(seconds)).scaled(1e6 / points)
-
-
 def ours(runs: int) -> list[Peer]:
     """Time builds of every model at every dim, with smooth spectra as the prior."""
     import uplift
@@ -111,8 +92,8 @@ def ours(runs: int) -> list[Peer]:
     rows = []
     for dim, (name, count) in product(OUR_DIMS, OUR_MODELS):
         build = partial(uplift.build, dim=dim, model=name, coefficients=count, prior="smooth")
-        build()  # compiles
-        cube, cpu = measured(build, dim**3, runs)
+        cube = build()  # compiles
+        cpu = time_calls(build, runs)[1].scaled(1e6 / dim**3)
         spectra = reflectance(cube.data.model, cube.data.points.coefficients, sensor().wavelengths)
         answer = judge(sensor().rgb(spectra), cube.data.lattice.points, least=1.0)
         rows.append(Peer("uplift", name, count, dim**3, cpu, **answer, notes=f"{dim}³, compiled before"))
@@ -149,11 +130,11 @@ def _build_ceres() -> Path:
 
 
 def _ceres_row(program: Path, name: str, count: int, unknowns: str, least: float, runs: int) -> Peer:
-    model, points = model_of(name, count), lattice().points
+    model, points = Sigmoid() if name == "sigmoid" else Moments(count), lattice().points
     done = [_run_ceres(program, unknowns, count) for _ in range(runs)]
     solution, facts = done[-1]
     multipliers = model.from_storage(solution) if unknowns == "moments" else solution
-    answer = judge_multipliers(model, multipliers, points, least=least)
+    answer = judge(sensor().rgb(evaluate(model, multipliers, sensor().wavelengths)), points, least=least)
     cpu = spread([each["cpu"] for _, each in done]).scaled(1e6 / len(points))
     starts = facts["solves"] / len(points)
     notes = f"{DIM}³, {UNKNOWNS[unknowns]}numeric differences, C++; grown from the middle, {starts:.1f} starts a point"

@@ -8,7 +8,6 @@ import subprocess
 import sys
 import tempfile
 import time
-import warnings
 from collections.abc import Callable
 from functools import partial
 from itertools import product
@@ -17,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks import MACBETH, ROOT, record
+from benchmarks import MACBETH, ROOT, Row, record
 from uplift.lab.timing import spread, time_calls, time_process
 
 UPLIFT = str(Path(sys.executable).parent / "uplift")
@@ -36,7 +35,6 @@ FLAGS = ("-O3", "-march=x86-64-v3", "-fno-math-errno", "-fno-trapping-math")
 MODES = ("spectra", "moments")
 PROGRAM_COLOURS, MAX_DIFFERENCE = 400_000, 1e-3
 """Colours of the C header, and the largest permitted difference of reflectance."""
-Row = dict[str, Any]
 
 
 def main() -> None:
@@ -72,8 +70,7 @@ def main() -> None:
 def _build(**options: Any) -> Any:
     import uplift
 
-    with warnings.catch_warnings(action="ignore", category=uplift.UpliftWarning):
-        return uplift.build(MACBETH, **options)
+    return uplift.build(MACBETH, **options)
 
 
 def time_build(model: str, count: int, dim: int, runs: int) -> Row:
@@ -114,8 +111,7 @@ def time_atlas(count: int) -> Row:
         logarithmic, weights = random.random() < 0.5, random.dirichlet(np.full(len(rows), 0.6))
         mixed = np.exp(weights @ np.log(known[rows] + 1e-3)) if logarithmic else weights @ known[rows]
         entries.append(Entry(str(number), SENSOR.wavelengths, np.clip(mixed, 0, 1)))
-    with warnings.catch_warnings(action="ignore", category=uplift.UpliftWarning):
-        _, cpu = time_calls(partial(uplift.build, Atlas(tuple(entries)), dim=MIXTURE_DIM), 1)
+    _, cpu = time_calls(partial(uplift.build, Atlas(tuple(entries)), dim=MIXTURE_DIM), 1)
     return {"entries": count, "cpu_s": cpu.median}
 
 

@@ -140,23 +140,13 @@ def draw(plan: dict[str, Any]) -> None:
     """Draw error over memory and over samples for the front of a plan."""
     axes = {"memory": ("cube file and pixels", format_size), "samples": ("samples per ray", "{:g}".format)}
     styles = {True: (ACCENT, "D"), False: (INK, "o")}
+
+    def point(row: int, each: dict[str, Any], key: str) -> Point:
+        style = styles[each["name"] == plan["name"]]
+        return Point(row, each["name"], each[key], each["error"]["quantile"], *style, named=False)
+
     panels = [
-        Panel(
-            f"ΔE00 over {key}",
-            title,
-            text,
-            [
-                Point(
-                    row,
-                    each["name"],
-                    each[key],
-                    each["error"]["quantile"],
-                    *styles[each["name"] == plan["name"]],
-                    named=False,
-                )
-                for row, each in enumerate(plan["front"])
-            ],
-        )
+        Panel(f"ΔE00 over {key}", title, text, [point(*each, key) for each in enumerate(plan["front"])])
         for key, (title, text) in axes.items()
     ]
     PICTURE.parent.mkdir(exist_ok=True)

@@ -1,7 +1,6 @@
 """The ColorChecker rendered with several methods, for docs/scene.md and its picture."""
 
 import tempfile
-import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -39,7 +38,6 @@ class Renders:
 
 def main() -> None:
     """Render, draw and store."""
-    warnings.simplefilter("ignore", uplift.UpliftWarning)
     version, painted = checker.start_mitsuba(), checker.chart()
     with tempfile.TemporaryDirectory() as folder:
         renders = render(methods(painted, Path(folder), DIM), LAYOUT, SPP)
@@ -49,7 +47,6 @@ def main() -> None:
     checker.draw(renders.images, captions, to_screen, (REFERENCE, MITSUBA, ATLAS), LAYOUT, picture, (10.5, 7.6))
     record(
         "render",
-        precision="full",
         mitsuba=version,
         variant=checker.VARIANT,
         dim=DIM,

@@ -1,6 +1,5 @@
 """Spectral representations compared with Kment 2011, for docs/scene.md and its pictures."""
 
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -9,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, DOCS, read_reference, record
+from benchmarks import ATLASES, DOCS, Row, read_reference, record
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.lab.comparison import compare
@@ -24,7 +23,6 @@ TARGETS = (2.0, 1.0, 0.5)
 TABLE = 81
 """Floats of a light that is kept as its 5 nm table."""
 RIEMANN_COUNTS = (8, 16, 32)
-Row = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -38,7 +36,6 @@ class Printed:
 
 def main() -> None:
     """Measure, draw and store."""
-    warnings.simplefilter("ignore", uplift.UpliftWarning)
     atlases = {path.stem: uplift.read_atlas(path) for path in sorted(ATLASES.glob("*.txt"))}
     default = compare.make_scene(atlases)
     ours, others = (_compare(scene) for scene in (default, compare.make_scene(atlases, OTHER_LIGHTS)))

@@ -1,7 +1,6 @@
 """Size and time of sparse cubes for real images, for docs/scenes.md."""
 
 import tempfile
-import warnings
 from pathlib import Path
 from typing import Any
 
@@ -30,11 +29,10 @@ Measured = tuple[Cube, Spread, int]
 
 def main() -> None:
     """Measure and store."""
-    warnings.simplefilter("ignore", uplift.UpliftWarning)
     images = list(pictures())
     uplift.build(ATLAS, dim=32)  # compile before timing
     sections = [measure(images, space, dim) for space, dim in LATTICES]
-    record("scenes", precision="full", runs=RUNS, sections=sections)
+    record("scenes", runs=RUNS, sections=sections)
 
 
 def measure(images: list[Picture], space: str, dim: int) -> dict[str, Any]:

@@ -4,9 +4,7 @@ The light on the charts is uniform, so that spectra are integrated
 instead of rendered; docs/scene.md has renderings of the same chart, which agree.
 """
 
-import io
 import tempfile
-import warnings
 from pathlib import Path
 
 import numpy as np
@@ -22,13 +20,12 @@ from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, grid, illuminant_spd, light, matching_functions, sensor
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
-from uplift.common.files import atomic_write
 from uplift.io.export import write_film
 from uplift.io.export.film import CAT02, LAYER_WIDTH, LAYERS
 from uplift.lab.chart import mitsuba3
 from uplift.report.relight import relight, write_relit_sheet
 from uplift.samples import sample_path
-from uplift.viz.figure import new_figure, write_png
+from uplift.viz.figure import new_figure, show_image, write_png
 
 FOLDER = DOCS / "showcase"
 MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
@@ -54,7 +51,6 @@ SESSION = (
 
 def main() -> None:
     """Draw both pictures and store the numbers of the first."""
-    warnings.simplefilter("ignore", uplift.UpliftWarning)
     FOLDER.mkdir(exist_ok=True)
     lamps = [light(name) for name in RELIGHT_LIGHTS]
     methods, inside = colours(lamps)
@@ -147,10 +143,7 @@ def draw_still_life() -> None:
         with Image.open(png) as image:
             size = (JPEG_WIDTH, round(image.height * JPEG_WIDTH / image.width))
             small = image.convert("RGB").resize(size, Image.Resampling.LANCZOS)
-    buffer = io.BytesIO()
-    small.save(buffer, "JPEG", quality=JPEG_QUALITY, subsampling=0)
-    with atomic_write(FOLDER / "relit.jpg", force=True) as temporary:
-        temporary.write_bytes(buffer.getvalue())
+    small.save(FOLDER / "relit.jpg", quality=JPEG_QUALITY, subsampling=0)
 
 
 def expose_film() -> None:
@@ -180,8 +173,7 @@ def expose_film() -> None:
             if name in figures:
                 corner, dark = (place[1].start + 2, place[0].stop - 3), image[place].mean() < 0.25
                 axes.text(*corner, f"{figures[name]['patches'][number]:.2f}", fontsize=8, color="w" if dark else "k")
-        axes.imshow(encode(np.clip(image, 0, 1)), interpolation="nearest")
-        axes.set(xticks=(), yticks=(), title=name)
-        axes.spines[:].set_visible(False)
+        show_image(axes, encode(np.clip(image, 0, 1)), interpolation="nearest")
+        axes.set_title(name)
     write_png(figure, FOLDER / "film.png", force=True)
     record("showcase", "film", light=FILM_LIGHT, cubes=[{"cube": name, **each} for name, each in figures.items()])

@@ -1,14 +1,11 @@
 """Failures of fits and sensitivity of stored cubes, for docs/stability.md and its pictures."""
 
-import sys
-import warnings
 from typing import Any
 
 import uplift
-from benchmarks import CUBES, DOCS, record
+from benchmarks import CUBES, DOCS, record, show
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
-from uplift.common.progress import Progress
 from uplift.lab.chart.measure import perturb_method, select_methods
 from uplift.lab.study.plots import plot_locality, plot_map
 from uplift.lab.study.sensitivity import COLOURS, MOVED_DELTA_E, NOISE, perturb, study_sensitivity
@@ -31,7 +28,6 @@ KINDS = {
 
 def main() -> None:
     """Measure, draw and store."""
-    warnings.simplefilter("ignore", uplift.UpliftWarning)
     FOLDER.mkdir(exist_ok=True)
     published()
     cubes = {name: cube_sensitivity(name) for name in STORED}
@@ -59,11 +55,6 @@ def published() -> None:
 
 def failure_map() -> list[dict[str, Any]]:
     """Run the builds of the design, and plot them."""
-
-    def show(progress: Progress) -> None:
-        if progress.done % 20 == 0 or progress.done == progress.total:
-            print(f"{progress.done} of {progress.total} builds", file=sys.stderr)
-
     atlases = {"macbeth": uplift.read_atlas("macbeth")} | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
     results = study_stability(DesignSpace(atlases=(NO_ATLAS, *atlases)).configs(), atlases, show)
     plot_map(list(results.values()), FOLDER / "map.png", force=True)

@@ -156,7 +156,6 @@ def time_textures(cube: Path, size: int, options: tuple[str, ...], runs: int) ->
 
 def main() -> None:
     """Measure and store."""
-    warnings.simplefilter("ignore", uplift.UpliftWarning)
     # First: a process started from a large one counts the memory of its parent as its own.
     speed = [time_textures(CUBES / "moments-16-macbeth.uplift", *job) for job in JOBS]
     cube, images = uplift.build(MACBETH, dim=32), list(pictures())

@@ -1,14 +1,12 @@
 """Selection of wavelengths, and reproduction of Meyer 1988, for docs/scene.md and its pictures."""
 
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-import matplotlib
 import numpy as np
 
 import uplift
-from benchmarks import ATLASES, DOCS, MACBETH, read_reference, record
+from benchmarks import ATLASES, DOCS, MACBETH, Row, read_reference, record
 from uplift.atlas import on_grid
 from uplift.colorimetry import delta_e_1976, lab
 from uplift.common.arrays import Array
@@ -16,7 +14,7 @@ from uplift.scene.quadrature import QuadratureRule, UndefinedRule
 from uplift.scene.wavelengths import METHODS, ColourErrors, choose, grid, make_setup
 from uplift.scene.wavelengths import meyer as paper
 from uplift.scene.wavelengths.sampling import RenderSetup, evaluate
-from uplift.viz.figure import GREY, INK, STYLE, colour_map, new_figure, style_axes, write_png
+from uplift.viz.figure import GREY, INK, colour_map, new_figure, style_axes, styled, write_png
 
 CHANNELS = ("A", "C1", "C2")
 OPTIMISED, FITTED = "optimised", "fitted"
@@ -29,7 +27,6 @@ COLOURS = ("#20509a", "#d1495b", "#2e8b57", "#c98a1b", "#7fa3d9")
 CORNERS = np.array([[0.5, np.sqrt(0.75)], [0.0, 0.0], [1.0, 0.0]])
 """Corners of figure 7, where the first, second and third channel have all wavelengths."""
 PICTURES = DOCS / "wavelengths"
-Row = dict[str, Any]
 Nodes = tuple[Array, Array]
 """Wavelengths (n,) and weights (n,)."""
 
@@ -270,7 +267,6 @@ def plot_methods(comparisons: Mapping[tuple[str, ...], Mapping[str, Errors]]) ->
 
 def main() -> None:
     """Measure, draw and store."""
-    warnings.simplefilter("ignore", uplift.UpliftWarning)
     checker = make_setup(on_grid(uplift.read_atlas(MACBETH), grid()), ["C"])
     opponent = paper.opponent_space(checker.wavelengths, checker.cmfs)
     spaces = (opponent, paper.cone_space(checker.wavelengths, checker.cmfs), paper.XYZ)
@@ -279,7 +275,7 @@ def main() -> None:
     comparisons = {lights: compare_methods(materials, lights) for lights in LIGHTS}
     found = [table for lights, comparison in comparisons.items() for table in tables(lights, comparison)]
     PICTURES.mkdir(exist_ok=True)
-    with matplotlib.rc_context(STYLE):
+    with styled():
         write_png(figure_6(trials), PICTURES / "figure-6.png", force=True)
         write_png(figure_7(opponent, *trials[opponent]), PICTURES / "figure-7.png", force=True)
         write_png(plot_methods(comparisons), PICTURES / "methods.png", force=True)

@@ -12,7 +12,7 @@ from uplift.common.arrays import Array
 from uplift.io.exr import blue_slices
 from uplift.report.charts import spectra_chart
 from uplift.report.diff import Changes, CubeDiff, to_json
-from uplift.viz.figure import PALE, colour_map, new_figure, styled, to_page_svg
+from uplift.viz.figure import PALE, colour_map, new_figure, show_image, styled, to_page_svg
 from uplift.viz.html import render
 
 MIN_LIMIT, SHARE = 1.0, 0.99
@@ -59,13 +59,11 @@ def _map(values: Array, limit: float, label: str, picture: NDArray[np.uint8] | N
         figure = new_figure(WIDTH, 0.94 * WIDTH * values.shape[0] / values.shape[1] / panels)
         grid = figure.subplots(1, panels, squeeze=False)[0]
         if picture is not None:
-            grid[0].imshow(picture, interpolation="antialiased")
-        drawn = grid[-1].imshow(values, cmap=colour_map(), vmin=0, vmax=limit, interpolation="nearest")
+            show_image(grid[0], picture, interpolation="antialiased")
+        drawn = show_image(grid[-1], values, cmap=colour_map(), vmin=0, vmax=limit, interpolation="nearest")
         bar = figure.colorbar(drawn, ax=list(grid), fraction=0.03, pad=0.015, label="ΔE00", extend="max")
         bar.outline.set_visible(False)
-        for axes in grid:
-            axes.set(xticks=(), yticks=(), facecolor=PALE)
-            axes.spines[:].set_visible(False)
+        grid[-1].set_facecolor(PALE)
         return to_page_svg(figure, label)
 
 

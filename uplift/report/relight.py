@@ -33,7 +33,7 @@ from uplift.lookup import Cube
 from uplift.lookup.cube import common_sensor
 from uplift.lookup.node_table import prepare_products
 from uplift.report.measures import mean_p95_max
-from uplift.viz.figure import GREY, INK, RAMP, colour_map, figure_text, new_figure, ramp_codes, write_figure
+from uplift.viz.figure import GREY, INK, RAMP, colour_map, figure_text, new_figure, ramp_codes, show_image, write_figure
 from uplift.viz.html import render, resource
 
 RGB_PRODUCT = "RGB × light"  # name of the method that multiplies the RGB of the image by those of the light
@@ -170,19 +170,16 @@ def _draw_row(figure: Any, axes: Sequence[Any], image: Relit, rendering: Renderi
     from matplotlib.ticker import MaxNLocator
 
     for each, method in zip(axes, image.methods, strict=False):
-        each.imshow(rendering.screen_codes(method), interpolation="antialiased")
+        show_image(each, rendering.screen_codes(method), interpolation="antialiased")
         if method != RGB_PRODUCT:
             each.set_xlabel(_caption(rendering.difference(RGB_PRODUCT, method)), fontsize=9, color=GREY)
     difference = rendering.difference(RGB_PRODUCT, image.methods[-1])
-    drawn = axes[-1].imshow(difference, cmap=colour_map(), vmin=0, vmax=rendering.map_limit)
+    drawn = show_image(axes[-1], difference, cmap=colour_map(), vmin=0, vmax=rendering.map_limit)
     bar = figure.colorbar(drawn, ax=axes[-1], fraction=0.04, pad=0.02, extend="max")
     bar.outline.set_visible(False)
     bar.locator = MaxNLocator(4, integer=True)
     axes[0].set_ylabel(rendering.light_label, fontsize=11, color=INK, labelpad=6)
     axes[0].set_xlabel(figure_text(image.name), fontsize=9, color=GREY)
-    for each in axes:
-        each.set(xticks=(), yticks=())
-        each.spines[:].set_visible(False)
 
 
 def _caption(delta_e: Array) -> str:

@@ -103,6 +103,13 @@ def style_spectrum_axes(axes: Any) -> None:
     style_axes(axes)
 
 
+def show_image(axes: Any, image: NDArray[Any], **options: Any) -> Any:
+    """Draw an image without ticks and frame. Return what matplotlib's ``imshow`` returns."""
+    axes.set(xticks=(), yticks=())
+    axes.spines[:].set_visible(False)
+    return axes.imshow(image, **options)
+
+
 def write_png(figure: Any, path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Write a figure as PNG."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
