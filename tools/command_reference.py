@@ -21,9 +21,7 @@ def command_reference() -> str:
         for title, names in GROUPS.items():
             parts.append(f"\n## {title}\n")
             for name in names:
-                command = main.get_command(context, name)
-                assert command is not None
-                parts += _command(command, name, context)
+                parts += _command(main.get_command(context, name), name, context)
     return "".join(parts)
 
 

@@ -18,19 +18,16 @@ def codes(tree: ast.AST) -> Iterator[tuple[str, str]]:
     named = defaultdict(list)
     for node in ast.walk(tree):
         if isinstance(node, ast.Assign):
-            pairs = [(node.targets[0], node.value)]
-            if isinstance(node.targets[0], ast.Tuple) and isinstance(node.value, ast.Tuple):
-                pairs = list(zip(node.targets[0].elts, node.value.elts, strict=True))
-            for target, value in pairs:
-                if isinstance(target, ast.Name):
-                    named[target.id].append(value)
+            sides = (getattr(side, "elts", [side]) for side in (node.targets[0], node.value))
+            for target, value in zip(*sides, strict=False):
+                named[ast.unparse(target)].append(value)
     for node in ast.walk(tree):
         found: list[tuple[str, ast.expr]] = []
         if isinstance(node, ast.ClassDef):
             own = (each for each in node.body if isinstance(each, ast.Assign))
             found = [(node.name, each.value) for each in own if ast.unparse(each.targets[0]) == "code"]
         elif isinstance(node, ast.Call):
-            name = node.func.id if isinstance(node.func, ast.Name) else getattr(node.func, "attr", "")
+            name = ast.unparse(node.func).rpartition(".")[2]
             values = [keyword.value for keyword in node.keywords if keyword.arg in KEYWORDS]
             found = [(name, each) for value in values for each in named.get(ast.unparse(value), [value])]
         yield from ((name, str(each.value)) for name, each in found if isinstance(each, ast.Constant) and each.value)

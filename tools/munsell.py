@@ -10,23 +10,20 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.common.csv import csv_text
-from uplift.common.files import write_text
+from uplift.atlas import Atlas, Entry, write_atlas
 
 
 def main(folder: str, output: str) -> None:
     """Convert the data of the luxpy installation in ``folder`` to a CSV atlas at 5 nm."""
     data = Path(folder) / "luxpy" / "data" / "rfls"
     table = np.loadtxt(data / "Munsell1269.dat", delimiter=",")
-    with (data / "Munsell1269NotationInfo.dat").open(encoding="utf-8") as file:
-        names = [f"{chip['H']} {float(chip['V']):g}/{float(chip['C']):g}" for chip in csv.DictReader(file)]
+    lines = (data / "Munsell1269NotationInfo.dat").read_text(encoding="utf-8").splitlines()
+    names = [f"{chip['H']} {float(chip['V']):g}/{float(chip['C']):g}" for chip in csv.DictReader(lines)]
     wavelengths, values = table[::5, 0], table[::5, 1:]
     repeats = [names[:row].count(name) + 1 for row, name in enumerate(names)]
     names = [name if repeat == 1 else f"{name} ({repeat})" for name, repeat in zip(names, repeats, strict=True)]
-    rows = [[name, *(f"{value:.4f}" for value in column)] for name, column in zip(names, values.T, strict=True)]
-    Path(output).parent.mkdir(parents=True, exist_ok=True)
-    header = ["name", *(f"{wavelength:g}" for wavelength in wavelengths)]
-    write_text(csv_text(header, rows), output, force=True)
+    entries = (Entry(name, wavelengths, chip) for name, chip in zip(names, values.T.round(4), strict=True))
+    write_atlas(Atlas(tuple(entries)), output, force=True)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 README.md.j2 is the README, above docs. Long tables of a page are CSV files that it links to, in docs/tables.
 
 Nothing is measured here. The programs in benchmarks/ write the data. A template without data uses that of
-other pages, by ``load`` (JSON) and ``rows`` (CSV).
+other pages, by ``load``.
 
 Examples
 --------
@@ -11,7 +11,6 @@ Examples
     python -m tools.render_docs accuracy       # one page
 """
 
-import csv
 import json
 import os
 import statistics
@@ -30,17 +29,13 @@ from uplift.viz import format as viz_format
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 TEMPLATES = DOCS / "templates"
-README = "README"
-NAMED: dict[str, Callable[[float], str]] = {
-    name: getattr(viz_format, f"format_{name}") for name in ("time", "size", "error", "build_time")
-}
-"""Formats in addition to the format specifications of Python: `time` takes nanoseconds, `size` bytes."""
 Row = Mapping[str, Any]
 
 
 def number(value: Any, spec: str = "") -> str:
-    """Format a value of the data by a format specification of Python or a key of `NAMED`.
+    """Format a value of the data by a format specification of Python, or "time", "size", "error" or "build_time".
 
+    "time" takes nanoseconds, "size" bytes: the functions of `uplift.viz.format`.
     None is an empty string, a bool a filled or an empty circle. The items of a list are joined by slashes, or by commas
     after "list ". ``{median, min, max}`` is written as "median (min–max)", ``{mean, std}`` as "mean ± std".
     """
@@ -56,7 +51,8 @@ def number(value: Any, spec: str = "") -> str:
     if isinstance(value, Mapping):
         parts = {key: number(item, spec) for key, item in value.items()}
         return "{mean} ± {std}".format_map(parts) if "std" in parts else "{median} ({min}–{max})".format_map(parts)
-    return NAMED[spec](value) if spec in NAMED else format(value, spec)
+    named = getattr(viz_format, f"format_{spec}", None)
+    return named(value) if named else format(value, spec)
 
 
 class RowFormatter(string.Formatter):
@@ -96,7 +92,7 @@ def leaves(value: Any, parts: Sequence[str], name: str = "") -> Iterator[tuple[s
         for key, item in value.items():
             yield from leaves(item, parts, f"{name}.{key}" if name else str(key))
     elif isinstance(value, list):
-        yield name, "; ".join(f"{item:.6g}" if isinstance(item, float) else str(item) for item in value)
+        yield name, "; ".join(str(item) for each in value for _, item in leaves(each, ()))
     else:
         yield name, f"{value:.6g}" if isinstance(value, float) else value
 
@@ -114,11 +110,9 @@ def where(rows: Iterable[Row], **conditions: Any) -> list[Row]:
 
 
 def pick(rows: Iterable[Row], **conditions: Any) -> Row:
-    """Return the one row with these values; raise `LookupError` if there is none, or more than one."""
-    found = where(rows, **conditions)
-    if len(found) != 1:
-        raise LookupError(f"{len(found)} rows with {conditions}")
-    return found[0]
+    """Return the one row with these values; raise `ValueError` if there is none, or more than one."""
+    (found,) = where(rows, **conditions)
+    return found
 
 
 def recommended() -> list[Row]:
@@ -132,11 +126,6 @@ def pages() -> list[str]:
     return sorted(path.relative_to(TEMPLATES).as_posix().removesuffix(".md.j2") for path in TEMPLATES.rglob("*.md.j2"))
 
 
-def page_file(name: str) -> Path:
-    """Return the file of a page: docs/NAME.md, and the README above docs."""
-    return (ROOT if name == README else DOCS) / f"{name}.md"
-
-
 def read_data(name: str) -> dict[str, Any]:
     """Return the data of a page: docs/data/NAME.json, empty if the page has none."""
     path = DOCS / "data" / f"{name}.json"
@@ -148,21 +137,9 @@ def read_text(path: str) -> str:
     return (DOCS / path).read_text(encoding="utf-8")
 
 
-def read_rows(path: str) -> list[Row]:
-    """Return the rows of a CSV file of docs: numbers where cells are numbers, None where they are empty."""
-
-    def value(cell: str) -> Any:
-        try:
-            return float(cell) if cell else None
-        except ValueError:
-            return cell
-
-    return [{key: value(cell) for key, cell in row.items()} for row in csv.DictReader(read_text(path).splitlines())]
-
-
 def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
     """Return the text of a page and of its CSV files, from its template and its data, by default the stored one."""
-    page, tables = page_file(name), {}
+    page, tables = (ROOT if name == "README" else DOCS) / f"{name}.md", {}
 
     def long_table(rows: Iterable[Row], table_name: str, parts: Sequence[str] = ()) -> str:
         path = DOCS / "tables" / f"{table_name}.csv"
@@ -172,7 +149,7 @@ def render(name: str, data: Mapping[str, Any] | None = None) -> dict[Path, str]:
     style = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
     environment = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, **style)
     environment.filters |= {"num": number, "mean": statistics.fmean}
-    functions = {"load": read_data, "rows": read_rows, "text": read_text, "table": table, "where": where, "pick": pick}
+    functions = {"load": read_data, "text": read_text, "table": table, "where": where, "pick": pick}
     environment.globals |= functions | {"long_table": long_table, "recommended": recommended}
     text = environment.get_template(f"{name}.md.j2").render(read_data(name) if data is None else data)
     return {page: text} | tables

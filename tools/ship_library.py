@@ -42,8 +42,7 @@ BLUR = 0.01
 
 def main(path: Path = FILE) -> None:
     """Write the library."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UpliftWarning)
+    with warnings.catch_warnings(action="ignore", category=UpliftWarning):
         families = {name: measurements(atlases) for name, atlases in FAMILIES.items()}
     families["otsu2018"] = otsu_spectra()
     sensors = [observer.sensor(space) for space in SPACES]
