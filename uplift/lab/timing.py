@@ -1,7 +1,6 @@
 """Timings with median and range, the environment in which they are taken, and records of both."""
 
 import contextlib
-import dataclasses
 import json
 import os
 import platform
@@ -10,9 +9,12 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
+
+from pydantic_core import to_jsonable_python
 
 from uplift.common.csv import csv_text
 from uplift.common.version import VERSION
@@ -28,7 +30,7 @@ MIN_RUNS, MAX_LAPS = 3, 75
 """Fewest runs, and duration of all runs together in units of the shortest, unless `MIN_RUNS` take longer."""
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclass(frozen=True)
 class Spread:
     """Median, smallest and largest value of several runs."""
 
@@ -132,12 +134,6 @@ def records_csv(records: Sequence[Mapping[str, Any]]) -> str:
 def write_record(path: Path, command: str, **figures: Any) -> None:
     """Write figures with the command that measures them; ``environment`` is that of this process by default."""
     content = {"command": command, "environment": environment(), **figures}
-    text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False, default=_to_json)
+    values = to_jsonable_python(content, fallback=lambda array: array.tolist())
+    text = json.dumps(values, indent=1, ensure_ascii=False, allow_nan=False)
     path.write_text(text + "\n", encoding="utf-8")
-
-
-def _to_json(value: Any) -> Any:
-    """Convert a dataclass, or a number or array of numpy."""
-    if dataclasses.is_dataclass(value):
-        return {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
-    return value.tolist()

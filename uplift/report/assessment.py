@@ -68,9 +68,10 @@ def assess(cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequen
         query = fidelity.from_own_atlas(data, atlas) if own else fidelity.from_other_atlas(data, atlas)
         in_gamut, query = query.names, query.answerable_by(cube)
         errors = fidelity.entry_errors(cube, query, sensors) if query.names else None
+    unseen = None if own else errors
     calibration = None
-    if errors is not None and not own:
-        calibration = check_calibration(errors.actual, errors.predicted, cube.error_bound(errors.rgb))
+    if unseen is not None:
+        calibration = check_calibration(unseen.actual, unseen.predicted, cube.error_bound(unseen.rgb))
     points, steps = data.points, measures.compute_smoothness(data)
     distances = points.distance[points.present]
     standard_errors = None if points.standard_error is None else points.standard_error[points.present]
@@ -96,8 +97,8 @@ def assess(cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequen
         out_of_gamut=() if atlas is None else _missing(atlas.names, in_gamut),
         not_covered=_missing(in_gamut, () if errors is None else errors.names),
         calibration=calibration,
-        light_calibrations={} if calibration is None or errors is None else _light_calibrations(cube, errors, sensors),
-        unlike=0.0 if calibration is None or errors is None else float(cube.unlike_atlas(errors.rgb).mean()),
+        light_calibrations=_light_calibrations(cube, unseen, sensors) if unseen and calibration else {},
+        unlike=float(cube.unlike_atlas(unseen.rgb).mean()) if unseen and calibration else 0.0,
         crowding=_crowding(cube, errors if own else None, sensors),
     )
 

@@ -51,14 +51,14 @@ class Answers:
     @property
     def mean(self) -> Array:
         """Return the mean ΔE00 of the colours that are answered under each light, (L,); NaN without any."""
-        return self._statistic(np.mean)
+        return self._of_answered(np.mean)
 
     @property
     def largest(self) -> Array:
         """Return the largest ΔE00 of the colours that are answered under each light, (L,); NaN without any."""
-        return self._statistic(np.max)
+        return self._of_answered(np.max)
 
-    def _statistic(self, function: Callable[..., Array]) -> Array:
+    def _of_answered(self, function: Callable[..., Array]) -> Array:
         known = self.delta_e[~np.isnan(self.delta_e).any(axis=1)]
         return function(known, axis=0) if len(known) else np.full(self.delta_e.shape[1], np.nan)
 

@@ -67,37 +67,22 @@ def compute_smoothness(data: CubeData) -> Smoothness:
 
     The lattice is processed by planes of equal red: spectra of two planes are in memory at a time.
     """
-    dim = data.lattice.dim
-    rows = np.arange(dim**3).reshape(dim, dim, dim)
-    parts: list[NDArray[np.float32]] = []
-    largest, steepest = -1.0, (0, 0)
-    spectra, at = np.zeros((0, len(data.sensor.wavelengths))), np.full((dim, dim), ABSENT)
-    for here in rows:
-        before, at_before = spectra, at
-        spectra, at = _plane(data, here)
-        for own, first, second, nodes, step in (
-            (spectra, at[:, :-1], at[:, 1:], here[:, 1:], 1),  # along blue
-            (spectra, at[:-1], at[1:], here[1:], dim),  # along green
-            (before, at_before, at, here, dim**2),  # along red
+    dim, wavelengths, parts = data.lattice.dim, data.sensor.wavelengths, []
+    spectra = np.full((dim, dim, len(wavelengths)), np.nan)  # of a plane; NaN for absent nodes
+    for nodes in np.arange(dim**3).reshape(dim, dim, dim):
+        before, spectra, present = spectra, np.full_like(spectra, np.nan), data.points.present[nodes]
+        spectra[present] = reflectance(data.model, data.points.coefficients[nodes[present]], wavelengths)
+        for first, second, high, step in (
+            (spectra[:, :-1], spectra[:, 1:], nodes[:, 1:], 1),  # along blue
+            (spectra[:-1], spectra[1:], nodes[1:], dim),  # along green
+            (before, spectra, nodes, dim**2),  # along red
         ):
-            both = (first != ABSENT) & (second != ABSENT)
-            rms = np.sqrt(((spectra[second[both]] - own[first[both]]) ** 2).mean(axis=-1))
-            parts.append(rms.astype(np.float32))
-            if rms.max(initial=-1) > largest:
-                high = int(nodes[both][rms.argmax()])
-                largest, steepest = float(rms.max()), (high - step, high)
-    return Smoothness(np.concatenate(parts), data.lattice.target(np.array(steepest)))
-
-
-ABSENT = -1  # row of a point without a spectrum
-
-
-def _plane(data: CubeData, nodes: Indices) -> tuple[Array, Indices]:
-    """Spectra (m, N) of the present ones of some nodes (dim, dim), and the rows of the nodes in them."""
-    present = data.points.status[nodes] != Status.ABSENT
-    rows = np.full(nodes.shape, ABSENT)
-    rows[present] = np.arange(np.count_nonzero(present))
-    return reflectance(data.model, data.points.coefficients[nodes[present]], data.sensor.wavelengths), rows
+            rms = np.sqrt(((second - first) ** 2).mean(axis=-1))
+            known = ~np.isnan(rms)
+            parts.append((rms[known], high[known], high[known] - step))
+    rms, high, low = map(np.concatenate, zip(*parts, strict=True))
+    steepest = [each[rms.argmax()] for each in (low, high)]
+    return Smoothness(rms.astype(np.float32), data.lattice.target(np.array(steepest)))
 
 
 COLOURS = 4096

@@ -1,11 +1,10 @@
 """An assessment as JSON values for programs, and as a self-contained HTML page."""
 
-import math
 from collections.abc import Iterator, Mapping
-from dataclasses import is_dataclass
 from typing import Any
 
 import numpy as np
+from pydantic_core import to_jsonable_python
 
 from uplift.colorimetry import Sensor
 from uplift.colorimetry.srgb import hex_codes
@@ -17,9 +16,9 @@ from uplift.report.measures import SEED
 
 
 def to_json(assessment: Assessment) -> dict[str, Any]:
-    """Convert an assessment to JSON values."""
+    """Convert an assessment to JSON values; numbers that are not finite are null."""
     data = assessment.data
-    values: dict[str, Any] = _plain(
+    values: dict[str, Any] = to_jsonable_python(
         {
             "cube": assessment.name,
             "bytes": assessment.size,
@@ -54,7 +53,9 @@ def to_json(assessment: Assessment) -> dict[str, Any]:
                 for name, other in assessment.alternatives.items()
             ],
             "crowding": _crowding(assessment),
-        }
+        },
+        inf_nan_mode="null",
+        fallback=lambda array: array.tolist(),
     )
     return values
 
@@ -132,19 +133,6 @@ def _by_light(other: Answers, lights: tuple[Sensor, ...]) -> dict[str, Any]:
     """Errors of another method, in the order of the entries."""
     columns = zip(lights, other.mean, other.largest, other.delta_e.T, strict=True)
     return {sensor.illuminant: {"mean": mean, "max": most, "entries": each} for sensor, mean, most, each in columns}
-
-
-def _plain(value: Any) -> Any:
-    """JSON values of nested dictionaries, sequences, arrays and dataclasses; null for numbers that are not finite."""
-    if is_dataclass(value):
-        value = vars(value)
-    if isinstance(value, Mapping):
-        return {str(key): _plain(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(inner) for inner in value]
-    if isinstance(value, np.ndarray | np.generic):
-        return _plain(value.tolist())
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 Swatch = tuple[str, float | None]

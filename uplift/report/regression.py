@@ -62,7 +62,8 @@ class RebuildDifference:
 
 def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildDifference:
     """Compare a stored cube with a rebuilt one."""
-    if not _same_lattice(stored, rebuilt):
+    nodes, other = stored.lattice.nodes, rebuilt.lattice.nodes
+    if nodes.shape != other.shape or (np.abs(nodes - other) > NODE_TOLERANCE).any():
         raise CubeFileError(
             "its lattice is not the one that its options give",
             path=path,
@@ -92,11 +93,6 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
     changes += [EntryChange(pairs.names[row], "moved", float(moved[row])) for row in np.flatnonzero(moved > MOVED)]
     before, after = (_counts(data, compared) for data in (stored, rebuilt))
     return RebuildDifference(path, measures, before, after, tuple(changes))
-
-
-def _same_lattice(stored: CubeData, rebuilt: CubeData) -> bool:
-    nodes, other = stored.lattice.nodes, rebuilt.lattice.nodes
-    return nodes.shape == other.shape and bool((np.abs(nodes - other) <= NODE_TOLERANCE).all())
 
 
 def _well_determined(data: CubeData) -> Mask:

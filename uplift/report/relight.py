@@ -6,9 +6,7 @@ sides of a line that moves.
 
 import base64
 import math
-import struct
 import tempfile
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -149,7 +147,7 @@ def write_relit_sheet(relit: Sequence[Relit], path: StrPath, *, force: bool = Fa
     """Write relit images as one figure: PNG, SVG or PDF, by the suffix of its file."""
     rows = [(image, rendering) for image in relit for rendering in image.renderings]
     columns = len(relit[0].methods) + 1
-    heights = [_aspect(rendering) * PANEL + LABELS for _, rendering in rows]
+    heights = [image.original.shape[0] / image.original.shape[1] * PANEL + LABELS for image, _ in rows]
     figure = new_figure(columns * (PANEL + 0.06) + 0.5, sum(heights) + 0.35)
     figure.set_dpi(DPI)
     figure.get_layout_engine().set(w_pad=0.03, h_pad=0.03, wspace=0, hspace=0)
@@ -161,18 +159,15 @@ def write_relit_sheet(relit: Sequence[Relit], path: StrPath, *, force: bool = Fa
     write_figure(figure, path, force=force)
 
 
-def _aspect(rendering: Rendering) -> float:
-    height, width, _ = rendering.colours[RGB_PRODUCT].shape
-    return height / width
-
-
 def _draw_row(figure: Any, axes: Sequence[Any], image: Relit, rendering: Rendering) -> None:
     from matplotlib.ticker import MaxNLocator
 
     for each, method in zip(axes, image.methods, strict=False):
         show_image(each, rendering.screen_codes(method), interpolation="antialiased")
         if method != RGB_PRODUCT:
-            each.set_xlabel(_caption(rendering.difference(RGB_PRODUCT, method)), fontsize=9, color=GREY)
+            found = mean_p95_max(rendering.difference(RGB_PRODUCT, method))
+            text = f"ΔE00 from RGB × light: mean {found['mean']:.1f}, 95 % {found['p95']:.1f}"
+            each.set_xlabel(text, fontsize=9, color=GREY)
     difference = rendering.difference(RGB_PRODUCT, image.methods[-1])
     drawn = show_image(axes[-1], difference, cmap=colour_map(), vmin=0, vmax=rendering.map_limit)
     bar = figure.colorbar(drawn, ax=axes[-1], fraction=0.04, pad=0.02, extend="max")
@@ -180,11 +175,6 @@ def _draw_row(figure: Any, axes: Sequence[Any], image: Relit, rendering: Renderi
     bar.locator = MaxNLocator(4, integer=True)
     axes[0].set_ylabel(rendering.light_label, fontsize=11, color=INK, labelpad=6)
     axes[0].set_xlabel(figure_text(image.name), fontsize=9, color=GREY)
-
-
-def _caption(delta_e: Array) -> str:
-    found = mean_p95_max(delta_e)
-    return f"ΔE00 from RGB × light: mean {found['mean']:.1f}, 95 % {found['p95']:.1f}"
 
 
 def relit_page(relit: Sequence[Relit]) -> str:
@@ -221,27 +211,28 @@ def _section(image: Relit, limits: Sequence[float]) -> dict[str, Any]:
         "light": "",
         "shows": str(len(image.methods)),
         "label": image.name,
-        "source": _jpeg(image.original),
+        "source": _encoded(image.original),
     }
     layers, rows = [own], []
     for number, (rendering, limit) in enumerate(zip(image.renderings, limits, strict=True)):
         for method, name in enumerate(image.methods):
-            label, source = f"{image.name} under {rendering.light}, {name}", _jpeg(rendering.screen_codes(name))
+            label, source = f"{image.name} under {rendering.light}, {name}", _encoded(rendering.screen_codes(name))
             layers.append({"light": number, "shows": str(method), "label": label, "source": source})
         for (one, first), (other, second) in combinations(enumerate(image.methods), 2):
             difference = rendering.difference(first, second)
             label = f"ΔE00 map of {image.name} under {rendering.light}: {first}, {second}"
-            source = _map(difference / limit)
+            source = _encoded(ramp_codes(np.rint(255 * np.clip(difference / limit, 0, 1)) / 255), "png")
             layers.append({"light": number, "shows": f"{one}-{other}", "label": label, "source": source})
             rows.append(
                 (rendering.light, first, second, *(f"{each:.2f}" for each in mean_p95_max(difference).values()))
             )
-    height, width, _ = image.renderings[0].colours[RGB_PRODUCT].shape
+    height, width, _ = image.original.shape
     size = {"width": width, "height": height, "reduction": image.reduction}
     return {"name": image.name, **size, "layers": layers, "rows": rows}
 
 
-def _jpeg(codes: NDArray[np.uint8]) -> str:
+def _encoded(codes: NDArray[np.uint8], kind: str = "jpeg") -> str:
+    """Encode 8-bit codes (height, width, 3) as the URL of a JPEG, or of a PNG, which has them exactly."""
     import OpenImageIO
 
     height, width, channels = codes.shape
@@ -249,30 +240,9 @@ def _jpeg(codes: NDArray[np.uint8]) -> str:
     spec.attribute("Compression", f"jpeg:{JPEG_QUALITY}")
     spec.attribute("jpeg:subsampling", "4:4:4")
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "image.jpg"
-        image = OpenImageIO.ImageOutput.create("jpeg")
+        path = Path(folder) / f"image.{kind}"
+        image = OpenImageIO.ImageOutput.create(kind)
         if not (image and image.open(utf8_name(path, OutputError), spec) and image.write_image(codes)):
             raise OSError(read_error(image or OpenImageIO))
         image.close()
-        return _data_url("image/jpeg", path.read_bytes())
-
-
-def _map(values: NDArray[np.float64]) -> str:
-    """Encode a map as a PNG with a palette of the 256 colours of the ramp."""
-    codes = np.rint(255 * np.clip(values, 0, 1)).astype(np.uint8)
-    height, width = codes.shape
-    chunks = {
-        b"IHDR": struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0),  # 8-bit palette
-        b"PLTE": ramp_codes(np.linspace(0, 1, 256)).tobytes(),
-        b"IDAT": zlib.compress(np.pad(codes, ((0, 0), (1, 0))).tobytes(), 9),  # each row begins with its filter, none
-        b"IEND": b"",
-    }
-    parts = (
-        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-        for kind, data in chunks.items()
-    )
-    return _data_url("image/png", b"\x89PNG\r\n\x1a\n" + b"".join(parts))
-
-
-def _data_url(kind: str, data: bytes) -> str:
-    return f"data:{kind};base64,{base64.b64encode(data).decode()}"
+        return f"data:image/{kind};base64,{base64.b64encode(path.read_bytes()).decode()}"
