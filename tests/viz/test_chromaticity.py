@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import matplotlib.image
 import numpy as np
 import pytest
 
@@ -9,7 +10,7 @@ import uplift
 from uplift.lights.discs import LampEntries
 from uplift.lights.lookup import EmissionTable
 from uplift.viz.chromaticity import ALL, MARGIN, draw_errors, lamp_window, light_figure
-from uplift.viz.figure import rendered
+from uplift.viz.figure import write_png
 from uplift.viz.scatter import new_panels
 
 
@@ -18,8 +19,9 @@ def table():
     return uplift.load_emission()
 
 
-def test_the_figure_has_colours_errors_and_lamps(table):
-    image = rendered(light_figure(table)) / 255
+def test_the_figure_has_colours_errors_and_lamps(table, tmp_path):
+    write_png(light_figure(table), tmp_path / "lights.png")
+    image = matplotlib.image.imread(tmp_path / "lights.png")[..., :3]
     width = image.shape[1]
     saturation = image.max(axis=2) - image.min(axis=2)
     colours, errors, lamps = (saturation[:, i * width // 3 : (i + 1) * width // 3] for i in range(3))

@@ -119,22 +119,12 @@ def write_png(figure: Any, path: str | os.PathLike[str], *, force: bool = False)
         FigureCanvasAgg(figure).print_png(temporary, metadata={"Software": "uplift"})
 
 
-def rendered(figure: Any) -> NDArray[np.uint8]:
-    """Return the pixels (height, width, 3) of a figure."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    return np.asarray(canvas.buffer_rgba())[..., :3].copy()
-
-
 def check_suffix(path: str | os.PathLike[str]) -> str:
     """Return the format of a figure's file, by its suffix. Raises `OutputError`, also without matplotlib."""
     suffix = os.path.splitext(path)[1].lower()
     if suffix not in SUFFIXES:
         problem = f"the suffix of a plot must be one of {', '.join(SUFFIXES)}, got '{suffix}'"
-        hint = "name the file accordingly, such as plot.svg"
-        raise OutputError(problem, path=path, hint=hint)
+        raise OutputError(problem, path=path, hint="name the file accordingly, such as plot.svg")
     matplotlib()
     return suffix
 
