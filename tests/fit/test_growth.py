@@ -271,7 +271,7 @@ def greys(problem, level):
 
 def grown(problem, multipliers):
     """Growth that ended with multipliers (n, C)."""
-    growth = Growth(problem, nodes_of(STORED, problem.sensor, 1e-4), ignore_progress)
+    growth = Growth(problem, nodes_of(STORED, problem.sensor), ignore_progress)
     growth.multipliers[:] = multipliers
     off = problem.forward.residual(multipliers, STORED.points)
     growth.distance[:], growth.rgb[:] = np.abs(off).max(axis=1), STORED.points - off

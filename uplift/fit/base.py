@@ -40,8 +40,6 @@ SAME_SENSOR = 1e-14
 """Difference of elements of W, of instruction sets, up to which stored tables are those of a sensor."""
 NO_FREEDOM = 3
 """Number of coefficients that the colour alone determines."""
-MARGIN = 1e-3
-"""Linear RGB between the goals of unrealisable colours and the boundary, where spectra become boxes."""
 SAME_COLOUR, SAME_SPECTRUM = 6.0, 0.03
 """ΔE*ab and rms within which a spectrum of a library is that of an atlas entry, which replaces it."""
 MAX_ENTRIES = 1000
@@ -125,7 +123,7 @@ def learn_base(
     """
     # Unrealisable nodes of the table are solved for the nearest realisable colours: their own multipliers would be
     # arbitrary, and would spoil the interpolation between nodes.
-    table = nodes_of(TABLE, problem.sensor, MARGIN)
+    table = nodes_of(TABLE, problem.sensor)
     bright = table.goal(table.points)
     plain = smooth_table(problem, bright)  # s(x′)
     model, sensor = problem.model, problem.sensor

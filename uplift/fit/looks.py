@@ -18,11 +18,13 @@ from uplift.fit.bounded_least_squares import BoundedProblem, solve_bounded
 from uplift.fit.entries import FittedEntries, fit_entries, join_entries
 from uplift.fit.problem import Problem
 from uplift.fit.solver import LeastChange
+from uplift.models import evaluate
 
 MET = 0.1
 """ΔE00 within which a target is met."""
-LIGHTS_WEIGHT = 1.0
-"""Weight of the entry fit: the target colours count as much as the spectrum allows."""
+FIT_WEIGHTS, REACHED = ({"lights": 1.0}, {"lights": 0.3, "smoothness": 3e-3}), 0.5
+"""Weights of the fit of a design: the lights count as much as the spectrum allows, or less where that ends at more than
+so many ΔE00 from the colours of the design, as then the spectrum would be bent towards them without end."""
 SHAPES = (0.3, 0.03)
 """ΔE00 that a root-mean-square change of the reflectance by 1 weighs. The second is used where the first misses."""
 ENOUGH = 0.02
@@ -107,8 +109,15 @@ def _linear_design(sensor: Sensor, goal: LookGoal, expected: Array, near: Array,
 
 def fit_designs(problem: Problem, goals: Sequence[LookGoal], designs: Array) -> FittedEntries:
     """Fit designed reflectances (k, N) by the spectrum model, each with the lights of its goal."""
-    lit = (replace(problem, lights=(problem.sensor.light, *goal.lights), method=LeastChange) for goal in goals)
-    parts = zip(lit, goals, designs, strict=True)
-    return join_entries(
-        *(fit_entries(own, design[None], goal.rgb[None], lights=LIGHTS_WEIGHT) for own, goal, design in parts)
-    )
+    return join_entries(*(_fit_design(problem, *each) for each in zip(goals, designs, strict=True)))
+
+
+def _fit_design(problem: Problem, goal: LookGoal, design: Array) -> FittedEntries:
+    """Fit a reflectance (N,) with the first weights that reach its colours, or the last."""
+    own = replace(problem, lights=(problem.sensor.light, *goal.lights), method=LeastChange)
+    for weights in FIT_WEIGHTS:
+        fitted = fit_entries(own, design[None], goal.rgb[None], **weights)
+        answer = evaluate(problem.model, fitted.multipliers, problem.sensor.wavelengths)[0]
+        if (goal.delta_e(answer) <= goal.delta_e(design) + REACHED).all():
+            break
+    return fitted

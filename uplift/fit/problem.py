@@ -15,6 +15,9 @@ from uplift.models.model import Model
 
 BLOCK_NODES = 1 << 15
 """Nodes that are tested at a time."""
+MARGIN = 1e-3
+"""Linear RGB between the goals of unrealisable nodes and the boundary. Nearer to it spectra become boxes, and many of
+these have the same colour: rounding would decide between them."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -77,12 +80,12 @@ class Nodes:
         return goal
 
 
-def nodes_of(lattice: Lattice, sensor: Sensor, margin: float, points: Indices | None = None) -> Nodes:
+def nodes_of(lattice: Lattice, sensor: Sensor, points: Indices | None = None) -> Nodes:
     """Find the goals of nodes, all by default (docs/mathematics.md, 9).
 
     The goal of an unrealisable node has its hue and less chroma: it lies on the straight line to the grey of the same
-    luminance, ``margin`` in linear RGB inside the object-colour solid. The spectra on the boundary are steps between 0
-    and 1 (MacAdam 1935), which no smooth model has.
+    luminance, `MARGIN` inside the object-colour solid. The spectra on the boundary are steps between 0 and 1 (MacAdam
+    1935), which no smooth model has.
     """
     points = np.arange(lattice.size) if points is None else points
     limits = solid(sensor.matrix)
@@ -95,5 +98,5 @@ def nodes_of(lattice: Lattice, sensor: Sensor, margin: float, points: Indices | 
             some = some[~limits.contains(lattice.target(some))]
             target = lattice.target(some)
             outside.append(some)
-            nearest.append(toward_grey(limits, sensor.grey(target), target, margin))
+            nearest.append(toward_grey(limits, sensor.grey(target), target, MARGIN))
     return Nodes(lattice, points, np.concatenate(outside), np.concatenate(nearest))

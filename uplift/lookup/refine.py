@@ -129,8 +129,7 @@ def _pull(model: Model, pulled: Pull, linear: Array, goal: Array) -> Array:
 def within_solid(data: CubeData, rgb: Array) -> Array:
     """Return the linear RGB (n, 3) to which unrealisable colours are moved; others are unchanged.
 
-    Half of the threshold inside the object-colour solid, on the line to the grey of the same luminance, as
-    unrealisable points of the lattice.
+    Half of the threshold inside the object-colour solid, on the line to the grey of the same luminance.
     """
     margin = data.threshold / 2
     return toward_grey(data.solid, np.clip(data.sensor.grey(rgb), margin, 1 - margin), rgb, margin)

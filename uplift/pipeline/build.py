@@ -342,7 +342,7 @@ def _build(
     # The nodes that a scene needs, or all, grow from the seeds: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7),
     # where t is the nearest colour that some reflectance has (9). They are improved and stored as coefficients.
     kept = None if scene is None else np.flatnonzero(scene.required_points(boxes, sensor, progress))
-    nodes = nodes_of(lattice, sensor, options.threshold / 2, None if neighbours else kept)
+    nodes = nodes_of(lattice, sensor, None if neighbours else kept)
 
     def expected(points: Indices) -> Array:
         return initial_guess(points, nodes.goal(points), prior, seeds, own, blend)
