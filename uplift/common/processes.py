@@ -7,16 +7,12 @@ import signal
 import threading
 import warnings
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnContext
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from typing import Any, TypeVar
 
 from uplift.common.files import remove_temporaries
 
 Result = TypeVar("Result")
-GRACE = 5.0
-"""Seconds that a child may take to exit after its answer."""
 
 
 class ChildError(Exception):
@@ -29,93 +25,64 @@ def call_in_child(function: Callable[..., Result], *arguments: Any, seconds: flo
     The function and its arguments are pickled. Its exceptions are raised here; a child that crashes, or has no answer
     after ``seconds`` and is killed, raises `ChildError`.
     """
-    with _spawning() as spawn:
-        ours, theirs = spawn.Pipe()
-        child = spawn.Process(target=_answer, args=(theirs, function, arguments), daemon=True)
-        child.start()
-    theirs.close()
+    others = set(multiprocessing.active_children())
     try:
-        if not ours.poll(seconds):
-            raise ChildError(f"no answer within {seconds:g} s")
-        result, error = ours.recv()
-        child.join(GRACE)
-    except (EOFError, OSError) as lost:
-        child.join(GRACE)
+        with tied_processes(1) as pool:
+            answer = pool.submit(_call_silently, function, arguments)
+            (child,) = set(multiprocessing.active_children()) - others
+            try:
+                return answer.result(seconds)
+            finally:
+                child.kill()  # it may hang, also at its end
+    except TimeoutError:
+        raise ChildError(f"no answer within {seconds:g} s") from None
+    except BrokenExecutor as lost:
         code = child.exitcode or 0
         raise ChildError(f"crashed: signal {-code}" if code < 0 else f"crashed: exit code {code}") from lost
-    finally:
-        ours.close()
-        if child.is_alive():
-            child.kill()
-            child.join()
-    if error is not None:
-        raise error
-    return result
 
 
-def _answer(pipe: Connection, function: Callable[..., object], arguments: tuple[object, ...]) -> None:
-    """Send the result of a function, or its exception. Output and warnings of the child are dropped."""
-    _tie(pipe)
+def _call_silently(function: Callable[..., Result], arguments: tuple[object, ...]) -> Result:
+    """Call a function whose output and warnings are dropped."""
     warnings.simplefilter("ignore")
     # Libraries of other languages write to the descriptors, not to sys.stdout.
     silence = os.open(os.devnull, os.O_WRONLY)
     for stream in (1, 2):
         os.dup2(silence, stream)
-    try:
-        pipe.send((function(*arguments), None))
-    except Exception as error:
-        pipe.send((None, error))
+    return function(*arguments)
 
 
 @contextlib.contextmanager
 def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
     """Start processes that end, and remove their temporary files, when the block raises or this process ends.
 
-    A pipe ties them: the system closes its end in this process even if this process is killed.
+    They are new ones, as JAX cannot be forked, and load no module from the working folder in place of one of Python's.
     """
-    with _spawning() as spawn:
-        reader, writer = spawn.Pipe(duplex=False)
-        pool = ProcessPoolExecutor(count, mp_context=spawn, initializer=_tie, initargs=(reader,))
-        try:
-            yield pool
-        except BaseException:
-            writer.close()
-            raise
-        finally:
-            pool.shutdown(cancel_futures=True)
-            writer.close()
-            reader.close()
-
-
-@contextlib.contextmanager
-def _spawning() -> Iterator[SpawnContext]:
-    """Provide the context of new processes, which JAX needs: it cannot be forked.
-
-    They load no module from the working folder in place of one of Python's. Later they get its sys.path.
-    """
-    before = os.environ.get("PYTHONSAFEPATH")
+    others, before = set(multiprocessing.active_children()), os.environ.get("PYTHONSAFEPATH", "")
     os.environ["PYTHONSAFEPATH"] = "1"
+    pool = ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn"), initializer=_tie)
     try:
-        yield multiprocessing.get_context("spawn")
+        yield pool
+    except BaseException:
+        for child in set(multiprocessing.active_children()) - others:
+            child.terminate()
+        raise
     finally:
-        if before is None:
-            os.environ.pop("PYTHONSAFEPATH", None)
-        else:
-            os.environ["PYTHONSAFEPATH"] = before
+        os.environ["PYTHONSAFEPATH"] = before
+        pool.shutdown(cancel_futures=True)
 
 
-def _tie(reader: Connection) -> None:
+def _tie() -> None:
     """End this worker with its parent, and not by the Ctrl-C that the terminal sends to all processes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for name in {"SIGTERM", "SIGHUP"} & {each.name for each in signal.Signals}:  # SIGHUP is not on Windows
         signal.signal(signal.Signals[name], lambda number, frame: _end(128 + number))
-    threading.Thread(target=_wait, args=(reader,), daemon=True).start()
+    threading.Thread(target=_wait, daemon=True).start()
 
 
-def _wait(reader: Connection) -> None:
-    """Wait until the parent closes the pipe."""
-    with contextlib.suppress(EOFError, OSError):
-        reader.recv_bytes()
+def _wait() -> None:
+    """Wait until the parent ends, also if it is killed."""
+    if parent := multiprocessing.parent_process():
+        parent.join()
     _end(1)
 
 

@@ -88,14 +88,9 @@ class SpecFile:
 
     def fail(self, keys: Iterable[Key], text: str, *, code: str = INVALID, hint: str = "") -> NoReturn:
         """Raise the error for the value at a key path such as ``apart[2].light``, empty for the file."""
-        # Left out of the path: what pydantic adds for unions, for keys of tables, and for values that are made lists
-        place = ""
-        value: Any = self.values
-        for key in keys:
-            if isinstance(value, dict) and key != "[key]" and not str(key).startswith(TAG):
-                place, value = f"{place}.{shorten(str(key))}", value.get(key)
-            elif isinstance(value, list) and isinstance(key, int):
-                place, value = f"{place}[{key}]", value[key]
+        # Left out of the path: what pydantic adds for unions and for keys of tables
+        parts = [key for key in keys if key != "[key]" and not str(key).startswith(TAG)]
+        place = "".join(f"[{key}]" if isinstance(key, int) else f".{shorten(key)}" for key in parts)
         separator = " " if text.startswith("must ") else ": "
         text = f"{place.removeprefix('.')}{separator}{text}" if place else text
         raise self.error(text, code=code, path=self.path, hint=hint)
@@ -117,31 +112,22 @@ class SpecFile:
 
 def read_toml(path: StrPath, error: type[UpliftError]) -> SpecFile:
     """Read a TOML file, without validating its values."""
-    text = _read_text(path, error)
-    try:
-        values = tomllib.loads(text)
-        check_values(values)
-    except (RecursionError, ValueError) as cause:  # TOMLDecodeError, integers of too many digits, and limits
-        reason = TOO_DEEP if isinstance(cause, RecursionError) else cause
-        hint = 'write lines such as key = "value"'
-        raise error(f"not a valid TOML file: {reason}", code=INVALID, path=path, hint=hint) from cause
-    return SpecFile(Path(path), values, error)
+    return _read(path, error, "TOML", tomllib.loads)
 
 
 def read_json(path: StrPath, error: type[UpliftError]) -> SpecFile:
     """Read a JSON file that holds an object, without validating its values."""
-    text = _read_text(path, error)
+    return _read(path, error, "JSON", parse_json)
+
+
+def _read(path: StrPath, error: type[UpliftError], kind: str, parse: Callable[[str], Any]) -> SpecFile:
+    data = read_bytes(path, error, limit=MAX_BYTES, hint="check the path")
     try:
-        values = parse_json(text)
-    except ValueError as cause:
-        raise error(f"not a valid JSON file: {cause}", code=INVALID, path=path, hint=HINT) from cause
+        values = parse(data.decode("utf-8"))
+        check_values(values)
+    except (RecursionError, ValueError) as cause:  # of UTF-8, syntax, integers of too many digits, and limits
+        reason = TOO_DEEP if isinstance(cause, RecursionError) else cause
+        raise error(f"not a valid {kind} file: {reason}", code=INVALID, path=path, hint=HINT) from cause
     if not isinstance(values, dict):
         raise error(f"not a JSON object: {format_value(values)}", code=INVALID, path=path, hint=HINT)
     return SpecFile(Path(path), values, error)
-
-
-def _read_text(path: StrPath, error: type[UpliftError]) -> str:
-    try:
-        return read_bytes(path, error, limit=MAX_BYTES, hint="check the path").decode("utf-8")
-    except UnicodeDecodeError as cause:
-        raise error("not a UTF-8 text file", code="file-unreadable", path=path, hint="save it in UTF-8") from cause
