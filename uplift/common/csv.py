@@ -9,24 +9,20 @@ import csv
 import io
 import re
 from collections.abc import Iterable, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 _FORMULA = re.compile(r"'*[=+\-@\t\r\n＝＋－＠]")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _NEUTRALISED = re.compile(r"'+[=+\-@\t\r\n＝＋－＠]")
 
 
-class _Writable(Protocol):
-    def write(self, text: str, /) -> object: ...
-
-
 class CsvWriter:
-    """Writer of rows with LF line ends, to a text file opened with ``newline=""``.
+    """Writer of rows with LF line ends, to a text file opened with ``newline=""``, or anything else with ``write``.
 
     With ``quote_text`` all text is quoted, which distinguishes a name such as ``1`` from a number.
     """
 
-    def __init__(self, file: _Writable, *, quote_text: bool = False) -> None:
+    def __init__(self, file: Any, *, quote_text: bool = False) -> None:
         self._writer = csv.writer(
             file, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC if quote_text else csv.QUOTE_MINIMAL
         )

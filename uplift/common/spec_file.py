@@ -13,7 +13,7 @@ from pathlib import Path, PureWindowsPath
 from typing import Annotated, Any, NoReturn, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter, ValidationError
-from pydantic_core import ErrorDetails, PydanticCustomError
+from pydantic_core import PydanticCustomError
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import UpliftError
@@ -25,6 +25,10 @@ MAX_BYTES = 16 << 20
 HINT = "check the format of the file"
 INVALID = "invalid-file"
 """Code of errors in the text of a file: its syntax, its keys, or a value."""
+TEXTS = {"missing": "required key is missing", "extra_forbidden": "unknown key"} | dict.fromkeys(
+    ("dict_type", "dataclass_type", "model_type"), "must be a table"
+)
+"""Problems by the type of an error of pydantic, in place of its own message."""
 TAG = "~"
 """First character of the tags of discriminated unions, which are not keys of a file."""
 
@@ -81,10 +85,15 @@ class SpecFile:
         """Check the values against a model; the first that does not fit raises `error`, with a default ``hint``."""
         try:
             return TypeAdapter(model).validate_python(self.values)
-        except ValidationError as error:
-            errors = error.errors(include_url=False)
-            unknown = (each for each in errors if each["type"] == "extra_forbidden")  # may misspell a missing one
-            self._raise(next(unknown, errors[0]), hint)
+        except ValidationError as caught:
+            errors = caught.errors(include_url=False)
+            # An unknown key may be a misspelt one, which is missing.
+            error = next((each for each in errors if each["type"] == "extra_forbidden"), errors[0])
+        context, kind = error.get("ctx", {}), error["type"]
+        text = TEXTS.get(kind) or re.sub(r"^\w+ should", "must", error["msg"])
+        if kind != "uplift" and text.startswith("must"):
+            text = f"{text}, got {format_value(error['input'])}"
+        self.fail(error["loc"], text, code=context.get("code", INVALID), hint=context.get("hint") or hint)
 
     def fail(self, keys: Iterable[Key], text: str, *, code: str = INVALID, hint: str = "") -> NoReturn:
         """Raise the error for the value at a key path such as ``apart[2].light``, empty for the file."""
@@ -94,20 +103,6 @@ class SpecFile:
         separator = " " if text.startswith("must ") else ": "
         text = f"{place.removeprefix('.')}{separator}{text}" if place else text
         raise self.error(text, code=code, path=self.path, hint=hint)
-
-    def _raise(self, details: ErrorDetails, hint: str) -> NoReturn:
-        keys, context, kind = details["loc"], details.get("ctx", {}), details["type"]
-        if kind == "uplift":
-            self.fail(keys, context["problem"], code=context["code"], hint=context["hint"] or hint)
-        if kind == "missing":
-            self.fail(keys, "required key is missing", hint=hint or "add it")
-        if kind == "extra_forbidden":
-            self.fail(keys, "unknown key", hint=hint)
-        if kind in ("dict_type", "dataclass_type", "model_type"):
-            constraint = "must be a table"
-        else:
-            constraint = re.sub(r"^\w+ should", "must", details["msg"])
-        self.fail(keys, f"{constraint}, got {format_value(details['input'])}", hint=hint)
 
 
 def read_toml(path: StrPath, error: type[UpliftError]) -> SpecFile:
