@@ -89,11 +89,11 @@ class SpecFile:
             errors = caught.errors(include_url=False)
             # An unknown key may be a misspelt one, which is missing.
             error = next((each for each in errors if each["type"] == "extra_forbidden"), errors[0])
-        context, kind = error.get("ctx", {}), error["type"]
-        text = TEXTS.get(kind) or re.sub(r"^\w+ should", "must", error["msg"])
-        if kind != "uplift" and text.startswith("must"):
-            text = f"{text}, got {format_value(error['input'])}"
-        self.fail(error["loc"], text, code=context.get("code", INVALID), hint=context.get("hint") or hint)
+            context, kind = error.get("ctx", {}), error["type"]
+            text = TEXTS.get(kind) or re.sub(r"^\w+ should", "must", error["msg"])
+            if kind != "uplift" and text.startswith("must"):
+                text = f"{text}, got {format_value(error['input'])}"
+            self.fail(error["loc"], text, code=context.get("code", INVALID), hint=context.get("hint") or hint)
 
     def fail(self, keys: Iterable[Key], text: str, *, code: str = INVALID, hint: str = "") -> NoReturn:
         """Raise the error for the value at a key path such as ``apart[2].light``, empty for the file."""

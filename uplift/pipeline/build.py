@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
@@ -15,7 +15,7 @@ from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices, Mask, StrPath
-from uplift.common.errors import OptionError, unknown_name
+from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import format_value
@@ -206,7 +206,7 @@ def build(
     UpliftWarning
         Entries out of gamut (``entry-out-of-gamut``), which answer only XYZ and textures of wider spaces, with the
         colour of another entry (``entry-duplicate``) or close to another entry (``entry-crowded``). Spectra of a
-        library out of gamut (``library-out-of-gamut``) or outside [0, 1] (``library-clipped``). Looks that no
+        library out of gamut (``entry-out-of-gamut``) or outside [0, 1] (``entry-clipped``). Looks that no
         reflectance meets (``look-impossible``), or that the coefficients of entries do not reach
         (``look-not-reached``); the nearest colour is used.
 
@@ -217,29 +217,13 @@ def build(
     >>> cube.reflectance([1.0, 1.0, 1.0], [450, 550, 650]).round(3).tolist()
     [1.0, 1.0, 1.0]
     """
+    given = locals()  # the arguments by name
     options = Options(
-        dim=dim,
-        model=model,
-        coefficients=coefficients,
-        entry_coefficients=entry_coefficients,
-        warp=warp,
-        axis=axis,
-        space=space,
-        illuminant=illuminant,
-        observer=observer.name if isinstance(observer, Camera) else observer,
-        shortest=shortest,
-        longest=longest,
-        step=step,
-        lights=(lights,) if isinstance(lights, str) else tuple(lights),
-        prior=prior,
-        neutral=neutral,
-        leave_out=(leave_out,) if isinstance(leave_out, str) else tuple(leave_out),
-        threshold=threshold,
-        auto_tolerance=auto_tolerance,
-        seed_corners=seed_corners,
-        growth=growth,
-        solver=solver if isinstance(solver, str) else CUSTOM,
-        debug=debug,
+        **{each.name: given[each.name] for each in fields(Options)}
+        | {
+            "observer": observer.name if isinstance(observer, Camera) else observer,
+            "solver": solver if isinstance(solver, str) else CUSTOM,
+        }
     )
     if isinstance(scene, str | os.PathLike | Sequence):
         from uplift.io.scene_colours import Images  # a build without images needs no image code
@@ -263,15 +247,13 @@ def _problem(options: Options, observer: str | Camera, solver: str | Solver) -> 
     if solver != SOLVERS[0]:
         from uplift.fit import stock_solvers
 
-        if solver == CUSTOM:
-            raise unknown_name(CUSTOM, SOLVERS, "solver")
         if isinstance(solver, stock_solvers.SOLVER_TYPES):
             method = stock_solvers.RowByRow(solver)
-        elif isinstance(solver, str):
+        elif isinstance(solver, str) and solver != CUSTOM:
             method = stock_solvers.stock_solver(solver, problem.tolerance)
         else:
-            given = format_value(solver)
-            raise OptionError(f"solver must be a name or a least-squares solver of optimistix, got {given}")
+            problem_text = "solver must be a name or a least-squares solver of optimistix"
+            raise OptionError(f"{problem_text}, got {format_value(solver)}")
         problem = replace(problem, method=method)
     if sensor.sensitivities is None:
         return replace(options, space=sensor.space), problem
@@ -335,8 +317,7 @@ def _build(
         options = _choose_lattice(options, problem, constraints, prior, blend)
     lattice, rgb = Lattice(observers.axis_nodes(options.axis, int(options.dim))), constraints.at_nodes.rgb
     boxes, seeds = EntryBoxes(lattice, rgb, half_widths(lattice, rgb)), seed(lattice, rgb)
-    spectra.warn_of_duplicates(constraints.names, boxes.half_width)
-    spectra.warn_of_crowding(constraints.names, boxes, seeds)
+    spectra.warn_of_close(constraints.names, boxes.half_width, seeds.crowded)
     own = constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
 
     # The nodes that a scene needs, or all, grow from the seeds: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7),
@@ -359,10 +340,15 @@ def _build(
     table = constraints.table(model, boxes.half_width)
     if outside.names:
         half_width = outside_half_widths(lattice, outside.rgb)
-        spectra.warn_of_duplicates(outside.names, half_width)
+        spectra.warn_of_close(outside.names, half_width)
         table = replace(table, outside=spectra.fit_constraints(problem, entry_model, outside).table(model, half_width))
     if prior.left_out is not None:
-        table = spectra.with_evidence(table, measured, outside, prior.left_out)
+        # Errors are learnt from measured reflectances, and from those expected without each of them.
+        without = prior.left_out.astype(np.float32)
+        table = replace(table, measured=measured.reflectances.astype(np.float32), left_out=without)
+        if table.outside is not None:
+            more = replace(table.outside, measured=outside.reflectances.astype(np.float32))
+            table = replace(table, outside=more)
     provenance = {
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
@@ -370,10 +356,8 @@ def _build(
         "prior": prior.describe(),
         "improvements": [{"step": step, "tried": tried, "mended": fixed} for step, tried, fixed in improvements],
         **({} if scene is None else {"scene": scene.describe()}),
-        "libraries": [{"name": library.name, "digest": library.digest} for library in libraries],
-        "families": [
-            {"name": family.name, "relevance": value} for family, value in zip(families, relevance, strict=True)
-        ],
+        "libraries": [{"name": source.name, "digest": source.digest} for source, _ in libraries],
+        "families": [{"name": each.name, "relevance": part} for each, part in zip(families, relevance, strict=True)],
         **({} if targets is None else targets.describe(table, model, sensor)),
     }
     return Cube(

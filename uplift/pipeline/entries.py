@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from uplift.atlas import Atlas, on_grid, read_atlas, resample
+from uplift.atlas import Atlas, Source, on_grid, read_atlas, resample
 from uplift.colorimetry.observer import COMMON_SPACES, grid, smallest_space
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, StrPath
@@ -19,8 +19,6 @@ from uplift.fit.base import NO_FREEDOM
 from uplift.fit.entries import FittedEntries, fit_entries
 from uplift.fit.families import Family, shipped_library
 from uplift.fit.problem import Problem
-from uplift.fit.seeds import Seeds
-from uplift.lattice import EntryBoxes
 from uplift.models.model import Model
 from uplift.pipeline.options import Options
 
@@ -128,71 +126,50 @@ def fit_constraints(problem: Problem, entry_model: Model, entries: MeasuredEntri
     return Constraints(entries.names, entry_model, at_nodes, at_entries)
 
 
-def with_evidence(table: AtlasTable, inside: MeasuredEntries, outside: MeasuredEntries, without: Array) -> AtlasTable:
-    """Add the measured reflectances of entries, and those ``without`` each of them, from which errors are learnt."""
-    kept = table.outside and replace(table.outside, measured=outside.reflectances.astype(np.float32))
-    measured = inside.reflectances.astype(np.float32)
-    return replace(table, measured=measured, left_out=without.astype(np.float32), outside=kept)
-
-
-def warn_of_duplicates(names: Sequence[str], half_width: Array) -> None:
-    """Warn of entries of the same colour."""
-    duplicates = [names[row] for row in np.flatnonzero(half_width == 0).tolist()]
-    if duplicates:
-        problem = f"{_listed(duplicates)} left out: an earlier entry has the same colour, which has only one answer"
-        warn(problem, code="entry-duplicate")
-
-
-def warn_of_crowding(names: Sequence[str], boxes: EntryBoxes, seeds: Seeds) -> None:
-    """Warn of entries that closer ones deprive of their nearest node."""
-    crowded = [names[row] for row in seeds.crowded if boxes.half_width[row]]
-    if crowded:
-        warn(
-            f"{_listed(crowded)} crowded: closer entries own the nearest lattice point. Queries at the entries' own "
-            "colours stay exact, queries near them are less accurate",
-            code="entry-crowded",
-            hint='use dim="auto" for a lattice that is large enough, or see the report of the cube',
-        )
-
-
-def _listed(names: Sequence[str]) -> str:
-    """'entry 'a' is', 'entries 'a', 'b', 'c' and 12 more are'."""
-    shown = listed([f"'{name}'" for name in names])
-    return f"entry {shown} is" if len(names) == 1 else f"entries {shown} are"
+def warn_of_close(names: Sequence[str], half_width: Array, crowded: Sequence[int] = ()) -> None:
+    """Warn of entries of the same colour, and of ``crowded`` ones, whose nearest node a closer entry owns."""
+    same = "left out: an earlier entry has the same colour, which has only one answer"
+    near = (
+        "crowded: closer entries own the nearest lattice point. Queries at the entries' own colours stay exact, "
+        "queries near them are less accurate"
+    )
+    wider = 'use dim="auto" for a lattice that is large enough, or see the report of the cube'
+    for rows, problem, code, hint in (
+        (np.flatnonzero(half_width == 0).tolist(), same, "entry-duplicate", ""),
+        ([row for row in crowded if half_width[row]], near, "entry-crowded", wider),
+    ):
+        if rows:
+            shown = listed([f"'{names[row]}'" for row in rows])
+            subject = f"entry {shown} is" if len(rows) == 1 else f"entries {shown} are"
+            warn(f"{subject} {problem}", code=code, hint=hint)
 
 
 def describe_atlas(atlas: Atlas, names: Sequence[str]) -> dict[str, Any]:
     """Files by name, digest and the scale of their values if the caller gave it, and the entries that are not used."""
     used = set(names)
-    atlases = [{"name": each.name, "digest": each.digest, "measured": each.measured} for each in atlas.sources]
     return {
-        "atlases": [{key: each[key] for key in each if (key, each[key]) != ("measured", "auto")} for each in atlases],
+        "atlases": [
+            {
+                "name": each.name,
+                "digest": each.digest,
+                **({} if each.measured == "auto" else {"measured": each.measured}),
+            }
+            for each in atlas.sources
+        ],
         "left_out": [name for name in atlas.names if name not in used],
         "skipped": [entry.name for entry in atlas.skipped],
     }
 
 
-class Library(NamedTuple):
-    """Spectra of one file, or given as an atlas; the SHA-256 digest is empty for spectra without a file."""
-
-    name: str
-    digest: str
-    atlas: Atlas
-
-
-def read_libraries(library: AtlasLike) -> tuple[Library, ...]:
-    """Read libraries, a family per file."""
+def read_libraries(library: AtlasLike) -> tuple[tuple[Source, Atlas], ...]:
+    """Read libraries, a family per file, or spectra given as an atlas; the digest of these is empty."""
     if library is None:
         return ()
-    libraries = []
-    for each in [library] if isinstance(library, Atlas | str | os.PathLike) else library:
-        atlas = each if isinstance(each, Atlas) else read_atlas(each)
-        source = atlas.sources[0] if len(atlas.sources) == 1 else None
-        libraries.append(Library(source.name if source else "library", source.digest if source else "", atlas))
-    return tuple(libraries)
+    atlases = map(as_atlas, [library] if isinstance(library, Atlas | str | os.PathLike) else library)
+    return tuple((each.sources[0] if len(each.sources) == 1 else Source("library", ""), each) for each in atlases)
 
 
-def families_of(options: Options, libraries: Sequence[Library], sensor: Sensor) -> tuple[Family, ...]:
+def families_of(options: Options, libraries: Sequence[tuple[Source, Atlas]], sensor: Sensor) -> tuple[Family, ...]:
     """Return the families that shape the prior: the shipped library, then those of the user; none for smooth spectra.
 
     Shipped families are constant outside 380–780 nm. Warns of each library that is not used as measured.
@@ -212,16 +189,16 @@ def families_of(options: Options, libraries: Sequence[Library], sensor: Sensor) 
             for family in shipped
         )
     own = []
-    for library in libraries:
-        resampled = resample(library.atlas, sensor.wavelengths)
+    for source, library in libraries:
+        resampled = resample(library, sensor.wavelengths)
         outside = int((~sensor.contains(sensor.rgb(resampled.values))).sum())
         if resampled.clips:
             problem = f"clipped to [0, 1]: {len(resampled.clips)} spectra, first '{resampled.clips[0].name}'"
-            warn(f"library '{library.name}': {problem}", code="entry-clipped")
+            warn(f"library '{source.name}': {problem}", code="entry-clipped")
         if outside:
             problem = f"{outside} of {len(resampled.values)} spectra not used: their colours lie outside {sensor.space}"
-            warn(f"library '{library.name}': {problem}", code="entry-out-of-gamut")
-        own.append(Family(library.name, resampled.values, SPREAD, RELATED))
+            warn(f"library '{source.name}': {problem}", code="entry-out-of-gamut")
+        own.append(Family(source.name, resampled.values, SPREAD, RELATED))
     return (*shipped, *own)
 
 

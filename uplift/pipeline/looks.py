@@ -51,8 +51,6 @@ class LookTargets:
         The spectra of colours near a look deviate as that of the look. Kernel and standard errors of the prior stay, as
         looks are not measurements; the errors of looks are those that the prior states at their colours.
         """
-        if not self.looks:
-            return self, entries, prior
         # The target becomes w y + (1 − w) y₀ in XYZ, with the colours y₀ of the spectrum p₀ that is expected at x.
         rgb = np.array([goal.rgb for goal in self.goals])
         expected = solve_in_numpy(problem.forward, prior(rgb), rgb, problem.tolerance, MAX_STEPS)
@@ -74,8 +72,6 @@ class LookTargets:
 
     def describe(self, table: AtlasTable, model: Model, sensor: Sensor) -> dict[str, Any]:
         """Return what a cube records of its looks, in JSON values, and warn of those that its answers miss."""
-        if not self.looks:
-            return {}
         stored = table.spectra_in(model)
         answers = stored.reflectance(np.arange(table.measured_count, len(table.names)), sensor.wavelengths)
         records = []
@@ -96,20 +92,22 @@ class LookTargets:
             ]
             weight = float(look.weight)
             records.append({"name": look.name, "rgb": goal.rgb.tolist(), "weight": weight, "lights": lights})
-        _warn_of_missed(self.looks, records)
+            _warn_of_missed(look, lights)
         return {"looks": records}
 
 
 def targets_of(
     looks: LooksLike, model: Model, sensor: Sensor, atlas_names: Sequence[str], entries: MeasuredEntries
-) -> LookTargets:
-    """Return looks in the colours of a sensor, whose entries have a spectrum model.
+) -> LookTargets | None:
+    """Return looks in the colours of a sensor, whose entries have a spectrum model; None without any.
 
     Raises `LookError` for two looks, or a look and an entry, of one colour or name, for a colour that no reflectance
     has, for a light that is that of the build, unknown, or occurs twice, and for a model without freedom.
     """
     looks = as_looks(looks)
-    if looks and model.count <= NO_FREEDOM:
+    if not looks:
+        return None
+    if model.count <= NO_FREEDOM:
         raise LookError(
             f"looks need spectra of more than three coefficients, got {model.name} with {model.count}",
             hint='use model="moments" with entry_coefficients of 4 to 17',
@@ -162,31 +160,32 @@ def _goal(look: Look, sensor: Sensor, screens: Sequence[Sensor]) -> LookGoal:
     return LookGoal(rgb, tuple(screen.light for screen in screens), xyz)
 
 
-def recorded_looks(provenance: Mapping[str, Any]) -> tuple[Look, ...] | None:
+def recorded_looks(provenance: Mapping[str, Any]) -> tuple[Look, ...]:
     """Return the looks that a cube recorded, for a rebuild. Raises `LookError` for values that do not fit."""
     looks = []
     for record in provenance.get("looks", ()):
         lights = {light["light"]: light["wish"] for light in record["lights"]}
         looks.append(Look(record["rgb"], lights, record["weight"], record["name"]))
-    return tuple(looks) or None
+    return tuple(looks)
 
 
-def _warn_of_missed(looks: Sequence[Look], records: Sequence[Mapping[str, Any]]) -> None:
-    """Warn of each look that is not met: of impossible targets, and of those that the model does not reach."""
-    for look, record in zip(looks, records, strict=True):
-        missed = [light for light in record["lights"] if light["delta_e"] > MET]
-        if not missed:
-            continue
-        impossible = any(light["possible"] > MET for light in record["lights"])
-        shown = []
-        for light in missed:
-            answer, target = hex_codes(np.array([light["answer"], light["wish"]]))
-            least = f" (at least {light['possible']:.2f})" if impossible else ""
-            shown.append(f"under {light['light']} it is {answer}, ΔE00 {light['delta_e']:.2f} from {target}{least}")
+def _warn_of_missed(look: Look, lights: Sequence[Mapping[str, Any]]) -> None:
+    """Warn of a look that is not met: of impossible targets, or of those that the model does not reach."""
+    missed = [light for light in lights if light["delta_e"] > MET]
+    if not missed:
+        return
+    code, problem, hint = (
+        "look-not-reached",
+        "the coefficients of its spectrum do not reach it",
+        "use more entry_coefficients",
+    )
+    impossible = any(light["possible"] > MET for light in lights)
+    if impossible:
         code, problem, hint = "look-impossible", "no reflectance meets it", ""
-        if not impossible:
-            code, problem = "look-not-reached", "the coefficients of its spectrum do not reach it"
-            hint = "use more entry_coefficients"
-        text = about(look, f"{problem}: {', '.join(shown)}")
-        warning = UpliftWarning(text, code=code, hint=hint, path=look.path)
-        warnings.warn(warning, stacklevel=STACK_LEVEL)
+    shown = []
+    for light in missed:
+        answer, target = hex_codes(np.array([light["answer"], light["wish"]]))
+        least = f" (at least {light['possible']:.2f})" if impossible else ""
+        shown.append(f"under {light['light']} it is {answer}, ΔE00 {light['delta_e']:.2f} from {target}{least}")
+    text = about(look, f"{problem}: {', '.join(shown)}")
+    warnings.warn(UpliftWarning(text, code=code, hint=hint, path=look.path), stacklevel=STACK_LEVEL)

@@ -1,8 +1,9 @@
 """Build options and their validation."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from numbers import Integral, Real
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -20,17 +21,21 @@ from uplift.models.moments import MAX_COUNT
 
 AUTO: Literal["auto"] = "auto"
 ModelName = Literal["moments", "sigmoid"]
-MODELS: tuple[ModelName, ...] = ("moments", "sigmoid")
 PriorName = Literal["learnt", "smooth"]
-PRIORS: tuple[PriorName, ...] = ("learnt", "smooth")
 NeutralName = Literal["expected", "flat"]
-NEUTRALS: tuple[NeutralName, ...] = ("expected", "flat")
 GrowthName = Literal["outward", "coarse-to-fine", "neighbours"]
-GROWTHS: tuple[GrowthName, ...] = ("outward", "coarse-to-fine", "neighbours")
 SolverName = Literal["least-change", "dogleg", "levenberg-marquardt", "gauss-newton"]
-SOLVERS: tuple[SolverName, ...] = ("least-change", "dogleg", "levenberg-marquardt", "gauss-newton")
+MODELS, SOLVERS = get_args(ModelName), get_args(SolverName)
 CUSTOM = "custom"
 """Recorded in place of a solver that was given as an object, and cannot be repeated."""
+CHOICES: dict[str, tuple[str, ...]] = {
+    "axis": AXES,
+    "prior": get_args(PriorName),
+    "neutral": get_args(NeutralName),
+    "growth": get_args(GrowthName),
+    "solver": (*SOLVERS, CUSTOM),
+}
+"""Names of options that have a choice. That of models is by `Options.spectrum_model`."""
 MAX_AUTO_TOLERANCE = 100.0
 """ΔE00 between black and white."""
 MAX_RANGE = 300.0, 1000.0
@@ -96,38 +101,25 @@ class Options:
         multiple = f"the range must be a multiple of the step of {self.step:g} nm"
         _require((self.longest - self.shortest) % self.step == 0, f"{multiple}, {shown}", "use a step of 1")
         self.spectrum_model()
-        for name, names, kind in (
-            (self.axis, AXES, "axis spacing"),
-            (self.prior, PRIORS, "prior"),
-            (self.neutral, NEUTRALS, "kind of neutral"),
-            (self.growth, GROWTHS, "growth"),
-            (self.solver, (*SOLVERS, CUSTOM), "solver"),
-        ):
-            if name not in names:
-                raise unknown_name(name, [known for known in names if known != CUSTOM], kind)
+        for option, names in CHOICES.items():
+            if getattr(self, option) not in names:
+                raise unknown_name(getattr(self, option), [name for name in names if name != CUSTOM], option)
         _require(
-            self.neutral == NEUTRALS[0] or self.growth != "neighbours",
+            self.neutral == "expected" or self.growth != "neighbours",
             "neutral='flat' does not apply to growth='neighbours', whose nodes start from their neighbours",
             "use another growth",
         )
-        count, most = len(self.lights), f"in [{self.coefficients}, {MAX_COUNT}]"
-        _require(1 <= count <= MAX_LIGHTS, f"lights must name 1 to {MAX_LIGHTS} illuminants, got {count}")
         _require(
-            self.dim == AUTO or self.dim >= 2,
-            f"dim must be at least 2, got {format_value(self.dim)}",
-            "use dim=2 or more",
+            self.dim == AUTO or self.dim >= 2, f"dim must be at least 2, got {format_value(self.dim)}", "use dim=2"
         )
-        _require(
-            self.model != Moments.name or self.coefficients <= self.entry_coefficients <= MAX_COUNT,
-            f"entry_coefficients must be {most}, got {format_value(self.entry_coefficients)}",
-            "entries have as many coefficients as the nodes, or more",
-        )
-        for name, least, largest in (
-            ("threshold", MIN_THRESHOLD, MAX_THRESHOLD),
-            ("auto_tolerance", 0, MAX_AUTO_TOLERANCE),
+        entries = self.entry_coefficients if self.model == Moments.name else MAX_COUNT
+        for name, value, least, most in (
+            ("number of lights", len(self.lights), 1, MAX_LIGHTS),
+            ("entry_coefficients", entries, min(self.coefficients, MAX_COUNT), MAX_COUNT),
+            ("threshold", self.threshold, MIN_THRESHOLD, MAX_THRESHOLD),
+            ("auto_tolerance", self.auto_tolerance, 0, MAX_AUTO_TOLERANCE),
         ):
-            value = getattr(self, name)
-            _require(least <= value <= largest, f"{name} must be in [{least:g}, {largest:g}], got {value:g}")
+            _require(least <= value <= most, f"{name} must be in [{least:g}, {most:g}], got {format_value(value)}")
 
     def spectrum_model(self, coefficients: int | None = None) -> Model:
         """Create the spectrum model, from `shortest` to `longest` nm, of the nodes or of other moments."""
@@ -158,9 +150,9 @@ def _require(valid: bool, problem: str, hint: str = "") -> None:
 def _plain(name: str, kind: Any, value: Any) -> Any:
     """Return the value of an option, by its annotation, as JSON can record it."""
     if kind == tuple[str, ...]:
-        if not isinstance(value, tuple | list):
-            raise OptionError(f"{name} must be a sequence of names, got {format_value(value)}")
-        return tuple(_plain(name, str, each) for each in value)
+        if not isinstance(value, Iterable):
+            raise OptionError(f"{name} must be names, got {format_value(value)}")
+        return tuple(_plain(name, str, each) for each in ([value] if isinstance(value, str) else value))
     if name == "dim" and isinstance(value, str) and value == AUTO:
         return AUTO
     accepted, recorded, label = TYPES[kind]

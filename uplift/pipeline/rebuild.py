@@ -1,5 +1,6 @@
 """Repeat a build from the options and atlas files that a cube recorded."""
 
+import os
 import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
@@ -23,7 +24,6 @@ from uplift.pipeline.options import CUSTOM, Options, recorded_options
 
 REBUILD = "build the cube again"
 """Hint for cubes whose build cannot be repeated."""
-MAX_FILE_NAME = 255
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,8 +123,8 @@ def _find(path: StrPath, name: str, digest: str, folders: Sequence[Path]) -> tup
 
     Only a plain name is searched in folders, no path on any system.
     """
-    plain = not set(name) & set("/\\:\0") and name not in ("", ".", "..") and len(name) <= MAX_FILE_NAME
-    candidates = [file for folder in folders if (file := folder / name).is_file()] if plain else []
+    plain = not set(name) & set("/\\:")
+    candidates = [folder / name for folder in folders if plain and os.path.isfile(folder / name)]
     for candidate in candidates:
         if read_document(candidate).digest == digest:
             return candidate, None
