@@ -11,11 +11,11 @@ import uplift
 from benchmarks import Row, record
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer as observers
-from uplift.colorimetry.lights import Lamps
 from uplift.common.arrays import Array, Mask
 from uplift.fit.solver import solve
 from uplift.lab.timing import time_calls
 from uplift.lights.fit import nearest_lights
+from uplift.lights.lamps import Lamps, known_lamps
 from uplift.lights.lattice import chromaticity, unit_xyz
 from uplift.lights.lookup import EmissionTable
 from uplift.lights.prior import fit_lamp_prior, relit_delta_e
@@ -46,7 +46,7 @@ NEAREST, THIRDS, WORST = 8, 3, 8
 
 def main() -> None:
     """Measure and store."""
-    table, lamps = uplift.load_emission(), observers.lamps()
+    table, lamps = uplift.load_emission(), known_lamps()
     surfaces = {label: on_grid(read_atlas(name), observers.grid()) for label, name in SURFACES.items()}
     radiometry, checker = table.data.radiometry, surfaces["ColorChecker"]
     uv = chromaticity(lamps.power @ radiometry)

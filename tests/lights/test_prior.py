@@ -5,15 +5,15 @@ import pytest
 
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
-from uplift.colorimetry.lights import Lamps
 from uplift.lights.discs import lamp_entries
 from uplift.lights.fit import locus_lattice, mix_with_locus, nearest_lights
+from uplift.lights.lamps import Lamps, known_lamps
 from uplift.lights.lattice import chromaticity
 from uplift.lights.prior import fit_lamp_prior, relit_delta_e, smoothest_lights
 
 CMFS = observer.matching_functions()
 RADIOMETRY = CMFS / CMFS[:, 1].sum()
-LAMPS = observer.lamps()
+LAMPS = known_lamps()
 SURFACES = on_grid(read_atlas("macbeth"), observer.grid())
 LATTICE, RIM = locus_lattice(RADIOMETRY, np.array([0.1978, 0.4683]), 64, np.linspace(0, 1, 6))
 

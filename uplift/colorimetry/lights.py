@@ -9,13 +9,11 @@ below, from 1000K, black bodies.
 """
 
 import re
-from collections.abc import Collection
-from dataclasses import dataclass
 
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError, unknown_name
+from uplift.common.errors import OptionError
 
 COMMON_NAMES = {"daylight": "D65", "tungsten": "A", "fluorescent": "FL2", "led": "LED-B3", "sodium": "HP1"}
 """Names of illuminants for readers who do not know those of the CIE."""
@@ -98,23 +96,3 @@ def temperature(name: str) -> float | None:
 def black_body(kelvin: float, wavelengths: Array) -> Array:
     """Compute the relative power of a black body by Planck's law. Shapes: ``wavelengths`` (N,) nm → (N,)."""
     return np.asarray(wavelengths**-5 / np.expm1(SECOND_RADIATION_CONSTANT / (wavelengths * kelvin)) * 1e15)
-
-
-@dataclass(frozen=True, eq=False)
-class Lamps:
-    """Spectral powers of lamps."""
-
-    names: tuple[str, ...]
-    power: Array
-    """(L, N) Power at the wavelengths of a sensor, not negative, relative to the equal-energy light of luminance 1."""
-
-    def __len__(self) -> int:
-        return len(self.names)
-
-    def without(self, names: Collection[str]) -> "Lamps":
-        """Leave out lamps."""
-        for name in names:
-            if name not in self.names:
-                raise unknown_name(name, self.names, "lamp")
-        kept = [row for row, name in enumerate(self.names) if name not in names]
-        return Lamps(tuple(self.names[row] for row in kept), self.power[kept])

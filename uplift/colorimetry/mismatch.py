@@ -23,7 +23,7 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_jacobian
 from uplift.colorimetry.extreme_spectra import extreme_spectra, first_basis
-from uplift.colorimetry.sensor import Light, Sensor
+from uplift.colorimetry.sensor import Light, Sensor, format_rgb
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import ColourError
@@ -148,8 +148,7 @@ def mismatch_volumes(sensor: Sensor, light: Light, rgb: Array, divisions: int = 
     """Compute the mismatch volumes of colours under a light. Shapes: ``rgb`` (n, 3)."""
     outside = np.flatnonzero(~solid(sensor.matrix).contains(rgb))
     if outside.size:
-        values = ", ".join(f"{value:.6g}" for value in rgb[outside[0]])
-        raise _unrealisable(f"no reflectance has the colour ({values}) under {sensor.illuminant}")
+        raise _unrealisable(f"no reflectance has the colour {format_rgb(rgb[outside[0]])} under {sensor.illuminant}")
     directions, scale = sphere(divisions), _scale(sensor, light)
     # A direction d of the scaled space S⁻¹ x is maximised by the response dᵀ S⁻¹ X of each wavelength.
     response = directions.directions @ np.linalg.solve(scale, light.xyz)

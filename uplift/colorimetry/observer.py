@@ -13,10 +13,9 @@ from numpy.typing import ArrayLike
 
 from uplift.colorimetry import tables
 from uplift.colorimetry.camera import CAMERA, Camera, camera_sensor, read_camera
-from uplift.colorimetry.gamut import Primaries
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, Lamps
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.colorimetry.sensor import Light, Sensor
-from uplift.colorimetry.spaces import look_up_space, primaries_of
+from uplift.colorimetry.spaces import look_up_space
 from uplift.colorimetry.srgb import decode_portably
 from uplift.colorimetry.tables import WAVELENGTHS, samples
 from uplift.common.arrays import Array
@@ -28,10 +27,6 @@ COMMON_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB"
 """Names of colour-science, by the area of the gamut in CIE 1976 u′, v′."""
 START, END, STEP = WAVELENGTHS
 """Range and step in nm that every table of the CIE covers."""
-VISIBLE = (400.0, 700.0)
-"""Range in nm that a lamp must cover."""
-SAME_LAMP = 1e-3
-"""Difference, as a fraction of the largest power, below which two lamps are one."""
 AXES = ("srgb", "linear")
 """Spacings of `axis_nodes`."""
 
@@ -156,11 +151,6 @@ def display_sensors(
     return tuple({each.illuminant: each for each in sensors}.values())
 
 
-def primaries(space: str) -> Primaries:
-    """Return the primaries and white of an RGB space."""
-    return primaries_of(look_up_space(space))
-
-
 def light(
     illuminant: str, observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
 ) -> Light:
@@ -221,25 +211,6 @@ def matching_functions(
 def illuminant_spd(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
     """Return the relative spectral power of an illuminant. Shape (N,)."""
     return samples("illuminant", illuminant, start, end, step)
-
-
-def lamps(observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP) -> Lamps:
-    """Return the lights of colour-science: CIE illuminants and measured lamps.
-
-    Lights that are measured on less than 400–700 nm, and lights with the spectrum of an earlier one, are left out.
-    """
-    luminance = matching_functions(observer, start, end, step)[:, 1]
-    found: dict[str, Array] = {}
-    for kind in ("illuminant", "light source"):
-        for name in tables.names(kind):
-            nm = tables.look_up(kind, name).wavelengths
-            if nm[0] > VISIBLE[0] or nm[-1] < VISIBLE[1]:
-                continue
-            power = np.maximum(samples(kind, name, start, end, step), 0.0)
-            power = power * (luminance.sum() / (power @ luminance))
-            if all(np.abs(power - other).max() > SAME_LAMP * other.max() for other in found.values()):
-                found[name] = power
-    return Lamps(tuple(found), np.array(list(found.values())))
 
 
 def smallest_space(

@@ -75,13 +75,6 @@ class ImageSpace:
 
 
 @dataclass(frozen=True, eq=False)
-class LinearGamut:
-    """A gamut by its matrix from linear RGB to XYZ, shape (3, 3)."""
-
-    rgb_to_xyz: Array
-
-
-@dataclass(frozen=True, eq=False)
 class OcioSpace:
     """A colour space of a configuration of OpenColorIO."""
 
@@ -104,10 +97,15 @@ class OcioSpace:
         """Matrix (3, 3) of a linear space to linear RGB of `AP0`."""
         return self.to_ap0(np.eye(3)).T
 
+    @property
+    def rgb_to_xyz(self) -> Array:
+        """Matrix (3, 3) of a linear space to XYZ, which makes it a `Gamut`."""
+        return AP0.rgb_to_xyz @ self.matrix
+
     def as_image_space(self) -> ImageSpace:
         """Describe colours of the space."""
         if self.is_linear:
-            return ImageSpace(self.name, LinearGamut(AP0.rgb_to_xyz @ self.matrix), lambda codes: codes)
+            return ImageSpace(self.name, self, lambda codes: codes)
         return ImageSpace(self.name, AP0, self.to_ap0, floats_are_codes=True, mixes_channels=True)
 
 

@@ -28,7 +28,7 @@ INVALID = "invalid-file"
 TEXTS = {"missing": "required key is missing", "extra_forbidden": "unknown key"} | dict.fromkeys(
     ("dict_type", "dataclass_type", "model_type"), "must be a table"
 )
-"""Problems by the type of an error of pydantic, in place of its own message."""
+"""Problems by the type of an error of pydantic, in place of its message."""
 TAG = "~"
 """First character of the tags of discriminated unions, which are not keys of a file."""
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from uplift.atlas import Atlas, Source, on_grid, read_atlas
 from uplift.colorimetry import observer as observers
-from uplift.colorimetry.lights import STANDARD_ILLUMINANTS, Lamps
+from uplift.colorimetry.lights import STANDARD_ILLUMINANTS
+from uplift.colorimetry.spaces import look_up_space, primaries_of
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.machine import single_threaded_blas
@@ -19,7 +20,7 @@ from uplift.common.text import format_value
 from uplift.common.version import VERSION
 from uplift.lights.discs import lamp_entries
 from uplift.lights.fit import locus_lattice, mix_with_locus, nearest_lights
-from uplift.lights.lamps import read_lamps
+from uplift.lights.lamps import SAME_LAMP, Lamps, known_lamps, read_lamps
 from uplift.lights.lattice import ChromaticityLattice, chromaticity
 from uplift.lights.lookup import EmissionTable
 from uplift.lights.prior import LampKernel, LampPrior, fit_lamp_prior, relit_delta_e
@@ -99,9 +100,9 @@ def build_emission(
     _check_count("rings", rings, MAX_RINGS)
     sensor = observers.sensor(space, "D65", observer)
     radiometry = sensor.cmfs / sensor.cmfs[:, 1].sum()
-    matrix = observers.primaries(space).rgb_to_xyz
+    matrix = primaries_of(look_up_space(space)).rgb_to_xyz
     white = chromaticity(matrix.sum(axis=1))
-    known = observers.lamps(observer).without(without)
+    known = known_lamps(observer).without(without)
     exact, others, sources = _choose_lamps(atlas, known, sensor.wavelengths, radiometry)
     lamps = np.concatenate([exact.power, others.power])
     surfaces = on_grid(read_atlas(SURFACES), observers.grid())
@@ -161,7 +162,7 @@ def _choose_lamps(
         raise OptionError(f"a lamp must have visible power, got none of '{dark}'")
     exact = Lamps(atlas.names, power / luminance[:, None])
     is_other = [
-        name not in exact.names and np.abs(exact.power - row).max(axis=1).min() > observers.SAME_LAMP * row.max()
+        name not in exact.names and np.abs(exact.power - row).max(axis=1).min() > SAME_LAMP * row.max()
         for name, row in zip(known.names, known.power, strict=True)
     ]
     return exact, _rows(known, np.array(is_other)), atlas.sources

@@ -6,8 +6,8 @@ from itertools import product
 
 import numpy as np
 
-from uplift.colorimetry.lights import Lamps
 from uplift.common.arrays import Array, Indices
+from uplift.lights.lamps import Lamps
 from uplift.lights.lattice import DENOMINATOR, ChromaticityLattice, chromaticity
 
 BINS = 256

@@ -1,7 +1,8 @@
-"""Lamps: spectral powers from the formats of atlas files."""
+"""Lamps: spectral powers of colour-science, and from the formats of atlas files."""
 
 import warnings
-from dataclasses import replace
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,10 +10,56 @@ from uplift.atlas.atlas import Atlas, merge
 from uplift.atlas.document import Document, read_document, truncate
 from uplift.atlas.formats import recognise
 from uplift.atlas.measurements import Measurements, to_atlas
-from uplift.common.arrays import StrPath
+from uplift.colorimetry import tables
+from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, matching_functions
+from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import unknown_name
 
 REFLECTANCES = "reflectance"
 """Quantity of a measurement archive."""
+VISIBLE = (400.0, 700.0)
+"""Range in nm that a lamp must cover."""
+SAME_LAMP = 1e-3
+"""Difference, as a fraction of the largest power, below which two lamps are one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lamps:
+    """Spectral powers of lamps."""
+
+    names: tuple[str, ...]
+    power: Array
+    """(L, N) Power at the wavelengths of a sensor, not negative, relative to the equal-energy light of luminance 1."""
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def without(self, names: Collection[str]) -> "Lamps":
+        """Leave out lamps."""
+        for name in names:
+            if name not in self.names:
+                raise unknown_name(name, self.names, "lamp")
+        kept = [row for row, name in enumerate(self.names) if name not in names]
+        return Lamps(tuple(self.names[row] for row in kept), self.power[kept])
+
+
+def known_lamps(observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP) -> Lamps:
+    """Return the lights of colour-science: CIE illuminants and measured lamps.
+
+    Lights that are measured on less than 400–700 nm, and lights with the spectrum of an earlier one, are left out.
+    """
+    luminance = matching_functions(observer, start, end, step)[:, 1]
+    found: dict[str, Array] = {}
+    for kind in ("illuminant", "light source"):
+        for name in tables.names(kind):
+            nm = tables.look_up(kind, name).wavelengths
+            if nm[0] > VISIBLE[0] or nm[-1] < VISIBLE[1]:
+                continue
+            power = np.maximum(tables.samples(kind, name, start, end, step), 0.0)
+            power = power * (luminance.sum() / (power @ luminance))
+            if all(np.abs(power - other).max() > SAME_LAMP * other.max() for other in found.values()):
+                found[name] = power
+    return Lamps(tuple(found), np.array(list(found.values())))
 
 
 def read_lamps(*paths: StrPath) -> Atlas:

@@ -20,6 +20,7 @@ from functools import partial
 
 import numpy as np
 
+from uplift.colorimetry.sensor import format_rgb
 from uplift.common.arrays import Array, Indices, Mask, Values
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData
@@ -97,9 +98,8 @@ def cells(data: CubeData, rgb: Array) -> Indices:
 def require_covered(covered: Mask, rgb: Array) -> None:
     """Raise `ColourError` for the first colour (n, 3) that is not covered (n,)."""
     if not covered.all():
-        values = ", ".join(f"{value:.6g}" for value in rgb[int(covered.argmin())])
         raise ColourError(
-            f"the cube answers the colours of its scene only, got linear RGB ({values})",
+            f"the cube answers the colours of its scene only, got linear RGB {format_rgb(rgb[int(covered.argmin())])}",
             code="colour-not-in-scene",
             hint="build the cube with this colour in its scene, or fill it with Cube.fill_missing",
         )

@@ -3,6 +3,7 @@
 import numpy as np
 
 from uplift.colorimetry.gamut import map_to_gamut
+from uplift.colorimetry.sensor import format_rgb
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData
@@ -26,7 +27,7 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
     possible = data.solid.contains(rgb)
     if not possible.all():
         raise ColourError(
-            f"no reflectance has the colour of XYZ {_format_xyz(data, rgb[int(possible.argmin())])}",
+            f"no reflectance has the colour of XYZ {format_rgb(data.sensor.xyz(rgb[int(possible.argmin())]))}",
             code="colour-unrealisable",
             hint="reduce its luminance, where white has Y = 1, or its distance from white",
         )
@@ -52,7 +53,7 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
     distance = np.abs(reached - rgb).max(axis=1)
     if (distance > data.threshold).any():
         raise ColourError(
-            f"the model does not reach the colour of XYZ {_format_xyz(data, rgb[int(distance.argmax())])}",
+            f"the model does not reach the colour of XYZ {format_rgb(data.sensor.xyz(rgb[int(distance.argmax())]))}",
             code="colour-unrealisable",
             hint="move it toward white, away from the limit of what reflectances can have",
         )
@@ -66,7 +67,3 @@ def reflectance_anywhere(cube: Cube, rgb: Array, at: Array, mode: str, outside: 
     if outside.any():
         spectra[outside] = reflectance_outside(cube.data, rgb[outside], at)
     return spectra
-
-
-def _format_xyz(data: CubeData, rgb: Array) -> str:
-    return "(" + ", ".join(f"{value:.4g}" for value in data.sensor.xyz(rgb)) + ")"
