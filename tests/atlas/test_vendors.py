@@ -57,7 +57,6 @@ SETS = "\nBEGIN_DATA_FORMAT\nID SPEC_400 SPEC_700\nEND_DATA_FORMAT\nBEGIN_DATA\n
     [
         (ROW + "a,0.2,0.3,0.4,0.5\nb,0.4,45,0.5,0.5\nc,0.1,0.2,0.3,0.4\n", 3, "b"),
         (ROW + "a,0.2,0.3,0.4,0.5\nb,40,45,50,50\nc,0.1,0.2,0.3,0.4\n", 3, "b"),
-        (ROW + "a,20,30,40,50\nb,0.4,0.4,0.5,0.5\nc,10,20,30,40\n", 3, "b"),
         (ROW + "a,20,30,40,50\nb,40,0.45,50,50\n", 3, "b"),
         (ROW + "a,0.2,0.3,0.4,50\n", 2, "a"),
     ],
@@ -83,10 +82,8 @@ def test_scale_given_by_the_caller(save):
         "# Transmittance of filters\n" + ROW + "a,0.2,0.3,0.4,0.5\n",
         "Mode,Transmission\n" + ROW + "a,0.2,0.3,0.4,0.5\n",
         "name,T400,T500,T600,T700\na,0.2,0.3,0.4,0.5\n",
-        'CTI3\nMEAS_TYPE "EMISSION"' + SETS,
         'CTI3\nDEVICE_CLASS "DISPLAY"' + SETS,
         "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS=ABSORBANCE\n##XYPOINTS=(XY..XY)\n400, 1\n700, 1\n##END=\n",
-        "##TITLE=a\n##XUNITS=NANOMETERS\n##YUNITS=TRANSMITTANCE\n##XYPOINTS=(XY..XY)\n400, 1\n700, 1\n##END=\n",
         '<IESTM2714 xmlns="iestm2714"><SpectralDistribution><SpectralQuantity>flux</SpectralQuantity>'
         '<SpectralData wavelength="400">1</SpectralData><SpectralData wavelength="700">1</SpectralData>'
         "</SpectralDistribution></IESTM2714>",
@@ -127,7 +124,6 @@ def test_missing_packages_are_named(tmp_path, monkeypatch, format):
     [
         ('<?xml version="1.0"?>\n<!DOCTYPE x [<!ENTITY a "b">]>\n<IESTM2714 xmlns="i">&a;</IESTM2714>', "atlas"),
         ('<IESTM2714 xmlns="i">' + "<a>" * 100 + "</a>" * 100 + "</IESTM2714>", "atlas"),
-        ('<IESTM2714 xmlns="i"><a></IESTM2714>', "atlas"),
         ('<IESTM2714 xmlns="iestm2714"/>', "atlas"),
         ('<cc:CxF xmlns:cc="http://colorexchangeformat.com/CxF3-core"/>', "not-an-atlas"),
         ("##TITLE=a\n##NPOINTS=1000000000\n", "atlas"),
@@ -137,7 +133,6 @@ def test_missing_packages_are_named(tmp_path, monkeypatch, format):
         ("CGATS.17\nBEGIN_DATA_FORMAT\nID LAB_L\nEND_DATA_FORMAT\nBEGIN_DATA\n1 2\nEND_DATA\n", "atlas"),
         ('X\nSPECTRAL_NORM "0"\nBEGIN_DATA_FORMAT\nnm400 nm700\nEND_DATA_FORMAT\nBEGIN_DATA\n1 2\nEND_DATA', "atlas"),
         (b"PK\x03\x04junk", "atlas"),
-        (b"\xd0\xcf\x11\xe0junk", "atlas"),
         ("ENVI\nsamples = 3\n", "file-not-found"),
         ("name,nm410,nm550,nm690\na,1,1,1\n", "atlas"),
     ],
@@ -154,7 +149,6 @@ SHEET_XML = '<worksheet><sheetData><row r="1"><c r="A1"><v>1</v></c></row>{}</sh
     "row",
     [
         '<row r="1048576"><c r="XFD1048576"><v>2</v></c></row>',
-        "<x:row r='1048576'><x:c r='xfd1048576'><v>2</v></x:c></x:row>",
         '<row r="4294967290">' + "<c><v>2</v></c>" * 2 + "</row>",
     ],
 )
@@ -181,7 +175,6 @@ def test_content_of_archives_is_limited(tmp_path, monkeypatch, limit, value):
         (lambda text: text.replace("Micrometers", "Furlongs"), "atlas"),
         (lambda text: text.replace("factor = 100000000", "factor = -1"), "atlas"),
         (lambda text: text.replace("{0.38000", "{1e306"), "atlas"),
-        (lambda text: text.replace("data type = 3", "data type = 77"), "atlas"),
         (lambda text: text.replace("ENVI", "NVI"), "not-an-atlas"),
     ],
 )

@@ -10,11 +10,11 @@ import uplift
 from benchmarks.emission import FAMILIES, exactness, lamp_family, planck, predict, spokes, unknown_lamps
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
-from uplift.colorimetry.lights import Lamps
+from uplift.lights.lamps import Lamps, known_lamps
 from uplift.lights.lattice import chromaticity
 from uplift.lights.lookup import EmissionTable
 
-LAMPS = observer.lamps()
+LAMPS = known_lamps()
 TABLE = uplift.load_emission()
 RADIOMETRY = TABLE.data.radiometry
 UV = chromaticity(LAMPS.power @ RADIOMETRY)

@@ -110,15 +110,6 @@ def test_volumes_that_are_points(sensor):
     np.testing.assert_allclose(volumes.xyz[1], np.tile(light.white, (42, 1)), atol=1e-7)
 
 
-def test_the_volume_of_grey_is_symmetric(sensor):
-    """1 − g is a metamer of grey ½ if g is one."""
-    light = observer.light("HP1")
-    volumes = mismatch_volumes(sensor, light, np.full((1, 3), 0.5), divisions=2)
-    directions = volumes.directions.directions
-    opposite = [np.abs(directions + each).sum(axis=1).argmin() for each in directions]
-    np.testing.assert_allclose(volumes.xyz[0, opposite], light.white - volumes.xyz[0], atol=1e-8)
-
-
 def test_the_volume_is_that_of_the_hull_of_linear_programs(sensor):
     """Directions, solver and volume are independent of the module."""
     light, rgb = observer.light("FL11"), np.array([0.2, 0.4, 0.1])

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from safetensors.numpy import load_file, save_file
+from safetensors.numpy import save_file
 
 from tests.cube.cube_files import forge, header_length, with_header
 from tests.cube.hand_made import with_outside
@@ -135,15 +135,6 @@ def test_forged_headers_are_refused(path, content, old, new):
     refused(path)
 
 
-def test_the_digest_detects_damage_that_safetensors_accepts(path, content):
-    broken = bytearray(content)
-    broken[-1] ^= 1
-    for damaged in (bytes(broken), content.replace(b"sRGB", b"aRGB")):
-        path.write_bytes(damaged)
-        assert load_file(path)
-        refused(path, "cube-file")
-
-
 @pytest.mark.parametrize("version", [0, 2, 99, "3", None])
 def test_the_error_names_both_format_versions(data, tmp_path, version):
     path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata.update(version=version))
@@ -207,11 +198,9 @@ PHASE = {"start": 380.0, "end": 780.0, "warp": "none"}
 MODELS = [
     {"name": "spline"},
     {"name": "moments", "count": 8, "phase": PHASE},
-    {"name": "moments", "count": 99, "phase": PHASE},
     {"name": "moments", "count": 9, "phase": {**PHASE, "start": 800.0}},
     {"name": "moments", "count": 9, "phase": {**PHASE, "warp": "bent"}},
     {"name": "sigmoid", "start": 380.0, "end": 780.0},
-    {"name": "sigmoid", "start": 380.0, "end": 380.0},
 ]
 
 
@@ -240,9 +229,7 @@ def test_metadata_that_are_missing_or_of_another_type_are_named(refused_metadata
     "provenance",
     [
         {"options": "dim 8"},
-        {"atlases": [{}]},
         {"improvements": [{"step": "a", "tried": 1.0, "mended": 1}]},
-        {"improvements": [{"step": "a", "tried": -1, "mended": 1}]},
         {"looks": [{"name": "a", "rgb": [0, 0, 0], "weight": 1, "lights": [{}] * (MAX_LIGHTS + 1)}]},
         {"scene": "photo.png"},
     ],

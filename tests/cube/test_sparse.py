@@ -74,7 +74,6 @@ def huge(tensors, metadata):
 
 CHANGES = {
     "unsorted": points(lambda numbers: numbers[::-1]),
-    "twice": with_last(0),
     "beyond": with_last(6**3),
     "missing": lambda tensors, metadata: tensors.pop("points"),
     "absent": lambda tensors, metadata: tensors.update(status=np.full_like(tensors["status"], Status.ABSENT)),

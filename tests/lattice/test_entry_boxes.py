@@ -19,7 +19,7 @@ queried = arrays(float, st.tuples(st.integers(1, 30), st.just(3)), elements=unit
 
 
 def boxes(rgb):
-    return EntryBoxes(LATTICE, rgb, half_widths(LATTICE, rgb))
+    return EntryBoxes(LATTICE, rgb, half_widths(LATTICE.to_steps(rgb)))
 
 
 @given(colours, queried)
@@ -77,7 +77,8 @@ def test_touched_cells_are_those_of_boxes():
 
 @given(arrays(float, st.tuples(st.integers(0, 12), st.just(3)), elements=unit))
 def test_no_two_boxes_overlap(rgb):
-    widths, steps = half_widths(LATTICE, rgb), LATTICE.to_steps(rgb)
+    steps = LATTICE.to_steps(rgb)
+    widths = half_widths(steps)
     assert ((widths >= 0) & (widths <= MAX_HALF_WIDTH)).all()
     for first in range(len(rgb)):
         for second in range(first):
@@ -88,7 +89,7 @@ def test_no_two_boxes_overlap(rgb):
 
 def test_only_the_first_entry_of_a_colour_has_a_box():
     rgb = np.array([[0.2, 0.2, 0.2], [0.2, 0.2, 0.2], [0.9, 0.9, 0.9], [0.2, 0.2, 0.2]])
-    assert half_widths(LATTICE, rgb).tolist() == [MAX_HALF_WIDTH, 0, MAX_HALF_WIDTH, 0]
+    assert half_widths(LATTICE.to_steps(rgb)).tolist() == [MAX_HALF_WIDTH, 0, MAX_HALF_WIDTH, 0]
 
 
 @given(arrays(float, st.tuples(st.integers(1, 8), st.just(3)), elements=st.floats(-0.3, 1.3)))

@@ -93,8 +93,8 @@ def sensor(
         illuminant=build_light.name,
         observer=tables.stated_name("observer", observer),
         wavelengths=grid(),
-        cmfs=matching_functions(observer),
-        power=illuminant_spd(illuminant),
+        cmfs=samples("observer", observer),
+        power=samples("illuminant", illuminant),
         xyz_to_rgb=matrix / (matrix @ build_light.white)[:, None],
         decoding=rgb_space.decoding,
     )
@@ -112,8 +112,8 @@ def on_range(sensor: Sensor, start: float, end: float, step: float) -> Sensor:
     return replace(
         sensor,
         wavelengths=wavelengths,
-        cmfs=matching_functions(sensor.observer, start, end, step),
-        power=illuminant_spd(sensor.illuminant, start, end, step),
+        cmfs=samples("observer", sensor.observer, start, end, step),
+        power=samples("illuminant", sensor.illuminant, start, end, step),
         xyz_to_rgb=sensor.xyz_to_rgb / (sensor.xyz_to_rgb @ wide.white)[:, None],
         sensitivities=sensitivities,
     )
@@ -174,8 +174,8 @@ def light(
     UnknownNameError
         A name is unknown.
     """
-    power = illuminant_spd(illuminant, start, end, step)
-    weights = matching_functions(observer, start, end, step) * power[:, None]
+    power = samples("illuminant", illuminant, start, end, step)
+    weights = samples("observer", observer, start, end, step) * power[:, None]
     return Light(tables.stated_name("illuminant", illuminant), (weights / weights[:, 1].sum()).T)
 
 

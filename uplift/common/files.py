@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 DAY = 86_400.0
 """Seconds without a change after which a temporary file belongs to a writer that was killed."""
 KERNEL = "/proc"
+PREFIX = ".{}."
+"""First characters of temporary files, by the name of the file."""
 _TEMPORARIES: set[Path] = set()
 """Temporary files that this process is writing."""
 
@@ -156,7 +158,7 @@ def atomic_write(path: StrPath, *, force: bool = False) -> Iterator[Path]:
     """
     path = check_output(path, force=force)
     target = path.resolve()
-    temporary = target.with_name(f"{_prefix(target)}{os.urandom(4).hex()}.part")
+    temporary = target.with_name(f"{PREFIX.format(target.name[:40])}{os.urandom(4).hex()}.part")
     _TEMPORARIES.add(temporary)
     try:
         remove_stale(target)
@@ -182,7 +184,7 @@ def remove_stale(path: StrPath, seconds: float = DAY) -> None:
     """Remove the temporary files of writers to a path that have not changed for so long: their writers were killed."""
     target = Path(path).resolve()
     for entry in os.scandir(target.parent):
-        if entry.name.startswith(_prefix(target)) and entry.name.endswith(".part"):
+        if entry.name.startswith(PREFIX.format(target.name[:40])) and entry.name.endswith(".part"):
             with contextlib.suppress(OSError):
                 if time.time() - entry.stat().st_mtime >= seconds:
                     os.unlink(entry)
@@ -193,7 +195,3 @@ def remove_temporaries() -> None:
     for temporary in list(_TEMPORARIES):
         with contextlib.suppress(OSError):
             temporary.unlink()
-
-
-def _prefix(target: Path) -> str:
-    return f".{target.name[:40]}."

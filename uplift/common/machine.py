@@ -28,6 +28,7 @@ def single_threaded_blas() -> Iterator[None]:
 
     per_thread = ThreadpoolController().select(threading_layer="openmp")  # its limits hold for the calling thread
     with per_thread.limit(limits=1, user_api="blas"):
+        # A limit lifted by one caller would hold no longer for the others, so all are kept until the last has left.
         caller = object()
         with _LOCK:
             _CALLERS.add(caller)

@@ -30,26 +30,12 @@ BLOCK = 64
 """Entries whose distances from all others are in memory at once."""
 
 
-def half_widths(lattice: Lattice, rgb: Array) -> Array:
-    """Half widths (E,) in lattice steps, 0 to 1, of the boxes around entries of linear RGB (E, 3).
+def half_widths(steps: Array) -> Array:
+    """Half widths (E,), 0 to 1, of the boxes around entries at positions (E, 3), all in lattice steps.
 
     No two boxes overlap: a box extends at most half the distance to the nearest other entry (docs/mathematics.md, 8).
     An entry whose colour an earlier entry has gets 0.
     """
-    return _half_widths(lattice.to_steps(rgb))
-
-
-def outside_half_widths(lattice: Lattice, rgb: Array) -> Array:
-    """Half widths (O,), likewise, of the boxes around entries outside [0, 1], in lattice steps of 1 / (dim − 1).
-
-    A box ends at [0, 1].
-    """
-    steps = rgb * (lattice.dim - 1)
-    return np.minimum(_half_widths(steps), np.abs(steps - np.clip(steps, 0, lattice.dim - 1)).max(axis=1))
-
-
-def _half_widths(steps: Array) -> Array:
-    """Half widths (E,) of the boxes around positions (E, 3) in lattice steps."""
     unique = np.ones(len(steps), dtype=bool)
     for rows in blocks(len(steps), BLOCK):
         same = _apart(steps[rows], steps) <= SAME_COLOUR
@@ -62,6 +48,15 @@ def _half_widths(steps: Array) -> Array:
         nearest[rows] = apart.min(axis=1, initial=np.inf)
     widths[unique] = np.minimum(MAX_HALF_WIDTH, nearest / 2)
     return widths
+
+
+def outside_half_widths(lattice: Lattice, rgb: Array) -> Array:
+    """Half widths (O,) of the boxes around entries outside [0, 1], in lattice steps of 1 / (dim − 1), as `half_widths`.
+
+    A box ends at [0, 1].
+    """
+    steps = rgb * (lattice.dim - 1)
+    return np.minimum(half_widths(steps), np.abs(steps - np.clip(steps, 0, lattice.dim - 1)).max(axis=1))
 
 
 def _apart(some: Array, others: Array) -> Array:

@@ -39,18 +39,14 @@ NO_TAGS: frozenset[object] = frozenset()
 """Nothing is known of the matrices of the problem."""
 
 
-class BatchSolver(Protocol):
-    """A solver of optimistix for a batch of problems, as `solve` needs it."""
-
-    def resume(self, options: Options, y: Any, state: Any) -> Options:
-        """Return the options with which ``init`` goes on, from those before, multipliers ``y`` (n, C) and the state."""
-
-
 class Method(Protocol):
     """A way to solve batches, the same object for a whole build: what is compiled for it is found by its identity."""
 
     def __call__(self, forward: ForwardMap, tolerance: Any) -> Any:
-        """Make the `BatchSolver` that stops at a distance of ``tolerance`` in linear RGB."""
+        """Make a solver of optimistix for a batch, which stops at a distance of ``tolerance`` in linear RGB.
+
+        Its further method ``resume(options, y, state)`` returns the options with which ``init`` goes on.
+        """
 
     def options(self, start: Array, prior: Array | None) -> Options:
         """Return the options of the first pass, from multipliers (n, C)."""
@@ -206,16 +202,13 @@ def _advance(method: Method) -> Callable[..., Any]:
     def advance(constants: Any, y: jax.Array, target: jax.Array, options: Options) -> Any:
         forward, tolerance, max_steps = constants
         solver = method(forward, tolerance)
+        residual = jax.jit(ForwardMap.residual)
         y, state, steps = iterate(
-            solver, _without_aux(forward, jax.jit(ForwardMap.residual)), y, target, options, max_steps
+            solver, lambda p, goal: (residual(forward, p, goal), None), y, target, options, max_steps
         )
         return y, state.residual, jnp.full(len(y), steps), solver.resume(options, y, state)
 
     return advance
-
-
-def _without_aux(forward: ForwardMap, residual: Callable[..., Any] = ForwardMap.residual) -> Any:
-    return lambda p, goal: (residual(forward, p, goal), None)
 
 
 def iterate(solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps: Any) -> tuple[Any, Any, Any]:

@@ -91,7 +91,7 @@ class EmissionTable:
     ) -> NDArray[Any]:
         """Compute the spectral power of lights whose colour is the given RGB.
 
-        Power is linear between the stored wavelengths.
+        Power is linear between the stored wavelengths, and constant outside their range.
 
         Parameters
         ----------

@@ -156,6 +156,7 @@ def _box_hits(grid: Grid, rgb: jax.Array) -> tuple[jax.Array, jax.Array, jax.Arr
         entry, weight = best
         candidate = _rows(grid.candidates[count], cell)
         centre, below, above = jnp.moveaxis(_rows(grid.boxes, candidate), 1, 0)
+        # x = (1 − t) e + t y: t is the largest fraction, over the axes, of the way from e to the face that x moves to.
         ray = rgb - centre
         reached = jnp.where(ray > 0, ray * above, -ray * below).max(axis=1)
         inside = reached < 1

@@ -74,12 +74,7 @@ class Nodes:
 
 def around(data: CubeData, rgb: Array) -> Nodes:
     """Return the nodes around linear RGB (n, 3) in [0, 1]; `ColourError` if a sparse cube lacks one of them."""
-    lattice = data.lattice
-    # The cell of each colour: its lowest corner and the fractions along the axes.
-    low, fraction = lattice.cell(rgb)
-    # In an entry box the lattice is evaluated on the face instead, in the cell in which the ray leaves the box.
-    hits = data.entry_boxes.find(rgb, lattice.index(low))
-    low[hits.rows], fraction[hits.rows] = lattice.cell(hits.exit_rgb)
+    lattice, (low, fraction, hits) = data.lattice, _locate(data, rgb)
     if data.complete_cells is not None:
         require_covered(data.complete_cells[lattice.index(low)], rgb)
     points, weights = lattice.cell_corners(low, fraction)
@@ -88,11 +83,19 @@ def around(data: CubeData, rgb: Array) -> Nodes:
 
 def cells(data: CubeData, rgb: Array) -> Indices:
     """Return the numbers (n,) of the cells in which the lattice is evaluated for linear RGB (n, 3) in [0, 1]."""
-    lattice = data.lattice
-    low = lattice.cell(rgb)[0]
-    hits = data.entry_boxes.find(rgb, lattice.index(low))
-    low[hits.rows] = lattice.cell(hits.exit_rgb)[0]
-    return lattice.index(low)
+    return data.lattice.index(_locate(data, rgb)[0])
+
+
+def _locate(data: CubeData, rgb: Array) -> tuple[Indices, Array, BoxHits]:
+    """Return the lowest corners (n, 3) of cells, fractions (n, 3) of the way across them, and colours in entry boxes.
+
+    In an entry box the lattice is evaluated on the face, in the cell in which the ray leaves the box.
+    """
+    # x = (1 − t) e + t y in the box of entry e: the lattice answers y, with weight t (8).
+    low, fraction = data.lattice.cell(rgb)
+    hits = data.entry_boxes.find(rgb, data.lattice.index(low))
+    low[hits.rows], fraction[hits.rows] = data.lattice.cell(hits.exit_rgb)
+    return low, fraction, hits
 
 
 def require_covered(covered: Mask, rgb: Array) -> None:

@@ -64,6 +64,7 @@ class NodeTable:
 
     def times(self, matrix: Array) -> "NodeTable":
         """Multiply values (…, N) by a matrix (K, N): interpolation is linear, and is faster of fewer numbers."""
+        # (Σ w g) Mᵀ = Σ w (g Mᵀ)
         lattice, atlas = ((each @ matrix.T).astype(each.dtype) for each in (self.lattice, self.atlas))
         return NodeTable(self.data, lattice, atlas, partial(_product, self.exact, matrix))
 

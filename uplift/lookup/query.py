@@ -10,7 +10,6 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.sensor import Light, as_rgb
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError, unknown_name
-from uplift.cube import CubeData
 from uplift.lattice import Status
 from uplift.lookup.blocks import BLOCK, as_colours, as_wavelengths
 from uplift.lookup.cube import Cube, expected_errors
@@ -134,7 +133,9 @@ def _block(
     delta_e = delta_e_rgb(sensor, answered, round_trip)
     relit = {light.name: at_sensor @ light.xyz.T for light in lights}
     # Outside the RGB space a colour is that of an entry where its spectrum alone answers.
-    entries, outside_names = _outside_entries(data, answered), data.atlas.outside.names if data.atlas.outside else ()
+    found = data.outside_boxes.find(answered)
+    exact, outside_names = found.lattice_weight == 0, data.atlas.outside.names if data.atlas.outside else ()
+    entries = dict(zip(found.rows[exact].tolist(), found.entry[exact].tolist(), strict=True))
     # Standard errors and error bounds (n, 2) under the light of the cube's errors and under each light, by name.
     wanted = [(None, None), *((light.name, light) for light in lights)]
     has_errors = data.points.standard_error is not None
@@ -172,13 +173,6 @@ def _block(
             unlike_atlas=bool(unlike[row] and not outside[row]),
             realisable=bool(realisable[row]),
         )
-
-
-def _outside_entries(data: CubeData, rgb: Array) -> dict[int, int]:
-    """Rows of linear RGB (n, 3) that an entry outside the RGB space answers alone, and the number of the entry."""
-    found = data.outside_boxes.find(rgb)
-    exact = found.lattice_weight == 0
-    return dict(zip(found.rows[exact].tolist(), found.entry[exact].tolist(), strict=True))
 
 
 def _errors(cube: Cube, rgb: Array, outside: Mask, entries: Mapping[int, int], light: Light | None = None) -> Array:

@@ -316,7 +316,7 @@ def _build(
     if options.dim == AUTO:
         options = _choose_lattice(options, problem, constraints, prior, blend)
     lattice, rgb = Lattice(observers.axis_nodes(options.axis, int(options.dim))), constraints.at_nodes.rgb
-    boxes, seeds = EntryBoxes(lattice, rgb, half_widths(lattice, rgb)), seed(lattice, rgb)
+    boxes, seeds = EntryBoxes(lattice, rgb, half_widths(lattice.to_steps(rgb))), seed(lattice, rgb)
     spectra.warn_of_close(constraints.names, boxes.half_width, seeds.crowded)
     own = constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
 

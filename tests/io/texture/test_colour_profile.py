@@ -10,8 +10,8 @@ from PIL import Image, ImageCms
 
 from tests.helpers import raises
 from tests.io.texture.conftest import WAVELENGTHS, planes, read_channels, write_exr
-from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import SRGB, conversion
+from uplift.colorimetry.spaces import look_up_space, primaries_of
 from uplift.common.errors import OptionError
 from uplift.io import texture
 from uplift.pipeline.build import build
@@ -109,7 +109,7 @@ def test_colours_of_profiles_and_code_points_are_converted(suffix, statement, sp
         name = f"CICP {statement[0]}, {statement[1]}"
     rgb, spaces, codes = convert(spectral, path)
     given = np.asarray(Image.open(path))[0, 0] / 255
-    expected = conversion(observer.primaries(space), SRGB) @ curve(given)
+    expected = conversion(primaries_of(look_up_space(space)), SRGB) @ curve(given)
     assert (spaces, codes) == ((name,), ())
     np.testing.assert_allclose(rgb, expected, rtol=0, atol=1e-3 if statement == (9, 14) else 2e-4)
 
@@ -150,7 +150,7 @@ INTEROP, OTHER = {"colorInteropID": "lin_ap1_scene"}, {"colorInteropID": "lin_re
 def test_spaces_of_openexr_are_converted_and_the_caller_overrides_them(header, name, spectral, small_cube, tmp_path):
     named = texture.prepare(small_cube, depth="float", space=name, threads=1) if name else spectral
     rgb, spaces, codes = convert(named, exr(tmp_path / "a.exr", [0.3, 0.4, 0.2], **header))
-    expected = conversion(observer.primaries("ACEScg"), SRGB) @ [0.3, 0.4, 0.2]
+    expected = conversion(primaries_of(look_up_space("ACEScg")), SRGB) @ [0.3, 0.4, 0.2]
     assert (len(spaces), codes) == (1, ())
     np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-5)
 
@@ -170,7 +170,7 @@ def test_encoded_spaces_of_opencolorio_decode_floats(small_cube, tmp_path):
 def test_images_without_a_statement_are_srgb_codes_or_floats_of_the_cube(tmp_path):
     wide = texture.prepare(build(dim=5, space="AP1"), texture.Spectrum(WAVELENGTHS), depth="float", threads=1)
     rgb, spaces, codes = convert(wide, save(tmp_path / "a.png", None, CODES))
-    expected = conversion(SRGB, observer.primaries("ACEScg")) @ colour.models.eotf_sRGB(CODES / 255)
+    expected = conversion(SRGB, primaries_of(look_up_space("ACEScg"))) @ colour.models.eotf_sRGB(CODES / 255)
     assert (spaces, codes) == (("sRGB",), ("colour-space-assumed",))
     np.testing.assert_allclose(rgb, expected, rtol=0, atol=2e-5)
     rgb, spaces, codes = convert(wide, exr(tmp_path / "b.exr", [0.3, 0.4, 0.2]))
