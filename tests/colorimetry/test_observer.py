@@ -11,7 +11,7 @@ import uplift
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
-from uplift.colorimetry.gamut import SRGB, conversion, map_to_gamut
+from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.observer import COMMON_SPACES, smallest_space
 from uplift.colorimetry.spaces import BUILT_IN, find_space, look_up_space, primaries_of
 from uplift.colorimetry.srgb import decode, encode, to_display_codes
@@ -147,16 +147,6 @@ def test_other_spaces_keep_their_appearance(space, illuminant):
     expected = 255 * encode(own.xyz(rgb) @ screen.xyz_to_rgb.T)
     assert np.abs(to_display_codes(rgb, own) - expected).max() < 0.6
     np.testing.assert_array_equal(to_display_codes([1, 1, 1], own), [255, 255, 255])
-
-
-def test_colours_outside_srgb_keep_their_luminance():
-    wide = observer.sensor("P3-D65")
-    red = np.array([0.6, 0, 0])
-    linear = wide.xyz(red) @ np.linalg.inv(SRGB.rgb_to_xyz).T
-    assert linear.min() < -0.01
-    codes = to_display_codes(red, wide)
-    assert decode(codes / 255) @ SRGB.rgb_to_xyz[1] == pytest.approx(wide.xyz(red)[1], abs=2e-3)
-    np.testing.assert_array_equal(codes, np.rint(255 * encode(map_to_gamut(linear, SRGB, "desaturate").rgb)))
 
 
 @pytest.mark.parametrize(("name", "standard"), [("Tungsten", "A"), ("led", "LED-B3"), ("sodium", "HP1")])

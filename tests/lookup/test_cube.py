@@ -6,10 +6,8 @@ import colour
 import numpy as np
 import pytest
 
-import uplift
 from tests.helpers import raises
 from uplift.common.errors import ColourError, OptionError, UnknownNameError
-from uplift.lattice import Status
 from uplift.lookup import MODES
 from uplift.lookup.blocks import BLOCK
 from uplift.lookup.cube import DEFAULT, PACKAGED, TABULATED, find_file
@@ -123,14 +121,6 @@ def test_codes_decode_as_srgb_and_encoding_is_inverse(small_cube):
 def test_codes_out_of_range_are_refused(small_cube, codes):
     with raises(ColourError, "invalid-codes"):
         small_cube.decode(codes)
-
-
-def test_the_default_cube_is_srgb_without_an_atlas_and_fully_fitted():
-    data = uplift.load().data
-    assert (data.sensor.space, data.sensor.illuminant) == ("sRGB", "D65")
-    assert data.atlas.names == ()
-    assert not set(data.points.status.tolist()) & {Status.UNFITTED, Status.UNREALISABLE}
-    assert data.points.distance.max() <= data.threshold
 
 
 def test_names_stand_for_packaged_files_unless_a_file_has_the_name(tmp_path, monkeypatch):

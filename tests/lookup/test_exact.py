@@ -8,8 +8,6 @@ import pytest
 import uplift
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.solid import solid
-from uplift.lookup import interpolate
-from uplift.lookup.interpolate import inexact_rows
 from uplift.lookup.refine import within_solid
 from uplift.models import evaluate
 
@@ -74,15 +72,6 @@ def test_answers_are_continuous_across_the_boundary_of_the_solid(wide, mode):
     assert not inside(wide, path).all()
     found = wide.data.sensor.rgb(wide.reflectance(path, mode=mode))
     assert np.abs(np.diff(found, axis=0)).max() <= 1.5 * np.abs(np.diff(path, axis=0)).max()
-
-
-def test_mixtures_with_their_colours_do_not_change():
-    cube = uplift.build(dim=3)
-    assert cube.data.inexact_cells is None
-    assert not inexact_rows(cube.data, GREYS).size
-    np.testing.assert_array_equal(
-        cube.reflectance(GREYS), interpolate.mixed_spectra(cube.data, GREYS, cube.wavelengths)
-    )
 
 
 def test_tables_and_the_bulk_query_have_the_same_answers(wide, colours):

@@ -147,16 +147,6 @@ def test_files_without_its_measurement_have_its_error_under_their_own_light(cyan
         assert own.standard_error == table.error[0]
 
 
-def test_a_sparse_cube_answers_an_entry_outside_its_space(cyan_cube):
-    data = cyan_cube.data
-    low = data.lattice.corners(np.array([[0.5, 0.5, 0.5]]))[0]
-    sparse = Cube(replace(data, points=data.points.restricted_to(low[0])))
-    at = data.sensor.xyz(data.atlas.outside.rgb)
-    (found,), (other,) = (list(query_xyz(cube, at)) for cube in (sparse, cyan_cube))
-    np.testing.assert_array_equal(found.reflectance, other.reflectance)
-    assert found.entry == "cyan"
-
-
 def test_answers_change_only_in_the_box_of_an_entry_outside_and_continuously(cyan_cube):
     sensor, boxes = cyan_cube.data.sensor, cyan_cube.data.outside_boxes
     assert boxes.rgb[0, 0] + boxes.half_width[0] <= 0
@@ -179,14 +169,6 @@ def test_other_colours_raise():
         list(query_xyz(cube, [[0.05, 0.9, 0.1]]))
     with raises(ColourError, "colour"):
         list(query_xyz(cube, [[0.05, np.nan, 0.1]]))
-
-
-def test_the_packaged_acescg_cube_holds_more(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    wide = uplift.load("ACEScg")
-    assert (wide.space, wide.illuminant) == ("ACEScg", "D65")
-    xyz = colours_outside(uplift.load())
-    assert wide.data.sensor.contains(xyz @ wide.data.sensor.xyz_to_rgb.T).mean() > 0.5
 
 
 def test_colours_are_realisable_if_the_solid_contains_them():

@@ -178,12 +178,6 @@ def test_builds_do_not_depend_on_threads():
     assert len(digests) == 1
 
 
-def test_equal_input_gives_equal_bytes(tmp_path):
-    for name in ("a", "b"):
-        quietly(MACBETH, dim=5, debug=True).save(tmp_path / name)
-    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
-
-
 @pytest.mark.parametrize(
     ("options", "error", "code"),
     [

@@ -62,7 +62,7 @@ def tied_processes(count: int) -> Iterator[ProcessPoolExecutor]:
     pool = ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn"), initializer=_tie)
     try:
         yield pool
-    # What is left of the work is not waited for: signals end the workers, which remove their temporary files.
+    # Work that is not finished is not waited for: a signal ends the workers, which remove their temporary files.
     except BaseException:
         for child in set(multiprocessing.active_children()) - others:
             child.terminate()
