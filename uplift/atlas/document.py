@@ -14,10 +14,8 @@ from numpy.typing import ArrayLike
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import AtlasError
 from uplift.common.files import read_bytes
-from uplift.common.text import parse_float, printable
+from uplift.common.text import parse_float, printable, shorten
 
-MAX_QUOTED = 40
-"""Characters of an invalid token or name that a message quotes."""
 MAX_BYTES = 64 << 20
 """Largest file that is read, some 100,000 entries."""
 MAX_DEPTH, MAX_ELEMENTS = 64, 2_000_000
@@ -177,9 +175,8 @@ def one_line(text: object) -> str:
 
 
 def truncate(text: str) -> str:
-    """Shorten text to one line of at most `MAX_QUOTED` characters."""
-    text = one_line(text)
-    return text if len(text) <= MAX_QUOTED else text[:MAX_QUOTED] + "…"
+    """Shorten text to one line for a message."""
+    return shorten(one_line(text))
 
 
 def without_unit(token: str) -> str:

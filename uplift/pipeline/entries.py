@@ -128,20 +128,22 @@ def fit_constraints(problem: Problem, entry_model: Model, entries: MeasuredEntri
 
 def warn_of_close(names: Sequence[str], half_width: Array, crowded: Sequence[int] = ()) -> None:
     """Warn of entries of the same colour, and of ``crowded`` ones, whose nearest node a closer entry owns."""
-    same = "left out: an earlier entry has the same colour, which has only one answer"
-    near = (
-        "crowded: closer entries own the nearest lattice point. Queries at the entries' own colours stay exact, "
-        "queries near them are less accurate"
-    )
-    wider = 'use dim="auto" for a lattice that is large enough, or see the report of the cube'
-    for rows, problem, code, hint in (
-        (np.flatnonzero(half_width == 0).tolist(), same, "entry-duplicate", ""),
-        ([row for row in crowded if half_width[row]], near, "entry-crowded", wider),
-    ):
-        if rows:
-            shown = listed([f"'{names[row]}'" for row in rows])
-            subject = f"entry {shown} is" if len(rows) == 1 else f"entries {shown} are"
-            warn(f"{subject} {problem}", code=code, hint=hint)
+    duplicates = np.flatnonzero(half_width == 0).tolist()
+    if duplicates:
+        problem = "left out: an earlier entry has the same colour, which has only one answer"
+        warn(f"{_listed(names, duplicates)} {problem}", code="entry-duplicate")
+    if near := [row for row in crowded if half_width[row]]:
+        problem = (
+            "crowded: closer entries own the nearest lattice point. Queries at the entries' own colours stay exact"
+        )
+        hint = 'use dim="auto" for a lattice that is large enough, or see the report of the cube'
+        warn(f"{_listed(names, near)} {problem}, queries near them are less accurate", code="entry-crowded", hint=hint)
+
+
+def _listed(names: Sequence[str], rows: Sequence[int]) -> str:
+    """'entry 'a' is', 'entries 'a', 'b', 'c' and 12 more are'."""
+    shown = listed([f"'{names[row]}'" for row in rows])
+    return f"entry {shown} is" if len(rows) == 1 else f"entries {shown} are"
 
 
 def describe_atlas(atlas: Atlas, names: Sequence[str]) -> dict[str, Any]:
