@@ -14,8 +14,9 @@ from uplift.colorimetry import observer as observers
 from uplift.common.arrays import Array, Mask
 from uplift.fit.solver import solve
 from uplift.lab.timing import time_calls
+from uplift.lights.discs import Lamps
 from uplift.lights.fit import nearest_lights
-from uplift.lights.lamps import Lamps, known_lamps
+from uplift.lights.lamps import known_lamps
 from uplift.lights.lattice import chromaticity, unit_xyz
 from uplift.lights.lookup import EmissionTable
 from uplift.lights.prior import fit_lamp_prior, relit_delta_e

@@ -10,7 +10,8 @@ import uplift
 from benchmarks.emission import FAMILIES, exactness, lamp_family, planck, predict, spokes, unknown_lamps
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
-from uplift.lights.lamps import Lamps, known_lamps
+from uplift.lights.discs import Lamps
+from uplift.lights.lamps import known_lamps
 from uplift.lights.lattice import chromaticity
 from uplift.lights.lookup import EmissionTable
 

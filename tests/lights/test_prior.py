@@ -5,9 +5,9 @@ import pytest
 
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
-from uplift.lights.discs import lamp_entries
+from uplift.lights.discs import Lamps, lamp_entries
 from uplift.lights.fit import locus_lattice, mix_with_locus, nearest_lights
-from uplift.lights.lamps import Lamps, known_lamps
+from uplift.lights.lamps import known_lamps
 from uplift.lights.lattice import chromaticity
 from uplift.lights.prior import fit_lamp_prior, relit_delta_e, smoothest_lights
 

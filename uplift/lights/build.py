@@ -18,9 +18,9 @@ from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.machine import single_threaded_blas
 from uplift.common.text import format_value
 from uplift.common.version import VERSION
-from uplift.lights.discs import lamp_entries
+from uplift.lights.discs import Lamps, lamp_entries
 from uplift.lights.fit import locus_lattice, mix_with_locus, nearest_lights
-from uplift.lights.lamps import SAME_LAMP, Lamps, known_lamps, read_lamps
+from uplift.lights.lamps import SAME_LAMP, known_lamps, read_lamps
 from uplift.lights.lattice import ChromaticityLattice, chromaticity
 from uplift.lights.lookup import EmissionTable
 from uplift.lights.prior import LampKernel, LampPrior, fit_lamp_prior, relit_delta_e

@@ -1,5 +1,6 @@
 """Measured lamps in discs over u′v′: within a disc, answers blend to the lamp at its centre."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -7,7 +8,7 @@ from itertools import product
 import numpy as np
 
 from uplift.common.arrays import Array, Indices
-from uplift.lights.lamps import Lamps
+from uplift.common.errors import unknown_name
 from uplift.lights.lattice import DENOMINATOR, ChromaticityLattice, chromaticity
 
 BINS = 256
@@ -20,6 +21,26 @@ SAME_CHROMATICITY = 1e-5
 """Distance in u′v′ at which two constraints are one: they have one RGB."""
 CLEARANCE = 2e-3
 """Distance in u′v′ that other lamps keep from constraints: about two just noticeable differences."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lamps:
+    """Spectral powers of lamps."""
+
+    names: tuple[str, ...]
+    power: Array
+    """(L, N) Power at the wavelengths of a sensor, not negative, relative to the equal-energy light of luminance 1."""
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def without(self, names: Collection[str]) -> "Lamps":
+        """Leave out lamps."""
+        for name in names:
+            if name not in self.names:
+                raise unknown_name(name, self.names, "lamp")
+        kept = [row for row, name in enumerate(self.names) if name not in names]
+        return Lamps(tuple(self.names[row] for row in kept), self.power[kept])
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,7 @@
 """Lamps: spectral powers of colour-science, and from the formats of atlas files."""
 
 import warnings
-from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from uplift.atlas.measurements import Measurements, to_atlas
 from uplift.colorimetry import tables
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, matching_functions
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import unknown_name
+from uplift.lights.discs import Lamps
 
 REFLECTANCES = "reflectance"
 """Quantity of a measurement archive."""
@@ -21,26 +20,6 @@ VISIBLE = (400.0, 700.0)
 """Range in nm that a lamp must cover."""
 SAME_LAMP = 1e-3
 """Difference, as a fraction of the largest power, below which two lamps are one."""
-
-
-@dataclass(frozen=True, eq=False)
-class Lamps:
-    """Spectral powers of lamps."""
-
-    names: tuple[str, ...]
-    power: Array
-    """(L, N) Power at the wavelengths of a sensor, not negative, relative to the equal-energy light of luminance 1."""
-
-    def __len__(self) -> int:
-        return len(self.names)
-
-    def without(self, names: Collection[str]) -> "Lamps":
-        """Leave out lamps."""
-        for name in names:
-            if name not in self.names:
-                raise unknown_name(name, self.names, "lamp")
-        kept = [row for row, name in enumerate(self.names) if name not in names]
-        return Lamps(tuple(self.names[row] for row in kept), self.power[kept])
 
 
 def known_lamps(observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP) -> Lamps:
