@@ -22,6 +22,7 @@ from uplift.common.text import format_value
 from uplift.common.version import VERSION
 from uplift.cube import CubeData
 from uplift.fit.base import learn_base
+from uplift.fit.families import Family
 from uplift.fit.growth import STEPS, THESIS_STEPS, Growth, improve
 from uplift.fit.growth_coarse import grow_coarse_to_fine
 from uplift.fit.growth_outward import grow_outward
@@ -42,9 +43,10 @@ from uplift.fit.seeds import (
 from uplift.fit.store import store
 from uplift.lattice import EntryBoxes, Lattice
 from uplift.lookup import Cube
+from uplift.models.model import Model
 from uplift.models.moments import MAX_COUNT
 from uplift.pipeline import entries as spectra
-from uplift.pipeline.entries import AtlasLike
+from uplift.pipeline.entries import AtlasLike, MeasuredEntries
 from uplift.pipeline.options import (
     AUTO,
     CUSTOM,
@@ -230,11 +232,11 @@ def build(
 
         scene = Images(tuple(map(Path, [scene] if isinstance(scene, str | os.PathLike) else scene)))
     check_memory(options)
-    options, problem = _problem(options, observer, solver)
-    return _build(atlas, options, problem, library, looks, scene, progress)
+    options, problem = problem_of(options, observer, solver)
+    return build_stages(atlas, options, problem, library, looks, scene, progress)
 
 
-def _problem(options: Options, observer: str | Camera, solver: str | Solver) -> tuple[Options, Problem]:
+def problem_of(options: Options, observer: str | Camera, solver: str | Solver) -> tuple[Options, Problem]:
     """Return the problem of a build, and options with the names of the space and of a camera, not aliases or files."""
     # r = W g, on the wavelengths of the build (docs/mathematics.md, 1)
     sensor = observers.sensor(
@@ -276,17 +278,31 @@ def _choose_lattice(
     return options
 
 
+Learnt = tuple[spectra.Constraints, Prior, tuple[float, ...]]
+"""Fitted entries, the prior, and the relevance of the families: they do not depend on the lattice."""
+
+
+def learn(problem: Problem, entry_model: Model, measured: MeasuredEntries, families: Sequence[Family]) -> Learnt:
+    """Fit the entries and the prior."""
+    # Entries p_i: min ‖g − m‖² + Σ |w ΔL*a*b*|² subject to r(p) = t (docs/mathematics.md, 6).
+    # Prior c(x) = s(x) + d(x): smooth spectra, what families deviate from them, and kriging of the entries (7).
+    constraints = spectra.fit_constraints(problem, entry_model, measured)
+    base, relevance = learn_base(problem, families, constraints.at_nodes)
+    return constraints, fit_prior(problem, constraints.at_nodes, base), relevance
+
+
 @single_threaded_blas()
-def _build(
+def build_stages(
     atlas: AtlasLike,
     options: Options,
     problem: Problem,
-    library: AtlasLike,
-    looks: LooksLike | None,
-    scene: SceneLike | None,
-    progress: ProgressCallback,
+    library: AtlasLike = None,
+    looks: LooksLike | None = None,
+    scene: SceneLike | None = None,
+    progress: ProgressCallback = ignore_progress,
+    learn: Callable[..., Learnt] = learn,
 ) -> Cube:
-    """Build a cube from checked options and the problem that they describe."""
+    """Build a cube from checked options and the problem that they describe; builds may share what they ``learn``."""
     sensor, model, entry_model = problem.sensor, problem.model, options.spectrum_model(options.entry_coefficients)
     neighbours = options.growth == "neighbours"
 
@@ -301,11 +317,7 @@ def _build(
 
         targets = targets_of(looks, entry_model, sensor, atlas.names, measured)
 
-    # Entries p_i: min ‖g − m‖² + Σ |w ΔL*a*b*|² subject to r(p) = t (docs/mathematics.md, 6).
-    # Prior c(x) = s(x) + d(x): smooth spectra, what families deviate from them, and kriging of the entries (7).
-    constraints = spectra.fit_constraints(problem, entry_model, measured)
-    base, relevance = learn_base(problem, families, constraints.at_nodes)
-    prior = fit_prior(problem, constraints.at_nodes, base)
+    constraints, prior, relevance = learn(problem, entry_model, measured, families)
     if options.neutral == "flat":
         prior = prior.with_flat_greys()
     if targets is not None:

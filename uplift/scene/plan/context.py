@@ -13,9 +13,12 @@ from uplift.colorimetry.observer import AXES
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import ProgressCallback
+from uplift.fit.problem import Problem
 from uplift.io.scene_colours import ColourSet, Images, PixelSample, SampledColours, sample_colours
 from uplift.lookup import Cube
-from uplift.pipeline.build import build
+from uplift.models.model import Model
+from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
+from uplift.pipeline.options import Options
 from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ColourGroup, EvaluationSet
 from uplift.scene.plan.scene_file import SceneFile
 
@@ -68,6 +71,8 @@ class PlanContext:
     materials: Array
     colours: SampledColours
     progress: ProgressCallback
+    learnt: dict[tuple[Model, Model], Learnt] = field(default_factory=dict)
+    """What cubes of the same models share: entries and prior."""
 
     @property
     def options(self) -> dict[str, Any]:
@@ -90,9 +95,18 @@ class PlanContext:
 
     def cube(self, rgb: Array, **options: Any) -> Cube:
         """Build a sparse cube for linear RGB (n, 3)."""
+        choice = Options(**{**self.options, **options})
+
+        def shared(problem: Problem, entry_model: Model, *rest: Any) -> Learnt:
+            models = problem.model, entry_model
+            if models not in self.learnt:
+                self.learnt[models] = learn(problem, entry_model, *rest)
+            return self.learnt[models]
+
         # The final build repeats the warnings of trial builds.
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-            return build(self.atlas, scene=ColourSet(rgb), **{**self.options, **options})
+            choice, problem = problem_of(choice, choice.observer, choice.solver)
+            return build_stages(self.atlas, choice, problem, scene=ColourSet(rgb), learn=shared)
 
     def evaluation_set(self, sample: PixelSample) -> tuple[EvaluationSet, Cube]:
         """Test colours, with the spectra of the reference cube or of the measurement, and this cube."""

@@ -120,8 +120,9 @@ def make_setup(
     if not lights:
         raise OptionError("lights must not be empty", hint="name at least one, such as D65")
     # The tables have steps of whole nanometres; the grid may have any step.
-    shape = np.floor(nm[0]), np.ceil(nm[-1]), 1.0
-    table = np.arange(shape[0], shape[1] + 0.5)
+    step = nm[1] - nm[0] if (nm % 1 == 0).all() else 1.0
+    shape = np.floor(nm[0]), np.ceil(nm[-1]), step
+    table = np.arange(shape[0], shape[1] + step / 2, step)
     cmfs = interp_curves(nm, table, observer.matching_functions(observer_name, *shape).T).T
     powers = interp_curves(nm, table, np.stack([observer.illuminant_spd(name, *shape) for name in lights]))
     return RenderSetup(nm, materials, lights, powers / (powers @ cmfs[:, 1])[:, None], cmfs)
