@@ -15,8 +15,8 @@ from uplift.lab.comparison import compare
 from uplift.lab.comparison.compare import Comparison, Scene, TunedFilter
 from uplift.lab.comparison.pictures import write_boxes, write_costs
 from uplift.scene.representations import all_representations, samples
-from uplift.scene.representations.composite import ENHANCED_THRESHOLD, Composite, enhanced_riemann
-from uplift.scene.representations.samples import SampleRepresentation
+from uplift.scene.representations.composite import ENHANCED_THRESHOLD, composite, enhanced_riemann
+from uplift.scene.representations.samples import Representation, linear
 
 OTHER_LIGHTS = ("LED-B3", "LED-RGB1", "HP1")
 TARGETS = (2.0, 1.0, 0.5)
@@ -145,19 +145,19 @@ def riemann_rows(scene: Scene, thesis: Mapping[tuple[str, str], Printed]) -> lis
     ]
 
 
-def closed(count: int) -> SampleRepresentation:
+def closed(count: int) -> Representation:
     """Return means over closed cells; XYZ by the colour-matching functions at 5 nm, shared between cells."""
     inside = _cells(count)
     encoder = np.zeros((len(samples.wavelengths()), count))
     encoder[:: samples.TABLE_STRIDE] = (inside / inside.sum(axis=1, keepdims=True)).T
     weights = (inside / inside.sum(axis=0)) @ (samples.xyz_weights()[:: samples.TABLE_STRIDE] * samples.TABLE_STRIDE)
-    return SampleRepresentation(f"RS{count}", "Riemann sums, closed cells", encoder, weights)
+    return linear(f"RS{count}", "Riemann sums, closed cells", encoder, weights)
 
 
-def enhanced(count: int) -> Composite:
+def enhanced(count: int) -> Representation:
     """Return enhanced sums over the same cells; a spike on a border is multiplied by the mean of both."""
     inside, family = _cells(count), "enhanced Riemann sums, closed cells"
-    return Composite(f"RE{count}", family, closed(count), inside / inside.sum(axis=0), ENHANCED_THRESHOLD)
+    return composite(f"RE{count}", family, closed(count), inside / inside.sum(axis=0), ENHANCED_THRESHOLD)
 
 
 def _cells(count: int) -> Array:

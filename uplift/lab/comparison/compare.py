@@ -206,8 +206,7 @@ def represent(representation: Representation, scene: Scene, names: Sequence[str]
     are clipped with a warning. Raises `UpliftError`.
     """
     lights = [light for light_set in scene.sets for light in light_set.lights]
-    powers = representation.light_spectra(representation.encode_light(scene.powers))
-    surfaces = representation.surface_spectra(representation.encode_surface(scene.surfaces))
+    powers, surfaces = representation.stored(scene.powers, scene.surfaces)
 
     def atlas(names: Sequence[str], spectra: Array) -> Atlas:
         clipped = np.clip(spectra, 0, 1)
@@ -359,9 +358,9 @@ def tune_filters(
 def _mean_errors(scene: Scene, light_set: LightSet, count: int, encoders: Iterable[Array]) -> Array:
     """Mean ΔE00 of encoders (81, count) of the 5 nm table, faster than `error_statistics`."""
     surfaces, lights = scene.surfaces[:, :: samples.TABLE_STRIDE], light_set.powers[:, :: samples.TABLE_STRIDE]
-    reference, weights = scene.reference(light_set), samples.point_samples(count).weights
+    reference, to_xyz = scene.reference(light_set), samples.point_samples(count).xyz
     products = ((lights @ encoder)[:, None] * (surfaces @ encoder) for encoder in encoders)
-    return np.array([delta_e_2000(light_set.lab(each @ weights), reference).mean() for each in products])
+    return np.array([delta_e_2000(light_set.lab(to_xyz(each)), reference).mean() for each in products])
 
 
 def filter_records(tuned: Iterable[TunedFilter]) -> list[dict[str, Any]]:

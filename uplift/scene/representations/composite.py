@@ -8,7 +8,6 @@ application". Kment 2011, sections 4.3, 5.4 and 5.5.
 """
 
 import functools
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -81,8 +80,7 @@ class CompositeCode(NamedTuple):
     spikes: Spikes
 
 
-@dataclass(frozen=True, eq=False)
-class Composite(Representation):
+def composite(name: str, family: str, smooth: Representation, decoder: Array, threshold: float) -> Representation:
     """Smooth part in another representation, and spikes steeper than a threshold.
 
     ``code @ decoder`` (C, 81) is the smooth part at 5 nm. ``threshold`` is the largest relative gradient of the smooth
@@ -90,65 +88,61 @@ class Composite(Representation):
     spectrum at its position.
     """
 
-    smooth: Representation
-    decoder: Array
-    threshold: float
+    def encode(power: Array) -> CompositeCode:
+        rest, spikes = split_spikes(power, threshold)
+        return CompositeCode(smooth.encode_light(rest), spikes)
 
-    def encode_light(self, power: Array) -> CompositeCode:
-        rest, spikes = split_spikes(power, self.threshold)
-        return CompositeCode(self.smooth.encode_light(rest), spikes)
-
-    def multiply(self, light: CompositeCode, surface: CompositeCode) -> CompositeCode:
+    def multiply(light: CompositeCode, surface: CompositeCode) -> CompositeCode:
         positions = np.union1d(light.spikes.positions, surface.spikes.positions)
         of_light, of_surface = heights_at(light.spikes, positions), heights_at(surface.spikes, positions)
-        below_light, below_surface = (code.smooth @ self.decoder[:, positions] for code in (light, surface))
+        below_light, below_surface = (code.smooth @ decoder[:, positions] for code in (light, surface))
         heights = of_light * (below_surface + of_surface) + below_light * of_surface
-        return CompositeCode(self.smooth.multiply(light.smooth, surface.smooth), Spikes(positions, heights))
+        return CompositeCode(smooth.multiply(light.smooth, surface.smooth), Spikes(positions, heights))
 
-    def xyz(self, light: CompositeCode) -> Array:
-        return self.smooth.xyz(light.smooth) + light.spikes.heights @ spike_xyz()[light.spikes.positions]
+    return Representation(
+        name,
+        family,
+        encode,
+        lambda light: smooth.xyz(light.smooth) + light.spikes.heights @ spike_xyz()[light.spikes.positions],
+        multiply,
+        storage=lambda code: smooth.storage(code.smooth) + code.spikes.storage,
+    )
 
-    def storage(self, code: CompositeCode) -> Array:
-        return self.smooth.storage(code.smooth) + code.spikes.storage
 
-
-@dataclass(frozen=True, eq=False)
-class FourierCoefficients(Representation):
-    """Coefficients (n, C) of a real Fourier basis: the smooth part of Sun's composite model.
+def fourier_coefficients(count: int) -> Representation:
+    """Coefficients a_0 to a_m and b_1 to b_m of a real Fourier basis: the smooth part of Sun's composite model.
 
     The period is 380–780 nm, so a spectrum whose ends differ has a jump there. Choices that the text leaves open: the
     coefficients are those of eq. 4.7 over the 5 nm table, with the mean of both ends where they meet. A product,
     computed point by point as in the text, keeps as many coefficients as its factors have: it has twice the highest
     frequency, and at 2C points in the period none of it is aliased to a lower one (the "Shannon theorem" of the text).
+
+    Raises `OptionError` unless the number is odd and positive.
     """
-
-    waves: Array
-    """Basis functions (C, 401) at the dense wavelengths."""
-    product_waves: Array
-    """Basis functions (C, 2C) at the points of a product."""
-
-    def encode_light(self, power: Array) -> Array:
-        periodic = power[:, : -1 : samples.TABLE_STRIDE].copy()
-        periodic[:, 0] = (power[:, 0] + power[:, -1]) / 2
-        return _analyse(periodic, self.waves[:, : -1 : samples.TABLE_STRIDE])
-
-    def multiply(self, light: Array, surface: Array) -> Array:
-        return _analyse((light @ self.product_waves) * (surface @ self.product_waves), self.product_waves)
-
-    def xyz(self, light: Array) -> Array:
-        return light @ (self.waves @ samples.xyz_weights())
-
-
-def fourier_coefficients(count: int) -> FourierCoefficients:
-    """Representation by ``count`` real coefficients, a_0 to a_m and b_1 to b_m: an odd number, or `OptionError`."""
     if count < 1 or count % 2 == 0:
         raise OptionError(
             f"number of Fourier coefficients must be odd and positive, got {count}",
             hint="a mean and pairs of cosine and sine are an odd number",
         )
-    dense = 2 * np.pi * (samples.wavelengths() - observer.START) / (observer.END - observer.START)
-    product = np.pi * np.arange(2 * count) / count
-    return FourierCoefficients(f"F{count}", "Fourier coefficients", _waves(dense, count), _waves(product, count))
+    dense, product = waves(count), _waves(np.pi * np.arange(2 * count) / count, count)
+
+    def encode(power: Array) -> Array:
+        periodic = power[:, : -1 : samples.TABLE_STRIDE].copy()
+        periodic[:, 0] = (power[:, 0] + power[:, -1]) / 2
+        return _analyse(periodic, dense[:, : -1 : samples.TABLE_STRIDE])
+
+    return Representation(
+        f"F{count}",
+        "Fourier coefficients",
+        encode,
+        lambda light: light @ (dense @ samples.xyz_weights()),
+        lambda light, surface: _analyse((light @ product) * (surface @ product), product),
+    )
+
+
+def waves(count: int) -> Array:
+    """Fourier basis (count, 401) at the dense wavelengths."""
+    return _waves(2 * np.pi * (samples.wavelengths() - observer.START) / (observer.END - observer.START), count)
 
 
 def _waves(phase: Array, count: int) -> Array:
@@ -163,13 +157,13 @@ def _analyse(values: Array, waves: Array) -> Array:
     return np.asarray(values @ waves.T / (waves**2).sum(axis=1))
 
 
-def sun_composite(count: int) -> Composite:
+def sun_composite(count: int, threshold: float = SUN_THRESHOLD) -> Representation:
     """Sun's composite model (CS): spikes, and ``count`` Fourier coefficients of the smooth part."""
-    smooth = fourier_coefficients(count)
-    return Composite(f"CS{count}", "Sun's composite", smooth, smooth.waves[:, :: samples.TABLE_STRIDE], SUN_THRESHOLD)
+    smooth, decoder = fourier_coefficients(count), waves(count)[:, :: samples.TABLE_STRIDE]
+    return composite(f"CS{count}", "Sun's composite", smooth, decoder, threshold)
 
 
-def enhanced_riemann(count: int) -> Composite:
+def enhanced_riemann(count: int, threshold: float = ENHANCED_THRESHOLD) -> Representation:
     """Enhanced Riemann sums (RE): spikes, which meet the mean of their cell, and Riemann sums of the smooth part."""
     decoder = samples.cell_overlaps(count)[:, :: samples.TABLE_STRIDE]
-    return Composite(f"RE{count}", "enhanced Riemann sums", samples.riemann_sums(count), decoder, ENHANCED_THRESHOLD)
+    return composite(f"RE{count}", "enhanced Riemann sums", samples.riemann_sums(count), decoder, threshold)

@@ -9,19 +9,17 @@ runs from −1 to 1 across it, −2 to 2 for Mitchell, at any extent. Lanczos is
 2004, cited in the text: τ cycles of sinc under the main lobe of another.
 """
 
-import functools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
 import numpy as np
-from scipy.signal import resample_poly, windows
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.scene.representations import samples
-from uplift.scene.representations.samples import SampleRepresentation
+from uplift.scene.representations.samples import Representation
 
 MITCHELL_B, MITCHELL_C = -0.4, 1.0
 """Parameters of the best Mitchell filter in table A.2."""
@@ -35,11 +33,11 @@ FINE_STRIDE, COARSE_STRIDE = 1, 5
 
 @dataclass(frozen=True)
 class FilterKind:
-    """A family of filters: its title in tables, its taps from an odd number of them and the parameters, and the values
-    that a search tries for each parameter."""
+    """A family of filters: its title in tables, its curve over x from −1 to 1 with the parameters, and the values that
+    a search tries for each parameter."""
 
     title: str
-    window: Callable[..., Array]
+    curve: Callable[..., Array]
     choices: Mapping[str, Sequence[float]]
 
 
@@ -59,7 +57,8 @@ class Filter:
 
     def taps(self, upsampling: int) -> Array:
         """Compute an odd number of taps with sum 1, ``upsampling`` per sample of the table."""
-        taps = KINDS[self.kind].window(2 * (self.extent * upsampling // 2) + 1, *self.parameters)
+        x = np.linspace(-1, 1, 2 * (self.extent * upsampling // 2) + 3)[1:-1]
+        taps = KINDS[self.kind].curve(x, *self.parameters)
         return np.asarray(taps / taps.sum())
 
 
@@ -68,7 +67,10 @@ def resampling_matrix(low_pass: Filter, count: int) -> Array:
     size = len(observer.grid())
     rate = Fraction(count - 1, size - 1)
     taps = low_pass.taps(rate.numerator)
-    return np.asarray(resample_poly(np.eye(size), rate.numerator, rate.denominator, axis=0, window=taps))
+    # Sample i is at L i, and result j at M j, of the upsampled table; the taps are centred there.
+    offsets = rate.denominator * np.arange(count)[:, None] - rate.numerator * np.arange(size) + len(taps) // 2
+    inside = (offsets >= 0) & (offsets < len(taps))
+    return np.where(inside, rate.numerator * taps[np.where(inside, offsets, 0)], 0)
 
 
 def candidates(kind: str, stride: int = FINE_STRIDE) -> list[Filter]:
@@ -77,32 +79,11 @@ def candidates(kind: str, stride: int = FINE_STRIDE) -> list[Filter]:
     return [Filter(kind, extent, values) for extent in EXTENTS[::stride] for values in product(*choices)]
 
 
-def _without_ends(window: Callable[..., Array], taps: int, *parameters: float) -> Array:
-    """Remove the zeros at the ends of a window of scipy, which would narrow the filter."""
-    return np.asarray(window(taps + 2, *parameters)[1:-1])
-
-
-def _x(taps: int) -> Array:
-    return np.linspace(-1, 1, taps + 2)[1:-1]
-
-
-def _welch(taps: int) -> Array:
-    return 1 - _x(taps) ** 2
-
-
-def _gaussian(taps: int, alpha: float) -> Array:
-    return np.exp(-alpha * (2 * _x(taps)) ** 2) - np.exp(-4 * alpha)
-
-
-def _mitchell(taps: int, b: float, c: float) -> Array:
-    x = 2 * np.abs(_x(taps))
+def _mitchell(x: Array, b: float, c: float) -> Array:
+    x = 2 * np.abs(x)
     near = (12 - 9 * b - 6 * c) * x**3 + (-18 + 12 * b + 6 * c) * x**2 + 6 - 2 * b
     far = (-b - 6 * c) * x**3 + (6 * b + 30 * c) * x**2 + (-12 * b - 48 * c) * x + 8 * b + 24 * c
     return np.where(x < 1, near, far) / 6
-
-
-def _lanczos(taps: int, tau: float) -> Array:
-    return np.sinc(tau * _x(taps)) * _without_ends(windows.lanczos, taps)
 
 
 _TAU = np.round(np.arange(0.05, 3.001, 0.05), 2).tolist()
@@ -110,28 +91,28 @@ _ALPHA = [0.05, *np.round(np.arange(0.1, 3.01, 0.1), 1).tolist()]
 _CUBIC = np.round(np.arange(-3, 3.01, 0.2), 1).tolist()
 
 KINDS: dict[str, FilterKind] = {
-    "box": FilterKind("box", windows.boxcar, {}),
-    "tent": FilterKind("tent", windows.triang, {}),
-    "welch": FilterKind("Welch", _welch, {}),
-    "gaussian": FilterKind("Gaussian", _gaussian, {"α": _ALPHA}),
+    "box": FilterKind("box", np.ones_like, {}),
+    "tent": FilterKind("tent", lambda x: 1 - np.abs(x), {}),
+    "welch": FilterKind("Welch", lambda x: 1 - x**2, {}),
+    "gaussian": FilterKind("Gaussian", lambda x, a: np.exp(-4 * a * x**2) - np.exp(-4 * a), {"α": _ALPHA}),
     "mitchell": FilterKind("Mitchell", _mitchell, {"b": _CUBIC, "c": _CUBIC}),
-    "lanczos": FilterKind("Lanczos", _lanczos, {"τ": _TAU}),
-    "hann": FilterKind("Hann", functools.partial(_without_ends, windows.hann), {}),
-    "hamming": FilterKind("Hamming", functools.partial(_without_ends, windows.hamming), {}),
+    "lanczos": FilterKind("Lanczos", lambda x, cycles: np.sinc(cycles * x) * np.sinc(x), {"τ": _TAU}),
+    "hann": FilterKind("Hann", lambda x: 0.5 + 0.5 * np.cos(np.pi * x), {}),
+    "hamming": FilterKind("Hamming", lambda x: 0.54 + 0.46 * np.cos(np.pi * x), {}),
 }
 """Kinds by name, in the order of tables A.1 and A.2."""
 
 
-def filtered_point_samples(count: int, low_pass: Filter) -> SampleRepresentation:
+def filtered_point_samples(count: int, low_pass: Filter) -> Representation:
     """Representation by ``count`` samples of spectra that pass through a filter."""
     encoder = np.zeros((len(samples.wavelengths()), count))
     encoder[:: samples.TABLE_STRIDE] = resampling_matrix(low_pass, count).T
     hats = samples.hat_functions(samples.sample_points(count))
     name = f"PS{count} {low_pass.name}"
-    return SampleRepresentation(name, "point sampling, filtered", encoder, hats @ samples.xyz_weights(), hats)
+    return samples.linear(name, "point sampling, filtered", encoder, hats @ samples.xyz_weights(), hats)
 
 
-def mitchell_point_samples(count: int) -> SampleRepresentation:
+def mitchell_point_samples(count: int) -> Representation:
     """Representation with the best Mitchell filter of table A.2, `FILTER_SPACINGS` wide for any count."""
     spacing = (len(observer.grid()) - 1) / (count - 1)
     extent = 2 * round((FILTER_SPACINGS * spacing - 1) / 2) + 1

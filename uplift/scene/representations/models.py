@@ -1,13 +1,11 @@
 """Representations by models of reflectance (TM, SG), by components of a scene (LM), and by random wavelengths (HW)."""
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Callable
 
 import numpy as np
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
-from uplift.colorimetry.observer import END, START
 from uplift.common.arrays import Array
 from uplift.models import Moments, Sigmoid
 from uplift.models.arithmetic import blocked_matmul
@@ -28,66 +26,46 @@ STEEPNESS, CENTRE = 0.0072, 538.0
 """Parameters of the density 1 / cosh²(0.0072 (λ − 538)), λ in nm."""
 
 
-@dataclass(frozen=True, eq=False)
-class TabulatedProducts(Representation):
-    """Base of models of reflectance: lights and products are 5 nm tables (n, 81).
+def tabulated(name: str, family: str, model: Model, encode: Callable[[Array], Array]) -> Representation:
+    """Representation by a model of reflectance: lights and products are 5 nm tables (n, 81).
 
     A product evaluates the model at the 81 wavelengths of the light. It is not encoded again: no renderer does so, and
     the sigmoid could not represent it.
     """
-
-    model: Model
-
-    def encode_light(self, power: Array) -> Array:
-        return power[:, :: samples.TABLE_STRIDE]
-
-    def multiply(self, light: Array, surface: Array) -> Array:
-        return light * reflectance(self.model, surface, observer.grid())
-
-    def xyz(self, light: Array) -> Array:
-        return light @ spike_xyz()
-
-    def light_spectra(self, code: Array) -> Array:
-        return code @ samples.hat_functions(observer.grid())
-
-    def surface_spectra(self, code: Array) -> Array:
-        return self.light_spectra(reflectance(self.model, code, observer.grid()))
+    table = observer.grid()
+    hats = samples.hat_functions(table)
+    return Representation(
+        name,
+        family,
+        lambda power: power[:, :: samples.TABLE_STRIDE],
+        lambda light: light @ spike_xyz(),
+        lambda light, surface: light * reflectance(model, surface, table),
+        encode,
+        decode_light=lambda code: code @ hats,
+        decode_surface=lambda code: reflectance(model, code, table) @ hats,
+    )
 
 
-class TrigonometricMoments(TabulatedProducts):
-    """The zeroth moment and those above it, mirrored, as many as ``model`` has coefficients (`uplift.models.moments`).
+def trigonometric_moments(count: int) -> Representation:
+    """Trigonometric moments (TM): the zeroth and those above it, mirrored, as many as a cube has coefficients.
 
     Peters et al. 2019, "Using moments to represent bounded signals for spectral rendering". These are the moments of
     the spectrum itself. The coefficients of cubes are fitted to colours as well (docs/materials.md).
     """
-
-    model: Moments
-
-    def encode_surface(self, reflectance: Array) -> Array:
-        phase = self.model.phase(samples.wavelengths())
-        analysis = cosine_basis(phase, self.model.count) * np.gradient(phase)[:, None] / np.pi
-        analysis[:, 1:] /= 2
-        analysis[[0, -1]] /= 2
-        return np.asarray(blocked_matmul(reflectance, analysis))
+    model = Moments(count)
+    phase = model.phase(samples.wavelengths())
+    analysis = cosine_basis(phase, count) * np.gradient(phase)[:, None] / np.pi
+    analysis[:, 1:] /= 2
+    analysis[[0, -1]] /= 2
+    return tabulated(f"TM{count}", "trigonometric moments", model, lambda spectra: blocked_matmul(spectra, analysis))
 
 
-def trigonometric_moments(count: int) -> TrigonometricMoments:
-    """Trigonometric moments (TM) by ``count`` coefficients."""
-    return TrigonometricMoments(f"TM{count}", "trigonometric moments", Moments(count))
-
-
-class SigmoidCoefficients(TabulatedProducts):
-    """Three coefficients (n, 3) of Jakob & Hanika 2019 per reflectance (`uplift.models.sigmoid`)."""
-
-    model: Sigmoid
-
-    def encode_surface(self, reflectance: Array) -> Array:
-        return fit_sigmoids(self.model, reflectance[:, :: samples.TABLE_STRIDE])
-
-
-def sigmoid_coefficients(count: int = 3) -> SigmoidCoefficients:
-    """Sigmoid (SG), which always has 3 coefficients."""
-    return SigmoidCoefficients(f"SG{count}", "sigmoid", Sigmoid())
+def sigmoid_coefficients(count: int = 3) -> Representation:
+    """Sigmoid (SG): the three coefficients of Jakob & Hanika 2019 (`uplift.models.sigmoid`)."""
+    model = Sigmoid()
+    return tabulated(
+        f"SG{count}", "sigmoid", model, lambda spectra: fit_sigmoids(model, spectra[:, :: samples.TABLE_STRIDE])
+    )
 
 
 def fit_sigmoids(model: Sigmoid, table: Array) -> Array:
@@ -117,31 +95,8 @@ def fit_sigmoids(model: Sigmoid, table: Array) -> Array:
     return coefficients
 
 
-@dataclass(frozen=True, eq=False)
-class LinearModel(Representation):
-    """Coordinates in an orthonormal ``basis`` (401, n): a light is n of them, a surface an n × n matrix.
-
-    Peercy 1993, "Linear color representations for full speed spectral rendering". Spectra that the basis was not made
-    from have larger errors. Kment 2011, section 5.4, omits linear models because they need this prior knowledge.
-    """
-
-    basis: Array
-
-    def encode_light(self, power: Array) -> Array:
-        return power @ self.basis
-
-    def encode_surface(self, reflectance: Array) -> Array:
-        return np.asarray(np.einsum("ik,ni,il->nkl", self.basis, reflectance, self.basis, optimize=True))
-
-    def multiply(self, light: Array, surface: Array) -> Array:
-        return np.asarray((surface @ light[:, :, None])[:, :, 0])
-
-    def xyz(self, light: Array) -> Array:
-        return light @ (self.basis.T @ samples.xyz_weights())
-
-
-def linear_model(count: int, lights: Array, surfaces: Array) -> LinearModel:
-    """Linear model (LM): the first ``count`` principal components, about the origin, of a scene.
+def principal_components(count: int, lights: Array, surfaces: Array) -> Array:
+    """First ``count`` principal components (401, count), about the origin, of a scene.
 
     They are those of every product of its lights (L, 401), normalised to equal Y, with its surfaces (E, 401), and of
     the lights.
@@ -150,70 +105,52 @@ def linear_model(count: int, lights: Array, surfaces: Array) -> LinearModel:
     for power in lights / (lights @ samples.xyz_weights()[:, 1:2]):
         radiance = np.concatenate([surfaces * power, power[None]])
         scatter += radiance.T @ radiance
-    _, vectors = np.linalg.eigh(scatter)
-    return LinearModel(f"LM{count}", "linear model (PCA)", vectors[:, ::-1][:, :count])
+    return np.linalg.eigh(scatter)[1][:, ::-1][:, :count]
 
 
-class PathSamples(NamedTuple):
-    """Values (n, K) at wavelengths (n, K) nm."""
+def linear_model(count: int, lights: Array, surfaces: Array) -> Representation:
+    """Linear model (LM): coordinates in `principal_components`. A light is n of them, a surface an n × n matrix.
 
-    wavelengths: Array
-    values: Array
+    Peercy 1993, "Linear color representations for full speed spectral rendering". Spectra that the basis was not made
+    from have larger errors. Kment 2011, section 5.4, omits linear models because they need this prior knowledge.
+    """
+    basis = principal_components(count, lights, surfaces)
+    return Representation(
+        f"LM{count}",
+        "linear model (PCA)",
+        lambda power: power @ basis,
+        lambda light: light @ (basis.T @ samples.xyz_weights()),
+        lambda light, surface: (surface @ light[:, :, None])[:, :, 0],
+        lambda surface: np.einsum("ik,ni,il->nkl", basis, surface, basis, optimize=True),
+    )
 
 
-@dataclass(frozen=True, eq=False)
-class HeroWavelengths(Representation):
-    """Monte Carlo sampling with ``paths`` per pixel, of four wavelengths each.
+def hero_wavelengths(paths: int) -> Representation:
+    """Hero wavelengths (HW): Monte Carlo sampling with ``paths`` per pixel, of four wavelengths each.
 
     Wilkie, Nawaz, Droske, Weidlich & Hanika 2014, "Hero wavelength spectral sampling": a hero, and three more at
     distances of a quarter of the range. They follow the density of Radziszewski, Boryczko & Alda 2009, as in pbrt. The
     heroes of a pixel are stratified: one in each of as many equal strata as it has paths. A row is a pixel with its
     own, reproducible random numbers. Spectra remain tables, evaluated at the wavelengths of a path.
     """
+    low, high = np.tanh(STEEPNESS * (np.array([observer.START, observer.END]) - CENTRE))
 
-    paths: int
+    def draw(pixels: int) -> Array:
+        """Wavelengths (pixels, 4 · paths) in nm, by the inverse of the density's antiderivative."""
+        rng = np.random.default_rng(SEED)
+        heroes = (np.arange(paths) + rng.random((pixels, paths))) / paths
+        rotated = (heroes[:, :, None] + np.arange(WAVELENGTHS_PER_PATH) / WAVELENGTHS_PER_PATH) % 1
+        drawn = CENTRE + np.arctanh(low + (high - low) * rotated) / STEEPNESS
+        return np.asarray(np.clip(drawn, observer.START, observer.END).reshape(pixels, -1))
 
-    def encode_light(self, power: Array) -> PathSamples:
-        drawn = self.wavelengths(len(power))
-        return PathSamples(drawn, interp_rows(power, drawn))
+    def encode(spectra: Array) -> Array:
+        nm = samples.wavelengths()
+        return np.stack([np.interp(at, nm, row) for at, row in zip(draw(len(spectra)), spectra, strict=True)])
 
-    def multiply(self, light: PathSamples, surface: PathSamples) -> PathSamples:
-        return PathSamples(light.wavelengths, light.values * surface.values)
-
-    def xyz(self, light: PathSamples) -> Array:
-        low, high = _cumulative(np.array([START, END]))
-        density = STEEPNESS / np.cosh(STEEPNESS * (light.wavelengths - CENTRE)) ** 2 / (high - low)
-        estimate = light.values / density
-        rows = np.broadcast_to(samples.xyz_weights().T[:, None], (3, len(estimate), len(samples.xyz_weights())))
-        weights = [interp_rows(row, light.wavelengths) for row in rows]
+    def xyz(light: Array) -> Array:
+        drawn = draw(len(light))
+        estimate = light * np.cosh(STEEPNESS * (drawn - CENTRE)) ** 2 * (high - low) / STEEPNESS
+        weights = (np.interp(drawn, samples.wavelengths(), column) for column in samples.xyz_weights().T)
         return np.stack([(estimate * weight).mean(axis=1) for weight in weights], axis=1)
 
-    def storage(self, code: PathSamples) -> Array:
-        return super().storage(code.values)
-
-    def wavelengths(self, pixels: int) -> Array:
-        """Draw wavelengths (pixels, 4 · paths) in nm."""
-        rng = np.random.default_rng(SEED)
-        heroes = (np.arange(self.paths) + rng.random((pixels, self.paths))) / self.paths
-        rotated = (heroes[:, :, None] + np.arange(WAVELENGTHS_PER_PATH) / WAVELENGTHS_PER_PATH) % 1
-        low, high = _cumulative(np.array([START, END]))
-        drawn = CENTRE + np.arctanh(low + (high - low) * rotated) / STEEPNESS
-        return np.asarray(np.clip(drawn, START, END).reshape(pixels, -1))
-
-
-def hero_wavelengths(paths: int) -> HeroWavelengths:
-    """Hero wavelengths (HW) with ``paths`` per pixel."""
-    return HeroWavelengths(f"HW{WAVELENGTHS_PER_PATH * paths}", "hero wavelengths", paths)
-
-
-def interp_rows(spectra: Array, points: Array) -> Array:
-    """Values (n, K) of dense spectra (n, 401), each at its own ``points`` (n, K) nm, linear between samples."""
-    position = (points - observer.START) / samples.STEP
-    left = np.clip(position.astype(np.intp), 0, spectra.shape[1] - 2)
-    before, after = (np.take_along_axis(spectra, index, axis=1) for index in (left, left + 1))
-    return np.asarray(before + (position - left) * (after - before))
-
-
-def _cumulative(at: Array) -> Array:
-    """Antiderivative of the density, not normalised."""
-    return np.tanh(STEEPNESS * (at - CENTRE))
+    return Representation(f"HW{WAVELENGTHS_PER_PATH * paths}", "hero wavelengths", encode, xyz)

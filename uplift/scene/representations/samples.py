@@ -1,8 +1,9 @@
-"""Representations by samples that are multiplied one by one, and the dense spectra that all representations encode."""
+"""Spectral representations as rows of functions, those by samples, and the dense spectra that all of them encode."""
 
 import functools
-from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
+from operator import mul
 from typing import Any
 
 import numpy as np
@@ -45,71 +46,63 @@ def interpolation_matrix(points: Array) -> Array:
     return np.asarray(np.maximum(1 - np.abs(wavelengths()[:, None] - points), 0))
 
 
+def count_numbers(code: Any) -> Array:
+    """Numbers stored per spectrum (n,) by a code that is a single array."""
+    return np.full(len(code), float(code[0].size))
+
+
 @dataclass(frozen=True, eq=False)
-class Representation(ABC):
+class Representation:
     """Encoding of spectra that a renderer can multiply (Kment 2011, section 5.4).
 
-    A code holds n spectra; its type belongs to the representation. The product of a light and surfaces is again a
-    light, which may meet the next surface. Row r of a light meets row r of the surfaces. ``name`` is the abbreviation
-    of the thesis with the number of coefficients, such as ``PS16``, and ``family`` the method without its size.
+    ``name`` is the abbreviation of the thesis with the number of coefficients, such as ``PS16``, and ``family`` the
+    method without its size. A code holds n spectra; its type belongs to the representation:
+
+    - ``encode_light`` makes a code of spectral powers (n, 401), ``encode_surface`` of reflectances, by default alike;
+    - ``multiply`` makes the code of the light that surfaces reflect, which may meet the next surface. Row r of a light
+      meets row r of the surfaces;
+    - ``xyz`` is XYZ (n, 3) of lights, in the units of `xyz_weights`;
+    - ``storage`` are the numbers stored per spectrum (n,);
+    - ``decode_light`` and ``decode_surface`` are the spectra (n, 401) that a code stands for, if it determines them.
     """
 
     name: str
     family: str
+    encode_light: Callable[[Array], Any]
+    xyz: Callable[[Any], Array]
+    multiply: Callable[[Any, Any], Any] = mul
+    surface_encoder: Callable[[Array], Any] | None = None
+    storage: Callable[[Any], Array] = count_numbers
+    decode_light: Callable[[Any], Array] | None = None
+    decode_surface: Callable[[Any], Array] | None = None
 
-    @abstractmethod
-    def encode_light(self, power: Array) -> Any:
-        """Encode spectral powers (n, 401)."""
+    @property
+    def encode_surface(self) -> Callable[[Array], Any]:
+        """Function that encodes reflectances (n, 401)."""
+        return self.surface_encoder or self.encode_light
 
-    def encode_surface(self, reflectance: Array) -> Any:
-        """Encode reflectances (n, 401), by default as lights."""
-        return self.encode_light(reflectance)
-
-    @abstractmethod
-    def multiply(self, light: Any, surface: Any) -> Any:
-        """Code of the light that surfaces reflect."""
-
-    @abstractmethod
-    def xyz(self, light: Any) -> Array:
-        """XYZ (n, 3) of lights, in the units of `xyz_weights`."""
-
-    def light_spectra(self, code: Any) -> Array:
-        """Return the spectral powers (n, 401) that a code of lights stands for. Raises `OptionError` without any."""
-        problem = f"{self.name} does not determine a spectrum"
-        raise OptionError(problem, hint="use PS, PF, RS, TM or SG")
-
-    def surface_spectra(self, code: Any) -> Array:
-        """Return the reflectances (n, 401) that a code of surfaces stands for. Raises `OptionError` without any."""
-        return self.light_spectra(code)
-
-    def storage(self, code: Any) -> Array:
-        """Numbers stored per spectrum (n,), by default those of a code that is a single array."""
-        return np.full(len(code), float(code[0].size))
+    def stored(self, powers: Array, reflectances: Array) -> tuple[Array, Array]:
+        """Return lights and surfaces (n, 401) as their codes stand for them. Raises `OptionError` if they do not."""
+        if self.decode_light is None:
+            problem = f"{self.name} does not determine a spectrum"
+            raise OptionError(problem, hint="use PS, PF, RS, TM or SG")
+        surface = self.encode_surface(reflectances)
+        return self.decode_light(self.encode_light(powers)), (self.decode_surface or self.decode_light)(surface)
 
 
-@dataclass(frozen=True, eq=False)
-class SampleRepresentation(Representation):
-    """Linear encoding, the same for lights and surfaces.
+def linear(name: str, family: str, encoder: Array, weights: Array, decoder: Array | None = None) -> Representation:
+    """Representation whose codes are linear in the spectra, the same for lights and surfaces.
 
     ``spectra @ encoder`` (401, n) is the code, and ``code @ weights`` (n, 3) the XYZ of a light. ``code @ decoder``
     (n, 401) is a spectrum with this XYZ, if a sample stands for one.
     """
-
-    encoder: Array
-    weights: Array
-    decoder: Array | None = None
-
-    def encode_light(self, power: Array) -> Array:
-        return np.asarray(blocked_matmul(power, self.encoder))
-
-    def multiply(self, light: Array, surface: Array) -> Array:
-        return light * surface
-
-    def xyz(self, light: Array) -> Array:
-        return light @ self.weights
-
-    def light_spectra(self, code: Array) -> Array:
-        return super().light_spectra(code) if self.decoder is None else code @ self.decoder
+    return Representation(
+        name,
+        family,
+        lambda spectra: blocked_matmul(spectra, encoder),
+        lambda light: light @ weights,
+        decode_light=None if decoder is None else lambda code: code @ decoder,
+    )
 
 
 def sample_points(count: int) -> Array:
@@ -117,7 +110,7 @@ def sample_points(count: int) -> Array:
     return np.linspace(observer.START, observer.END, count)
 
 
-def point_samples(count: int) -> SampleRepresentation:
+def point_samples(count: int) -> Representation:
     """Point sampling (PS): values at evenly spaced wavelengths, both ends included (Kment 2011, sections 5.4, 6.1).
 
     A choice that the text leaves open: XYZ is the integral of the linear interpolant, not a sum over equally sampled
@@ -126,11 +119,10 @@ def point_samples(count: int) -> SampleRepresentation:
     """
     points = sample_points(count)
     hats = hat_functions(points)
-    weights = hats @ xyz_weights()
-    return SampleRepresentation(f"PS{count}", "point sampling", interpolation_matrix(points), weights, hats)
+    return linear(f"PS{count}", "point sampling", interpolation_matrix(points), hats @ xyz_weights(), hats)
 
 
-def riemann_sums(count: int) -> SampleRepresentation:
+def riemann_sums(count: int) -> Representation:
     """Riemann sums (RS): the mean of a spectrum over each of ``count`` cells (Kment 2011, section 5.4, eq. 5.3).
 
     Choices that the text leaves open: sums are divided by the width of their cell, so that products are sums of the
@@ -138,7 +130,7 @@ def riemann_sums(count: int) -> SampleRepresentation:
     """
     overlaps = cell_overlaps(count)
     means = overlaps / overlaps.sum(axis=1, keepdims=True)
-    return SampleRepresentation(f"RS{count}", "Riemann sums", means.T, overlaps @ xyz_weights(), overlaps)
+    return linear(f"RS{count}", "Riemann sums", means.T, overlaps @ xyz_weights(), overlaps)
 
 
 def cell_overlaps(count: int) -> Array:
@@ -153,7 +145,7 @@ def cell_overlaps(count: int) -> Array:
     return np.asarray(np.maximum(overlap, 0) / STEP)
 
 
-def gauss_samples(count: int) -> SampleRepresentation:
+def gauss_samples(count: int) -> Representation:
     """Samples at the nodes of Gaussian quadrature (GQ) with the weight function x̄ + ȳ + z̄.
 
     With n nodes the rule is exact for polynomials of degree 2n − 1 under that weight function. Each colour-matching
@@ -167,5 +159,4 @@ def gauss_samples(count: int) -> SampleRepresentation:
             hint="choose another number of nodes",
         )
     weights = [interpolatory_rule(rule.nodes, wavelengths(), masses).weights for masses in xyz_weights().T]
-    encoder = interpolation_matrix(rule.nodes)
-    return SampleRepresentation(f"GQ{count}", "Gaussian quadrature", encoder, np.stack(weights, axis=1))
+    return linear(f"GQ{count}", "Gaussian quadrature", interpolation_matrix(rule.nodes), np.stack(weights, axis=1))
