@@ -11,9 +11,9 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.lights import RELIGHT_LIGHTS
 from uplift.common.arrays import Array, Indices
 from uplift.fit.families import families_with
+from uplift.io.scene_colours import ColourSet, PixelSample
 from uplift.report.measures import delta_e_under
-from uplift.scene.advice import ColourAreas, advise, uncertainty
-from uplift.scene.plan.context import ColourSet
+from uplift.scene.advice import advise, uncertainty
 
 SETS = ("rawtoaces", "cie2017")
 SCENES, KNOWN, MATERIALS = 6, 10, 60
@@ -42,7 +42,7 @@ def run_scene(entries: Atlas, measured: Array, seed: int) -> list[dict[str, Any]
         return float(areas @ delta_e_under(lights, cube.reflectance(rgb), measured[hidden]).mean(axis=1))
 
     first = build(np.zeros(0, dtype=int))
-    expected = uncertainty(first, ColourAreas(rgb, areas), lights)
+    expected = uncertainty(first, PixelSample(rgb, areas), lights)
     chosen, _ = advise(expected, COUNTS[-1])
     choices = [(ADVICE, np.array([each.colour for each in chosen]))]
     for _ in range(DRAWS):

@@ -15,9 +15,9 @@ from tests.helpers import raises
 from uplift.colorimetry.observer import light
 from uplift.common.errors import OptionError
 from uplift.fit.kriging import Kernel, posterior
-from uplift.io.scene_colours import Images
+from uplift.io.scene_colours import Images, PixelSample
 from uplift.samples import sample_path
-from uplift.scene.advice import ColourAreas, advise, colour_areas, uncertainty
+from uplift.scene.advice import advise, colour_areas, uncertainty
 
 LIGHTS = ("A", "FL11")
 
@@ -30,7 +30,7 @@ def cube():
 def scene(cube, seed, count=12):
     rng = np.random.default_rng(seed)
     areas = rng.exponential(size=count)
-    return uncertainty(cube, ColourAreas(rng.random((count, 3)), areas / areas.sum()), [light(each) for each in LIGHTS])
+    return uncertainty(cube, PixelSample(rng.random((count, 3)), areas / areas.sum()), [light(each) for each in LIGHTS])
 
 
 @settings(max_examples=15)
@@ -63,7 +63,7 @@ def test_posterior_is_that_of_the_joint_covariance(cube):
 
 def test_errors_are_those_of_the_cube_until_something_is_measured(cube):
     rgb = np.random.default_rng(0).random((20, 3))
-    before = uncertainty(cube, ColourAreas(rgb, np.full(20, 0.05)), [light(each) for each in LIGHTS])
+    before = uncertainty(cube, PixelSample(rgb, np.full(20, 0.05)), [light(each) for each in LIGHTS])
     for column, name in enumerate(LIGHTS):
         # Nodes store those under one light, which are interpolated.
         expected = cube.standard_error(rgb, name)
@@ -76,11 +76,11 @@ def test_areas_are_those_of_the_pixels(cube, tmp_path):
     pixels[:, :2] = (200, 60, 20)
     matplotlib.image.imsave(path, pixels)
     found = colour_areas(Images((path,)), cube.data.sensor)
-    np.testing.assert_allclose(found.area, [0.75, 0.25])
+    np.testing.assert_allclose(found.share, [0.75, 0.25])
     np.testing.assert_allclose(cube.encode(found.rgb[1]), (200, 60, 20), atol=1e-6)
     noise = tmp_path / "noise.png"
     matplotlib.image.imsave(noise, np.random.default_rng(0).integers(0, 256, (128, 128, 3), dtype=np.uint8))
-    assert len(colour_areas(Images((noise,)), cube.data.sensor).area) == 512
+    assert len(colour_areas(Images((noise,)), cube.data.sensor).share) == 512
     chosen, after = advise(uncertainty(cube, found, [light("A")]), 100)
     assert len(chosen) <= 2
     assert after.mean < chosen[0].mean_after + 1e-12

@@ -10,7 +10,7 @@ from numpy.polynomial import legendre
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
-from uplift.scene.quadrature import QuadratureRule, UndefinedRule, gauss_rule, interpolatory_rule
+from uplift.scene.quadrature import QuadratureRule, gauss_rule, interpolatory_rule
 
 POINTS = np.arange(380.0, 771.0)
 BELL = np.exp(-(((POINTS - 560) / 40) ** 2))
@@ -67,7 +67,7 @@ def _exact_nodes(points, masses, order):
 def test_nodes_agree_with_elimination_in_fractions(masses, order):
     points = list(range(len(masses)))
     result = gauss_rule(points, masses, order)
-    if isinstance(result, UndefinedRule):
+    if isinstance(result, str):
         return
     expected = np.sort_complex(_exact_nodes(points, masses, order))
     gap = np.diff(result.nodes).min() if order > 1 else 1.0
@@ -86,9 +86,8 @@ def test_nodes_agree_with_elimination_in_fractions(masses, order):
 )
 def test_undefined_order_states_its_reason(masses, order, reason):
     result = gauss_rule(range(len(masses)), masses, order)
-    assert isinstance(result, UndefinedRule)
-    assert result.order == order
-    assert reason in result.reason
+    assert isinstance(result, str)
+    assert reason in result
 
 
 @pytest.mark.parametrize("nodes", [[560.0], [631.4, 490.9, 557.7], np.linspace(400, 700, 12)])

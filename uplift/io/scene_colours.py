@@ -159,7 +159,7 @@ def sample_colours(
         changed = Counts()
         for rgb, found in images.blocks(path, sensor, step):
             changed += found
-            bins[_bin_index(sensor, rgb)] = rgb
+            bins[bin_index(sensor, rgb)] = rgb
             lot = rng.random(len(rgb))
             samples[0].append(rgb[(lot < first) | (last > 1)])
             samples[1].append(rgb[(lot >= first) & (lot < last) | (last > 1)])
@@ -180,7 +180,8 @@ def _pixel_count(path: Path) -> tuple[int, int]:
     return sum(count for count, _ in parts), sum(3 * count * TYPE_BYTES.get(part.types[0], 4) for count, part in parts)
 
 
-def _bin_index(sensor: Sensor, rgb: Array) -> Any:
+def bin_index(sensor: Sensor, rgb: Array) -> Any:
+    """Return the numbers (n,) of the bins of linear RGB (n, 3), of `BINS` along each channel of encoded RGB."""
     codes = np.interp(rgb, sensor.decoding, np.linspace(0, BINS, 256))
     red, green, blue = np.minimum(codes, BINS - 1).astype(int).T
     return (red * BINS + green) * BINS + blue

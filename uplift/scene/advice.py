@@ -8,7 +8,6 @@ each of the largest gain.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -19,14 +18,14 @@ from uplift.common.arrays import Array, StrPath, Values, blocks
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
 from uplift.fit.kriging import DEFAULT, Kernel, posterior
-from uplift.io.scene_colours import Images
+from uplift.io.scene_colours import BINS, Images, PixelSample, bin_index
 from uplift.lookup import Cube
 from uplift.lookup.light_errors import light_errors
 from uplift.models.arithmetic import distances
 from uplift.viz.figure import ACCENT, colour_map, figure_text, new_figure, write_figure
 
-BINS = (64, 32, 16, 8)
-"""Bins along each channel of encoded RGB; the first that leave few colours are taken."""
+STEPS = (1, 2, 4, 8)
+"""Bins along each channel that are joined; the first that leave few colours are taken."""
 MAX_COLOURS = 2048
 BLOCK_ROWS = 256
 """Swatches whose gains are computed at a time."""
@@ -39,32 +38,22 @@ TINY = 1e-9
 """Variance, relative to that of an unknown material, below which nothing is left to measure."""
 
 
-@dataclass(frozen=True, eq=False)
-class ColourAreas:
-    """Linear RGB (n, 3) of a scene, and the share (n,) of its area that each has; the shares sum to 1."""
-
-    rgb: Array
-    area: Array
-
-
-def colour_areas(images: Images, sensor: Sensor) -> ColourAreas:
+def colour_areas(images: Images, sensor: Sensor) -> PixelSample:
     """Average the pixels of images in bins of encoded RGB. Raises `TextureError`, `ColourError` and `OptionError`."""
-    finest, size = BINS[0], BINS[0] ** 3
-    sums = np.zeros((size, 4))
+    sums = np.zeros((4, BINS**3))
     for path in images.paths:
         for rgb in images.colours(path, sensor):
-            codes = np.minimum(np.interp(rgb, sensor.decoding, np.linspace(0, finest, 256)), finest - 1)
-            index = codes.astype(int) @ (finest**2, finest, 1)
-            for column, values in enumerate((*rgb.T, None)):
-                sums[:, column] += np.bincount(index, values, size)
+            index = bin_index(sensor, rgb)
+            sums += [np.bincount(index, values, BINS**3) for values in (*rgb.T, None)]
     if not sums.any():
         raise OptionError("images must have pixels, got none", hint="name an image with pixels")
-    for bins in BINS:
-        totals = sums.reshape((bins, finest // bins) * 3 + (4,)).sum(axis=(1, 3, 5)).reshape(-1, 4)
-        found = totals[totals[:, 3] > 0]
-        if len(found) <= MAX_COLOURS:
+    for step in STEPS:
+        size = BINS // step
+        totals = sums.reshape(4, size, step, size, step, size, step).sum(axis=(2, 4, 6)).reshape(4, -1)
+        found = totals[:, totals[3] > 0]
+        if found.shape[1] <= MAX_COLOURS:
             break
-    return ColourAreas(np.clip(found[:, :3] / found[:, 3:], 0, 1), found[:, 3] / found[:, 3].sum())
+    return PixelSample(np.clip(found[:3] / found[3], 0, 1).T, found[3] / found[3].sum())
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +76,7 @@ class Uncertainty:
     @property
     def mean(self) -> float:
         """Mean error over the area and the lights."""
-        return float(self._means(np.diag(self.covariance)))
+        return float(self.errors.mean(axis=-1) @ self.area)
 
     def by_light(self) -> list[dict[str, float]]:
         """Return the mean error under each light, and the error that 95 % of the area stays within."""
@@ -102,7 +91,7 @@ class Uncertainty:
         for rows in blocks(len(found), BLOCK_ROWS):
             # c(x) − c(x, s)² / c(s)
             known = self.covariance[rows] ** 2 / np.maximum(variance[rows], TINY)[:, None]
-            found[rows] = self._means(variance - known)
+            found[rows] = self._errors(variance - known).mean(axis=-1) @ self.area
         return np.maximum(self.mean - found, 0)
 
     def measured(self, colour: int) -> "Uncertainty":
@@ -113,12 +102,9 @@ class Uncertainty:
     def _errors(self, variance: Array) -> Array:
         return np.asarray(np.sqrt(np.maximum(variance, 0)[..., None] * self.unknown + self.rest))
 
-    def _means(self, variance: Array) -> Any:
-        return self._errors(variance).mean(axis=-1) @ self.area
-
 
 @single_threaded_blas()
-def uncertainty(cube: Cube, colours: ColourAreas, lights: Sequence[Light]) -> Uncertainty:
+def uncertainty(cube: Cube, colours: PixelSample, lights: Sequence[Light]) -> Uncertainty:
     """Return the errors of a cube at the colours of a scene. Raises `OptionError` if it has no left-out entries."""
     data, prior = cube.data, cube.data.provenance.get("prior", {})
     kernel = Kernel(prior.get("length", DEFAULT.length), prior.get("noise", DEFAULT.noise))
@@ -131,7 +117,7 @@ def uncertainty(cube: Cube, colours: ColourAreas, lights: Sequence[Light]) -> Un
     covariance = posterior(kernel, data.entry_lab, lab)
     variance = np.maximum(np.diag(covariance), TINY)
     rest = np.minimum(rest, squares)
-    return Uncertainty(colours.area, covariance, (squares - rest) / variance[:, None], rest)
+    return Uncertainty(colours.share, covariance, (squares - rest) / variance[:, None], rest)
 
 
 @dataclass(frozen=True)
@@ -185,31 +171,29 @@ def plot_advice(
     largest = max(float(np.quantile(each, 0.99)) for each in maps.values())
     heights = [3.5 * rgb.shape[0] / rgb.shape[1] + 0.3 for rgb in pictures.values()]
     figure = new_figure(7.6, sum(heights) + 1.1)
-    *rows, chips = figure.subfigures(len(pictures) + 1, 1, height_ratios=[*heights, 1.1], squeeze=False)[:, 0]
-    panels = {}
+    *rows, last = figure.subfigures(len(pictures) + 1, 1, height_ratios=[*heights, 1.1], squeeze=False)[:, 0]
+    chips, panels = last.subplots(1, max(len(swatches), MIN_CHIPS)), {}
     for row, (name, rgb) in zip(rows, pictures.items(), strict=True):
-        image, errors = row.subplots(1, 2)
-        image.imshow(to_display_codes(rgb, sensor) / 255)
-        image.set_title(figure_text(Path(name).name), fontsize=9, loc="left")
+        panels[name], errors = row.subplots(1, 2)
+        panels[name].imshow(to_display_codes(rgb, sensor) / 255)
+        panels[name].set_title(figure_text(Path(name).name), fontsize=9, loc="left")
         shown = errors.imshow(maps[name].reshape(rgb.shape[:2]), cmap=colour_map(), vmin=0, vmax=largest)
         errors.set_title(f"expected ΔE00, {', '.join(light.name for light in lights)}", fontsize=9, loc="left")
         row.colorbar(shown, ax=errors, format="%.1f")
-        image.set(xticks=(), yticks=())
         errors.set(xticks=(), yticks=())
-        panels[name] = image
-    labs = {name: rgb_to_lab(sensor, rgb) for name, rgb in flat.items()}
-    axes = chips.subplots(1, max(len(swatches), MIN_CHIPS))
     box = {"boxstyle": "circle", "facecolor": "white", "edgecolor": ACCENT}
+    labs = {name: rgb_to_lab(sensor, rgb) for name, rgb in flat.items()}
     for number, (text, rgb) in enumerate(swatches):
         away = {name: distances(lab, rgb_to_lab(sensor, rgb[None]))[:, 0] for name, lab in labs.items()}
         name = min(away, key=lambda name: away[name].min())
         like = np.flatnonzero(away[name] <= away[name].min() + ALIKE)
         y, x = divmod(int(like[len(like) // 2]), pictures[name].shape[1])
         panels[name].text(x, y, str(number + 1), ha="center", va="center", fontsize=7, bbox=box)
-        axes[number].imshow(to_display_codes(rgb[None, None], sensor) / 255)
-        axes[number].set_title(f"{number + 1}", fontsize=8, pad=2)
-        axes[number].set_xlabel(text, fontsize=7)
-    for each in axes:
+        chips[number].imshow(to_display_codes(rgb[None, None], sensor) / 255)
+        chips[number].set_title(f"{number + 1}", fontsize=8, pad=2)
+        chips[number].set_xlabel(text, fontsize=7)
+    for each in (*chips, *panels.values()):
         each.set(xticks=(), yticks=())
+    for each in chips:
         each.spines[:].set_visible(False)
     write_figure(figure, path, force=force)

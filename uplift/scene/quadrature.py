@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
-__all__ = ["QuadratureRule", "UndefinedRule", "gauss_rule", "interpolatory_rule"]
+__all__ = ["QuadratureRule", "gauss_rule", "interpolatory_rule"]
 
 SINGULAR_TOLERANCE = 1e-11
 """Singular values below this fraction of the largest count as zero."""
@@ -38,20 +38,12 @@ class QuadratureRule:
         return len(self.nodes)
 
 
-@dataclass(frozen=True, eq=False)
-class UndefinedRule:
-    """An order, or number of nodes, for which the measure has no rule, and an explanation for a message."""
-
-    order: int
-    reason: str
-
-
-def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRule | UndefinedRule:
+def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRule | str:
     """Compute the rule of ``order`` nodes that is exact for polynomials of degree below ``2 * order``.
 
     Points (N,) ascend. Masses (N,) of one sign have a rule of every order up to their number. Masses of both signs have
-    no rule of an order without orthogonal polynomial, or whose nodes are complex, coincide, or lie outside the points.
-    Raises `OptionError`.
+    no rule of an order without orthogonal polynomial, or whose nodes are complex, coincide, or lie outside the points:
+    the reason is returned as text. Raises `OptionError`.
 
     >>> gauss_rule([-1, 0, 1], [1, 1, 1], 2).nodes.round(4)
     array([-0.8165,  0.8165])
@@ -67,7 +59,7 @@ def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRu
     signed = basis * np.sign(masses)[:, None]
     gram = basis.T @ signed
     if np.linalg.svd(gram, compute_uv=False).min() <= SINGULAR_TOLERANCE:
-        return UndefinedRule(order, "no polynomial of that order is orthogonal")
+        return "no polynomial of that order is orthogonal"
     return _solve(gram, basis.T @ (x[:, None] * signed), np.abs(masses).sum(), points)
 
 
@@ -86,21 +78,19 @@ def interpolatory_rule(nodes: ArrayLike, points: ArrayLike, masses: ArrayLike) -
     return QuadratureRule(nodes, np.asarray(np.linalg.solve(values.T, moments), dtype=float))
 
 
-def _solve(gram: Array, position: Array, total: float, points: Array) -> QuadratureRule | UndefinedRule:
+def _solve(gram: Array, position: Array, total: float, points: Array) -> QuadratureRule | str:
     """Nodes and weights from the inner products of the basis, without and with a factor x, under the measure."""
     values, vectors = scipy.linalg.eig(position, gram)
-    order = len(gram)
     if np.abs(values.imag).max() > NODE_TOLERANCE:
-        return UndefinedRule(order, "its nodes are not real")
+        return "its nodes are not real"
     ascending = np.argsort(values.real)
     unit, vectors = values.real[ascending], vectors.real[:, ascending]
-    if order > 1 and np.diff(unit).min() <= NODE_TOLERANCE:
-        return UndefinedRule(order, "two of its nodes coincide")
+    if len(unit) > 1 and np.diff(unit).min() <= NODE_TOLERANCE:
+        return "two of its nodes coincide"
     nodes = _from_unit(unit, points)
     outside = nodes[np.abs(unit) > 1 + NODE_TOLERANCE]
     if len(outside):
-        reason = f"a node lies at {outside[0]:.1f}, outside {points[0]:g} to {points[-1]:g}"
-        return UndefinedRule(order, reason)
+        return f"a node lies at {outside[0]:.1f}, outside {points[0]:g} to {points[-1]:g}"
     # An eigenvector vanishes at all nodes but its own; the first polynomial of the basis is the constant 1/√total.
     products = gram @ vectors
     return QuadratureRule(nodes, total * products[0] ** 2 / (vectors * products).sum(axis=0))

@@ -9,21 +9,20 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.errors import TextureError, UpliftWarning
 from uplift.io.scene_colours import Images, sample_colours
-from uplift.scene.plan.evaluation import WORST_DELTA_E, ColourGroup, EvaluationSet
+from uplift.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet
 from uplift.scene.plan.renderings import fit_matrices
 
 LIGHTS = ("D65", "FL11")
+ROWS = {"textures": slice(0, 40), "materials": slice(40, 47)}
 
 
 @pytest.fixture(scope="module")
 def tests():
     rng = np.random.default_rng(0)
     weights = rng.random(40)
-    groups = (
-        ColourGroup("textures", rng.random((40, 3)), rng.random((40, 81)), weights / weights.sum()),
-        ColourGroup("materials", rng.random((7, 3)), rng.random((7, 81)), np.full(7, 1 / 7)),
-    )
-    return EvaluationSet(groups, tuple(observer.light(name) for name in LIGHTS), 0.8)
+    weights = np.concatenate([weights / weights.sum(), np.full(7, 1 / 7)])
+    lights = tuple(observer.light(name) for name in LIGHTS)
+    return EvaluationSet(rng.random((47, 3)), rng.random((47, 81)), weights, ROWS, lights, 0.8)
 
 
 def weighted_quantile(values, weights, share):
@@ -38,23 +37,22 @@ def weighted_quantile(values, weights, share):
 
 def test_errors_agree_with_a_slow_oracle(tests):
     spectra = np.clip(tests.reflectances + np.random.default_rng(1).normal(0, 0.02, (47, 81)), 0, 1)
-    error = tests.error(spectra)
-    rows = {"textures": slice(0, 40), "materials": slice(40, 47)}
+    error = tests.error(tests.xyz(spectra))
     assert len(error.parts) == 4
     for part in error.parts:
-        group = next(each for each in tests.groups if each.name == part.group)
-        delta_e = delta_e_spectra(observer.light(part.light), group.reflectances, spectra[rows[part.group]])
-        assert part.quantile == pytest.approx(weighted_quantile(delta_e, group.weights, 0.8), rel=1e-9)
-        assert part.mean == pytest.approx(np.average(delta_e, weights=group.weights), rel=1e-9)
+        rows = ROWS[part.group]
+        delta_e = delta_e_spectra(observer.light(part.light), tests.reflectances[rows], spectra[rows])
+        assert part.quantile == pytest.approx(weighted_quantile(delta_e, tests.weights[rows], 0.8), rel=1e-9)
+        assert part.mean == pytest.approx(np.average(delta_e, weights=tests.weights[rows]), rel=1e-9)
         assert part.largest == pytest.approx(delta_e.max(), rel=1e-9)
     assert error.quantile == max(part.quantile for part in error.parts)
 
 
 def test_reference_spectra_have_no_error_and_nan_has_the_largest(tests):
-    assert tests.error(tests.reflectances).quantile == pytest.approx(0, abs=1e-9)
+    assert tests.error(tests.xyz(tests.reflectances)).quantile == pytest.approx(0, abs=1e-9)
     broken = tests.reflectances.copy()
     broken[3] = np.nan
-    error = tests.error(broken)
+    error = tests.error(tests.xyz(broken))
     assert {part.largest for part in error.parts if part.group == "textures"} == {WORST_DELTA_E}
 
 
@@ -126,10 +124,10 @@ def test_images_without_pixels_are_refused(image, sensor, monkeypatch):
 def test_the_best_matrices_map_rgb_under_the_light_of_the_space_exactly(sensor):
     spectra = np.random.default_rng(4).random((30, 81)) ** 2
     rgb = spectra @ sensor.matrix.T
-    group = ColourGroup("textures", rgb, spectra, np.full(30, 1 / 30))
-    tests = EvaluationSet((group,), tuple(observer.light(name) for name in ("D65", "A")), 0.9)
+    lights = tuple(observer.light(name) for name in ("D65", "A"))
+    tests = EvaluationSet(rgb, spectra, np.full(30, 1 / 30), {"textures": slice(0, 30)}, lights, 0.9)
     matrices = fit_matrices(tests)
     np.testing.assert_allclose(matrices[0], np.linalg.inv(sensor.xyz_to_rgb), atol=1e-9)
-    fitted = tests.error_of_xyz(rgb @ matrices.mT)
-    plain = tests.error_of_xyz(rgb @ np.stack([matrices[0], matrices[0]]).mT)
+    fitted = tests.error(rgb @ matrices.mT)
+    plain = tests.error(rgb @ np.stack([matrices[0], matrices[0]]).mT)
     assert fitted.quantile < plain.quantile

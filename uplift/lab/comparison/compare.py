@@ -23,7 +23,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError, UpliftError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.timing import Spread, environment, time_laps
-from uplift.scene.plan.search import dominated
+from uplift.scene.plan.search import front
 from uplift.scene.representations import filters, samples
 from uplift.scene.representations.filters import Filter
 from uplift.scene.representations.samples import Representation
@@ -278,7 +278,7 @@ def pareto(comparison: Comparison, lights: str) -> list[RepresentationResult]:
     """Return the results that no other dominates in floats of a surface, floats of a light, and error of 97.5 %."""
     results = comparison.of(lights)
     rows = np.array([(row.floats, row.light_floats, row.statistics.q97_5) for row in results])
-    return [each for row, each in enumerate(results) if not dominated(rows[[row]], np.delete(rows, row, axis=0))[0]]
+    return [results[row] for row in sorted(front(rows))]
 
 
 def records(comparison: Comparison) -> list[dict[str, Any]]:

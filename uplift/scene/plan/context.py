@@ -19,7 +19,7 @@ from uplift.lookup import Cube
 from uplift.models.model import Model
 from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
 from uplift.pipeline.options import Options
-from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ColourGroup, EvaluationSet
+from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, EvaluationSet
 from uplift.scene.plan.scene_file import SceneFile
 
 MODELS: Mapping[str, tuple[int, ...]] = {
@@ -112,12 +112,12 @@ class PlanContext:
         """Test colours, with the spectra of the reference cube or of the measurement, and this cube."""
         rgb = np.concatenate([sample.rgb, self.materials])
         reference = self.cube(rgb, **self.reference_options)
-        spectra = reference.reflectance(sample.rgb)
-        groups = [ColourGroup(TEXTURES, sample.rgb, spectra, sample.share)]
-        if count := len(self.materials):
-            weights = np.full(count, 1 / count)
-            groups.append(ColourGroup(MATERIALS, self.materials, self.reflectances, weights))
-        return EvaluationSet(tuple(groups), self.scene.light_sources(), self.scene.quantile), reference
+        spectra = np.concatenate([reference.reflectance(sample.rgb), self.reflectances])
+        pixels, count = len(sample.rgb), len(self.materials)
+        weights = np.concatenate([sample.share, np.full(count, 1 / max(count, 1))])
+        groups = {TEXTURES: slice(0, pixels)} | ({MATERIALS: slice(pixels, pixels + count)} if count else {})
+        lights = self.scene.light_sources()
+        return EvaluationSet(rgb, spectra, weights, groups, lights, self.scene.quantile), reference
 
 
 def prepare_context(scene: SceneFile, grid: SearchGrid, progress: ProgressCallback) -> PlanContext:

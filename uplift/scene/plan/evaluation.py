@@ -1,35 +1,17 @@
 """Colour errors of candidates on test colours, under the lights of the scene."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from uplift.colorimetry import Light, delta_e_2000, lab
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices
 
 TEXTURES, MATERIALS = "textures", "materials"
 WORST_DELTA_E = 100.0
 """ΔE00 of colours that are not finite: the difference between black and white."""
-
-
-@dataclass(frozen=True, eq=False)
-class ColourGroup:
-    """Test colours whose error is one statistic: linear RGB (n, 3), reference spectra (n, N), weights (n,) of sum 1."""
-
-    name: str
-    rgb: Array
-    reflectances: Array
-    weights: Array
-
-    def subsample(self, count: int) -> "ColourGroup":
-        """At most ``count`` colours, drawn at equal steps of the cumulative weight."""
-        if len(self.rgb) <= count:
-            return self
-        drawn = np.searchsorted(np.cumsum(self.weights), (np.arange(count) + 0.5) / count)
-        rows, repeats = np.unique(np.minimum(drawn, len(self.rgb) - 1), return_counts=True)
-        return ColourGroup(self.name, self.rgb[rows], self.reflectances[rows], repeats / count)
 
 
 @dataclass(frozen=True)
@@ -64,23 +46,16 @@ class ErrorSummary:
 class EvaluationSet:
     """Test colours with their reference spectra, and the lights to compare them under, on the grid of the spectra.
 
-    Arrays of all colours are those of the groups, one below the other. ``quantile`` is the share of the colours whose
-    largest ΔE00 is the error of a group.
+    Linear RGB (n, 3), reference spectra (n, N), and weights (n,) whose sum is 1 in each group, a slice of the rows with
+    one statistic. ``quantile`` is the share of the colours whose largest ΔE00 is the error of a group.
     """
 
-    groups: tuple[ColourGroup, ...]
+    rgb: Array
+    reflectances: Array
+    weights: Array
+    groups: Mapping[str, slice]
     lights: tuple[Light, ...]
     quantile: float
-
-    @cached_property
-    def rgb(self) -> Array:
-        """Linear RGB of all groups, (n, 3)."""
-        return np.concatenate([group.rgb for group in self.groups])
-
-    @cached_property
-    def reflectances(self) -> Array:
-        """Reference spectra of all groups, (n, N)."""
-        return np.concatenate([group.reflectances for group in self.groups])
 
     @cached_property
     def lab(self) -> list[Array]:
@@ -91,23 +66,26 @@ class EvaluationSet:
         """XYZ (K, n, 3) of reflectances (n, N) on the grid of the lights, where white has Y = 1."""
         return np.stack([reflectances @ light.xyz.T for light in self.lights])
 
-    def subsample(self, count: int) -> "EvaluationSet":
-        """At most ``count`` colours of each group."""
-        return replace(self, groups=tuple(group.subsample(count) for group in self.groups))
+    def subsample(self, count: int) -> Indices:
+        """Rows of at most ``count`` colours of each group, drawn at equal steps of the cumulative weight."""
+        found = []
+        for rows in self.groups.values():
+            drawn, size = np.arange(rows.start, rows.stop), rows.stop - rows.start
+            if size > count:
+                steps = np.searchsorted(np.cumsum(self.weights[rows]), (np.arange(count) + 0.5) / count)
+                drawn = drawn[np.unique(np.minimum(steps, size - 1))]
+            found.append(drawn)
+        return np.concatenate(found)
 
-    def error(self, reflectances: Array) -> ErrorSummary:
-        """Errors of reflectances (n, N) on the grid of the lights."""
-        return self.error_of_xyz(self.xyz(reflectances))
-
-    def error_of_xyz(self, xyz: Sequence[Array] | Array) -> ErrorSummary:
+    def error(self, xyz: Sequence[Array] | Array) -> ErrorSummary:
         """Errors of XYZ (n, 3) under each light, where white has Y = 1."""
-        ends = np.cumsum([len(group.rgb) for group in self.groups])[:-1]
         parts = []
         for light, reference, values in zip(self.lights, self.lab, xyz, strict=True):
             difference = delta_e_2000(reference, lab(values, light.white))
             delta_e = np.where(np.isfinite(difference), difference, WORST_DELTA_E)
-            for group, errors in zip(self.groups, np.split(delta_e, ends), strict=True):
-                quantile = np.quantile(errors, self.quantile, weights=group.weights, method="inverted_cdf")
-                mean, largest = float(errors @ group.weights), float(errors.max())
-                parts.append(GroupError(group.name, light.name, mean, float(quantile), largest))
+            for name, rows in self.groups.items():
+                errors, weights = delta_e[rows], self.weights[rows]
+                quantile = np.quantile(errors, self.quantile, weights=weights, method="inverted_cdf")
+                mean, largest = float(errors @ weights), float(errors.max())
+                parts.append(GroupError(name, light.name, mean, float(quantile), largest))
         return ErrorSummary(tuple(parts))

@@ -48,10 +48,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
         "uplift": VERSION,
         "scene": {
             "file": scene.path.name,
-            **{
-                key: getattr(scene, key)
-                for key in ("lights", "tolerance", "quantile", "encoding", "minimise", "limits")
-            },
+            **{key: getattr(scene, key) for key in SCENE_KEYS},
             "textures": _sources(scene.textures, path),
             "atlases": _sources(scene.atlases, path),
         },
@@ -61,15 +58,10 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
         "texture": asdict(candidate.pixel),
         "rendering": _rendering_json(plan),
         "spectra": plan.spectra
-        and [
-            {"rgb": rgb, "reflectance": values}
-            for rgb, values in zip(*(each.tolist() for each in plan.spectra), strict=True)
-        ],
+        and [{"rgb": rgb.tolist(), "reflectance": row.tolist()} for rgb, row in zip(*plan.spectra, strict=True)],
         "error": {
-            **{
-                name: {**asdict(error.worst), "parts": [asdict(part) for part in error.parts]}
-                for name, error in (("predicted", plan.chosen.error), ("confirmed", plan.confirmed))
-            },
+            "predicted": {**asdict(plan.chosen.error.worst), **asdict(plan.chosen.error)},
+            "confirmed": {**asdict(plan.confirmed.worst), **asdict(plan.confirmed)},
             "within": plan.within_tolerance,
             "without_spectra": plan.without_spectra.quantile,
             "expected_of_measurements": plan.expected_error,

@@ -150,7 +150,7 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     chosen, confirmed = _confirm(context, space, finalists)
     candidate = chosen.candidate
     rendering = space.evaluator.renderings.get(candidate.rendering)
-    textures = space.evaluator.tests.groups[0]
+    textures = context.colours.predicting
     spectra = None
     if candidate.pixel.form == INDEX and rendering is not None and context.colours.few is not None:
         colours = context.colours.few
@@ -170,7 +170,7 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         options=options,
         final_build=_build(context, options, sparse=candidate.sparse) if options else None,
         spectra=spectra,
-        expected_error=_expected_error(space.evaluator.reference, scene, textures.rgb, textures.weights),
+        expected_error=_expected_error(space.evaluator.reference, scene, textures.rgb, textures.share),
     )
 
 
@@ -245,12 +245,7 @@ def _build(context: PlanContext, options: Mapping[str, Any], *, sparse: bool) ->
     begin = time.process_time()
     cube = build(context.atlas, scene=scene, **options)
     seconds = time.process_time() - begin
-    return FinalBuild(cube, file_size(cube), seconds)
-
-
-def file_size(cube: Cube) -> int:
-    """Bytes of the file of a cube."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.uplift"
         cube.save(path)
-        return path.stat().st_size
+        return FinalBuild(cube, path.stat().st_size, seconds)

@@ -14,7 +14,7 @@ from uplift.common.errors import OptionError
 from uplift.common.progress import Progress
 from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.evaluation import ErrorSummary, EvaluationSet
-from uplift.scene.plan.search import dominated
+from uplift.scene.plan.search import front
 from uplift.scene.representations import Representation, all_representations, samples
 from uplift.scene.wavelengths import Sampling, choose, make_setup
 from uplift.scene.wavelengths.sampling import RenderSetup, interp_curves
@@ -57,7 +57,7 @@ def renderings(
     ``spectra`` maps wavelengths (W,) in nm to the reflectances (n, W) of the reference.
     """
     setup = make_setup(
-        tests.subsample(FEW).reflectances,
+        tests.reflectances[tests.subsample(FEW)],
         [light.name for light in tests.lights],
         wavelengths=context.sensor.wavelengths,
         observer_name=context.sensor.observer,
@@ -75,11 +75,11 @@ def renderings(
         others = (each for each in _others(context, tests, setup) if each.samples < found[-1].samples)
         found += [_measured(each, tests, spectra) for each in others]
     rows = np.array([(each.samples, each.operations, each.surface, max(each.error.quantile, floor)) for each in found])
-    return [found[row] for row in range(len(found)) if not dominated(rows[[row]], np.delete(rows, row, axis=0))[0]]
+    return [found[row] for row in sorted(front(rows))]
 
 
 def _measured(rendering: Rendering, tests: EvaluationSet, spectra: Callable[[Array], Array]) -> Rendering:
-    return replace(rendering, error=tests.error_of_xyz(rendering.xyz(spectra(rendering.wavelengths))))
+    return replace(rendering, error=tests.error(rendering.xyz(spectra(rendering.wavelengths))))
 
 
 def _of_sampling(name: str, sampling: Sampling) -> Rendering:
@@ -128,7 +128,7 @@ def _representation_xyz(
 
 def fit_matrices(tests: EvaluationSet) -> Array:
     """Matrices (K, 3, 3) from linear RGB to XYZ under each light: least squares of small differences in ΔE00."""
-    weight = np.sqrt(np.concatenate([group.weights for group in tests.groups]))[:, None, None]
+    weight = np.sqrt(tests.weights)[:, None, None]
     found = []
     for light, reference, xyz in zip(tests.lights, tests.lab, tests.xyz(tests.reflectances), strict=True):
         # ΔE00 ≈ |F (M r − x)|

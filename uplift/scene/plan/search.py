@@ -35,23 +35,28 @@ def explore(estimates: Iterable[Estimate], measure: Measure, floor: float) -> li
     groups: dict[CubeChoice | None, list[Estimate]] = defaultdict(list)
     for estimate in estimates:
         groups[estimate.candidate.cube].append(estimate)
-    measured: list[Measured] = []
-    front = np.empty((0, 4))
+    measured, best = list[Measured](), np.empty((0, 4))
     for cube in sorted(groups, key=lambda cube: min(each.cost.memory for each in groups[cube])):
         rows = np.array([(*each.cost, max(each.bound, floor)) for each in groups[cube]])
-        promising = [groups[cube][row] for row in np.flatnonzero(~dominated(rows, front))]
+        promising = [groups[cube][row] for row in np.flatnonzero(~dominated(rows, best))]
         if promising:
             measured += measure(cube, promising)
-            front = positions(pareto_front(measured), floor)
+            best = positions(pareto_front(measured), floor)
     return measured
 
 
 def dominated(rows: Array, by: Array) -> Mask:
-    """Rows (m, 4) of costs and error for which a row of ``by`` (f, 4) is nowhere larger."""
-    found = np.zeros(len(rows), dtype=bool)
-    for row in by:
-        found |= (row <= rows).all(axis=1)
-    return found
+    """Rows (m, k) for which a row of ``by`` (f, k) is nowhere larger."""
+    return np.asarray((by[:, None] <= rows).all(axis=2).any(axis=0))
+
+
+def front(rows: Array) -> list[int]:
+    """Numbers of the rows (m, k) that no other dominates, smallest rows first; of equal rows the first."""
+    kept: list[int] = []
+    for row in np.lexsort(rows.T[::-1]).tolist():  # what dominates a row comes before it
+        if not dominated(rows[[row]], rows[kept])[0]:
+            kept.append(row)
+    return kept
 
 
 def positions(measured: Sequence[Measured], floor: float = 0.0) -> Array:
@@ -59,16 +64,9 @@ def positions(measured: Sequence[Measured], floor: float = 0.0) -> Array:
     return np.array([(*each.cost, max(each.error.quantile, floor)) for each in measured]).reshape(-1, 4)
 
 
-def pareto_front(measured: Sequence[Measured], axes: Sequence[int] = (0, 1, 2, 3)) -> list[Measured]:
-    """Candidates that no other dominates in these columns of `positions`, by ascending error; one of equal ones."""
-    rows = positions(measured)[:, list(axes)]
-    kept = np.empty((0, len(axes)))
-    front = []
-    for row in np.lexsort(rows.T[::-1]):  # what dominates a row comes before it
-        if not (kept <= rows[row]).all(axis=1).any():
-            kept = np.concatenate([kept, rows[[row]]])
-            front.append(measured[row])
-    return sorted(front, key=lambda each: each.error.quantile)
+def pareto_front(measured: Sequence[Measured]) -> list[Measured]:
+    """Candidates that no other dominates in cost and error, by ascending error; one of equal ones."""
+    return sorted((measured[row] for row in front(positions(measured))), key=lambda each: each.error.quantile)
 
 
 def sufficient(

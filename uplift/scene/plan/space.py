@@ -58,13 +58,13 @@ class Evaluator:
         found = []
         for each in candidates:
             if each == WITHOUT_SPECTRA:
-                found.append(self.tests.error_of_xyz(self.tests.rgb @ matrices.mT))
+                found.append(self.tests.error(self.tests.rgb @ matrices.mT))
                 continue
             if each.pixel not in spectra:
                 pixel = Pixel(texture.Spectrum.name, each.pixel.depth) if cube is None else each.pixel
                 spectra[each.pixel] = pixel.decoded(cube or self.reference, self.tests.rgb, nm)
             values = spectra[each.pixel][:, columns[each.rendering]]
-            found.append(self.tests.error_of_xyz(self.renderings[each.rendering].xyz(values)))
+            found.append(self.tests.error(self.renderings[each.rendering].xyz(values)))
         return found
 
 
@@ -121,12 +121,12 @@ class CandidateSpace:
     def _with_cubes(self) -> Iterator[Estimate]:
         """Candidates that need a cube and whose bounds are below the ceiling."""
         tests, renderings = self.evaluator.tests, self.evaluator.renderings.values()
-        base = _quantiles(tests.error_of_xyz(self.base))
+        base = _quantiles(tests.error(self.base))
         lattices, models = self._lattices(), self._models()
         points = {name: self._points(*name) for name in lattices}
         for (model, by_model), (lattice, by_lattice) in product(models.items(), lattices.items()):
             choice = CubeChoice(*model, *lattice)
-            of_cube = _quantiles(tests.error_of_xyz(self.base + by_model + by_lattice))
+            of_cube = _quantiles(tests.error(self.base + by_model + by_lattice))
             for rendering in renderings:
                 # Errors of independent choices add in squares; both include that of the reference.
                 squares = of_cube**2 + _quantiles(rendering.error) ** 2 - base**2
@@ -177,7 +177,7 @@ class CandidateSpace:
             self.context.progress(Progress(stage, number, len(steps)))
             if series not in done:
                 found[name] = self._xyz(*cube) - finest
-                if self.evaluator.tests.error_of_xyz(self.base + found[name]).quantile <= self.floor:
+                if self.evaluator.tests.error(self.base + found[name]).quantile <= self.floor:
                     done.add(series)
         return found
 

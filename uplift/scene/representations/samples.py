@@ -13,7 +13,7 @@ from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, UpliftError
 from uplift.models.arithmetic import blocked_matmul
-from uplift.scene.quadrature import UndefinedRule, gauss_rule, interpolatory_rule
+from uplift.scene.quadrature import gauss_rule, interpolatory_rule
 
 STEP = 1.0
 """Distance of dense samples in nm, from 380 to 780 nm."""
@@ -152,11 +152,8 @@ def gauss_samples(count: int) -> Representation:
     function has its own weights at the same nodes, exact for degree n − 1. Raises `UpliftError` without such a rule.
     """
     rule = gauss_rule(wavelengths(), xyz_weights().sum(axis=1), count)
-    if isinstance(rule, UndefinedRule):
-        raise UpliftError(
-            f"order {count} has no quadrature rule: {rule.reason}",
-            code="undefined-rule",
-            hint="choose another number of nodes",
-        )
+    if isinstance(rule, str):
+        problem = f"order {count} has no quadrature rule: {rule}"
+        raise UpliftError(problem, code="undefined-rule", hint="choose another number of nodes")
     weights = [interpolatory_rule(rule.nodes, wavelengths(), masses).weights for masses in xyz_weights().T]
     return linear(f"GQ{count}", "Gaussian quadrature", interpolation_matrix(rule.nodes), np.stack(weights, axis=1))

@@ -99,10 +99,7 @@ def choose(
     if count is not None and not 1 <= count <= MAX_COUNT:
         raise OptionError(f"count must be in [1, {MAX_COUNT}], got {count}", hint="tables at 10 nm have 40")
     if target is not None and not target > 0:
-        raise OptionError(
-            f"target must be positive, got {target:g}",
-            hint="give a tolerated ΔE00, such as 1",
-        )
+        raise OptionError(f"target must be positive, got {target:g}", hint="give a tolerated ΔE00, such as 1")
     for number in range(1, MAX_COUNT + 1) if count is None else (count,):
         try:
             sampling = ordered(METHODS[method](setup, number))

@@ -13,7 +13,7 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.scene.quadrature import QuadratureRule, UndefinedRule, gauss_rule, interpolatory_rule
+from uplift.scene.quadrature import QuadratureRule, gauss_rule, interpolatory_rule
 from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, balanced, evaluate, interp_curves
 
 CONFUSION_POINTS = np.array([[0.171, -0.003], [1.14, -0.14], [0.735, 0.265]])
@@ -90,8 +90,8 @@ over every nanometre move the outer wavelengths of high orders by up to 5 nm."""
 MAX_ORDER = 10
 """Highest order of tables 1a and 1b."""
 
-ChannelRules = tuple[Mapping[int, QuadratureRule | UndefinedRule], ...]
-"""For each channel, a mapping from order to rule."""
+ChannelRules = tuple[Mapping[int, QuadratureRule | str], ...]
+"""For each channel, a mapping from order to rule, or to the reason why there is none."""
 Allocation = tuple[QuadratureRule, QuadratureRule, QuadratureRule]
 """A rule for each channel."""
 
@@ -123,12 +123,9 @@ def four_wavelength_rule(rules: ChannelRules, functions: Array) -> Allocation:
     `channel_functions` of the space. Raises `OptionError` where the observer has no such rules.
     """
     a, c1, c2 = rules[0][3], rules[1][2], rules[2][1]
-    if isinstance(a, UndefinedRule) or isinstance(c1, UndefinedRule) or isinstance(c2, UndefinedRule):
-        raise OptionError(
-            "the opponent channels of the observer have no rules of orders 3, 2 and 1",
-            code="undefined-rule",
-            hint="choose another method or observer",
-        )
+    if isinstance(a, str) or isinstance(c1, str) or isinstance(c2, str):
+        problem = "the opponent channels of the observer have no rules of orders 3, 2 and 1"
+        raise OptionError(problem, code="undefined-rule", hint="choose another method or observer")
     return interpolatory_rule([*c1.nodes, a.nodes[1]], POINTS, functions[0]), c1, c2
 
 
@@ -153,16 +150,12 @@ def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: ChannelSpace)
     rules = []
     for channel, by_order, order in zip(space.channels, defined, orders, strict=True):
         if order not in by_order:
-            raise OptionError(
-                f"orders must be in [1, {MAX_ORDER}], got {order}", hint="the paper tabulates orders 1 to 10"
-            )
+            hint = "the paper tabulates orders 1 to 10"
+            raise OptionError(f"orders must be in [1, {MAX_ORDER}], got {order}", hint=hint)
         rule = by_order[order]
-        if isinstance(rule, UndefinedRule):
-            raise OptionError(
-                f"channel {channel} has no rule of order {order}: {rule.reason}",
-                code="undefined-rule",
-                hint="choose another order",
-            )
+        if isinstance(rule, str):
+            problem = f"channel {channel} has no rule of order {order}: {rule}"
+            raise OptionError(problem, code="undefined-rule", hint="choose another order")
         rules.append(rule)
     return balanced(combine_rules(setup, space, rules))
 

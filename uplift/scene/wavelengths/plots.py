@@ -1,7 +1,5 @@
 """Figure of a choice of wavelengths: each light with its powers, and the weights."""
 
-from typing import Any
-
 import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, map_to_gamut
@@ -19,50 +17,38 @@ CHANNEL_COLOURS = {"X": "#c0392b", "Y": "#2e8b57", "Z": "#2f5fb3"}
 def plot_choice(setup: RenderSetup, choice: Choice, path: StrPath, *, force: bool = False) -> None:
     """Write a figure with a panel per light, showing its powers, and a panel of the weights. Raises `OutputError`."""
     sampling, errors = choice.sampling, choice.errors
+    nm, chosen = setup.wavelengths, sampling.wavelengths
+
+    def area(values: Array) -> Array:
+        """Sum of the interpolated values of samples: per wavelength and per sample, units differ."""
+        return np.asarray(np.interp(nm, chosen, values).sum())
+
     with styled():
-        figure = new_figure(WIDTH, MARGIN_HEIGHT + PANEL_HEIGHT * (len(sampling.lights) + 1))
-        panels = figure.subplots(len(sampling.lights) + 1, 1, sharex=True, squeeze=False)[:, 0]
-        for light, axes in enumerate(panels[:-1]):
-            _draw_light(axes, setup, choice, light)
-        _draw_weights(panels[-1], setup, choice)
+        count = len(sampling.lights) + 1
+        figure = new_figure(WIDTH, MARGIN_HEIGHT + PANEL_HEIGHT * count)
+        *panels, last = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+        tints = _display_colours(setup, chosen)
+        for axes, name, power, powers in zip(panels, sampling.lights, setup.powers, sampling.powers, strict=True):
+            curve = power * (area(powers) / power.sum())
+            axes.plot(nm, curve, color=GREY, linewidth=0.7)
+            axes.vlines(chosen, 0, powers, color=INK, linewidth=1)
+            axes.scatter(chosen, powers, s=26, c=tints, edgecolors=INK, zorder=3, clip_on=False)
+            axes.set(ylim=(0, 1.3 * max(powers.max(), np.quantile(curve, 0.97))), ylabel="power")
+            axes.set_title(name, loc="left", fontsize=9, color=INK)
+        cmfs = setup.cmfs * (area(sampling.to_xyz[:, 1]) / setup.cmfs[:, 1].sum())
+        for cmf, weights, (name, colour) in zip(cmfs.T, sampling.to_xyz.T, CHANNEL_COLOURS.items(), strict=True):
+            last.plot(nm, cmf, color=colour, linewidth=0.7, alpha=0.5)
+            last.plot(chosen, weights, "o", color=colour, markersize=4, label=f"to {name}")
+        last.set(xlabel="wavelength / nm", ylabel="weight", xlim=(nm[0], nm[-1]))
+        last.set_title("weights and colour-matching functions", loc="left", fontsize=9, color=INK)
+        last.legend(frameon=False, ncols=3, loc="upper right")
+        for axes in (*panels, last):
+            style_axes(axes)
         figure.align_ylabels()
-        figure.suptitle(
-            f"{len(sampling)} wavelengths, {choice.method}: ΔE00 mean {errors.mean:.2f}, "
-            f"95th percentile {errors.p95:.2f}, max {errors.max:.2f}",
-            x=0.02,
-            ha="left",
-            fontsize=10,
-            color=INK,
-        )
+        found = f"mean {errors.mean:.2f}, 95th percentile {errors.p95:.2f}, max {errors.max:.2f}"
+        title = f"{len(sampling)} wavelengths, {choice.method}: ΔE00 {found}"
+        figure.suptitle(title, x=0.02, ha="left", fontsize=10, color=INK)
         write_figure(figure, path, force=force)
-
-
-def _draw_light(axes: Any, setup: RenderSetup, choice: Choice, light: int) -> None:
-    sampling = choice.sampling
-    power, powers = setup.powers[light], sampling.powers[light]
-    # Powers per wavelength and per sample have different units: scale to equal means.
-    interpolated = np.interp(setup.wavelengths, sampling.wavelengths, powers)
-    scale = interpolated.sum() / power.sum()
-    axes.plot(setup.wavelengths, power * scale, color=GREY, linewidth=0.7)
-    axes.vlines(sampling.wavelengths, 0, powers, color=INK, linewidth=1)
-    tints = _display_colours(setup, sampling.wavelengths)
-    axes.scatter(sampling.wavelengths, powers, s=26, c=tints, edgecolors=INK, zorder=3, clip_on=False)
-    axes.set(ylim=(0, 1.3 * max(powers.max(), np.quantile(power * scale, 0.97))), ylabel="power")
-    axes.set_title(sampling.lights[light], loc="left", fontsize=9, color=INK)
-    style_axes(axes)
-
-
-def _draw_weights(axes: Any, setup: RenderSetup, choice: Choice) -> None:
-    sampling = choice.sampling
-    total = np.interp(setup.wavelengths, sampling.wavelengths, sampling.to_xyz[:, 1]).sum()
-    cmfs = setup.cmfs * (total / setup.cmfs[:, 1].sum())
-    for cmf, weights, (name, colour) in zip(cmfs.T, sampling.to_xyz.T, CHANNEL_COLOURS.items(), strict=True):
-        axes.plot(setup.wavelengths, cmf, color=colour, linewidth=0.7, alpha=0.5)
-        axes.plot(sampling.wavelengths, weights, "o", color=colour, markersize=4, label=f"to {name}")
-    axes.set(xlabel="wavelength / nm", ylabel="weight", xlim=(setup.wavelengths[0], setup.wavelengths[-1]))
-    axes.set_title("weights and colour-matching functions", loc="left", fontsize=9, color=INK)
-    axes.legend(frameon=False, ncols=3, loc="upper right")
-    style_axes(axes)
 
 
 def _display_colours(setup: RenderSetup, wavelengths: Array) -> Array:
