@@ -48,6 +48,7 @@ class Case:
 
 CASES = (
     Case(("still-life.png", "wood.png"), "paints.csv", ("D65", "A", "FL11"), 1.0, (24, 13, False, 7), quick=False),
+    Case(("still-life.png", "wood.png"), "paints.csv", ("FL11", "HP1", "LED-RGB1"), 0.15, quick=False),
     Case(("astronaut.png",), "macbeth.txt", TWO, 1.0, (48, 13, True, 7)),
     Case(("astronaut.png",), "macbeth.txt", TWO, 0.5, (64, 15, True, 9), quick=False),
     Case(("coffee.png",), "macbeth.txt", FIVE, 1.0, (128, 15, True, 9)),

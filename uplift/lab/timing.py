@@ -110,11 +110,15 @@ def environment() -> dict[str, str]:
 
 
 def commit() -> str:
-    """Return the last commit that changed this code. Commits of pages and tests alone do not count."""
+    """Return the last commit of the branch main that changed this code, which later rebasing leaves in the history.
+
+    Commits of pages and tests alone do not count.
+    """
     if not _git("ls-files", "--", __file__):
         return "unknown"
-    changed = _git("status", "--porcelain", "--", *CODE)
-    return _git("log", "-1", "--format=%h", "--abbrev=12", "--", *CODE) + (" with changes" if changed else "")
+    base = _git("merge-base", "HEAD", "main") or "HEAD"
+    changed = _git("diff", "--name-only", base, "--", *CODE)
+    return _git("log", "-1", "--format=%h", "--abbrev=12", base, "--", *CODE) + (" with changes" if changed else "")
 
 
 def _git(*arguments: str) -> str:

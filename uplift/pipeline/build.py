@@ -257,9 +257,8 @@ def problem_of(options: Options, observer: str | Camera, solver: str | Solver) -
             problem_text = "solver must be a name or a least-squares solver of optimistix"
             raise OptionError(f"{problem_text}, got {format_value(solver)}")
         problem = replace(problem, method=method)
-    if sensor.sensitivities is None:
-        return replace(options, space=sensor.space), problem
-    return replace(options, observer=sensor.space), problem
+    named: dict[str, Any] = {"space" if sensor.sensitivities is None else "observer": sensor.space}
+    return replace(options, **named), problem
 
 
 def _choose_lattice(

@@ -76,10 +76,8 @@ class Constraints:
 
 def as_atlas(atlas: AtlasLike) -> Atlas:
     """Return an atlas as given, or read from one file or several."""
-    if atlas is None:
-        return Atlas()
-    if isinstance(atlas, Atlas):
-        return atlas
+    if atlas is None or isinstance(atlas, Atlas):
+        return Atlas() if atlas is None else atlas
     return read_atlas(*([atlas] if isinstance(atlas, str | os.PathLike) else atlas))
 
 
@@ -101,12 +99,8 @@ def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, Measu
     names = np.array(atlas.names, dtype=object)
     for row in np.flatnonzero(~inside):
         values = ", ".join(f"{value:.4f}" for value in rgb[row])
-        warn(
-            f"outside {sensor.space}, at linear RGB ({values}): kept for XYZ and wider spaces",
-            code="entry-out-of-gamut",
-            entry=names[row],
-            hint=hint,
-        )
+        problem = f"outside {sensor.space}, at linear RGB ({values}): kept for XYZ and wider spaces"
+        warn(problem, code="entry-out-of-gamut", entry=names[row], hint=hint)
     return (
         MeasuredEntries(tuple(names[inside]), np.clip(rgb[inside], 0, 1), measured[inside]),
         MeasuredEntries(tuple(names[~inside]), rgb[~inside], measured[~inside]),
