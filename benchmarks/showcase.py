@@ -85,11 +85,12 @@ def main() -> None:
 
 
 def session() -> list[dict[str, str]]:
-    """Run the commands of the README in an empty folder and return what they print on standard output."""
+    """Run the commands of the README in an empty folder, each in its process, and return all that they print."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        outcomes = run_lines(SESSION, unpack(build_wheel(folder / "wheel"), folder / "package"), folder)
-    return [{"command": each["line"], "output": each["stdout"].strip("\n")} for each in outcomes]
+        package = unpack(build_wheel(folder / "wheel"), folder / "package")
+        outcomes = [run_lines([line], package, folder)[0] for line in SESSION]
+    return [{"command": each["line"], "output": (each["stderr"] + each["stdout"]).strip("\n")} for each in outcomes]
 
 
 def colours(lamps: list[Light]) -> tuple[list[dict[str, Array]], Array]:

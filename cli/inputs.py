@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from uplift.common.errors import AtlasError, OptionError, OutputError, TextureError
 from uplift.common.text import format_value, parse_float
 
 from .output.diagnostics import warn
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from uplift.atlas import Atlas
     from uplift.colorimetry.sensor import Sensor
     from uplift.colorimetry.spaces import ImageSpace
-    from uplift.common.arrays import Array, StrPath
+    from uplift.common.arrays import Array
     from uplift.io.texture.picture import Picture
 
 LOCAL = "atlases/*.txt"
@@ -34,7 +35,6 @@ MAX_SIDE = 960
 def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
     """Return atlases by the stems of their file names; without files, the default ones."""
     from uplift.atlas import read_atlas, shipped_atlases
-    from uplift.common.errors import AtlasError
 
     atlases: dict[str, Atlas] = {}
     for file in files or sorted(Path().glob(LOCAL)) or [shipped.path for shipped in shipped_atlases()]:
@@ -51,8 +51,6 @@ def expand_patterns(sources: Sequence[str]) -> list[str]:
 
 
 def _expand(source: str) -> list[str]:
-    from uplift.common.errors import TextureError
-
     if os.path.exists(source) or not (glob.has_magic(source) or UDIM in source):
         return [source]
     paths = sorted(glob.glob(source.replace(UDIM, UDIM_DIGITS)))
@@ -75,8 +73,6 @@ def read_pictures(paths: Sequence[str], sensor: Sensor, *, space: str | None = N
 def parse_wavelengths(text: str) -> Array:
     """Parse '380:780:5' (end included) or '450,550,650' into nm, shape (N,)."""
     import numpy as np
-
-    from uplift.common.errors import OptionError
 
     try:
         if ":" not in text:
@@ -102,21 +98,26 @@ def find_input_space(name: str | None) -> ImageSpace | None:
     return find_space(name)
 
 
-def check_page(path: StrPath) -> None:
-    """Check that the name of a page ends in .html."""
-    from uplift.common.errors import OutputError
-
-    if not os.fspath(path).lower().endswith(".html"):
+def check_page(path: str) -> str:
+    """Return the name of a page, which must end in .html."""
+    if not path.lower().endswith(".html"):
         raise OutputError("the name of a page must end in .html", path=path, hint="name the page .html")
+    return path
+
+
+def check_plot(path: str) -> str:
+    """Return the name of a plot, whose suffix must be that of a figure."""
+    from uplift.viz.figure import check_suffix
+
+    check_suffix(path)
+    return path
 
 
 def check_range(wavelengths: Array | None, own: Array) -> None:
-    """Check that wavelengths (N,) lie in the range of those of a cube or table."""
-    from uplift.common.errors import OptionError
-
+    """Check that wavelengths (N,) lie in the range of a cube's or table's ``own``; the library continues spectra."""
     first, last = own[[0, -1]]
     outside = [] if wavelengths is None else [each for each in wavelengths if not first <= each <= last]
     if outside:
         micrometres = f"give nm: {outside[0]:g} µm are {1000 * outside[0]:g} nm"
-        hint = micrometres if outside[0] < 10 else "stay in this range, or build with a wider one"
+        hint = micrometres if outside[0] < 10 else "stay in this range; 'uplift build --range' sets that of a cube"
         raise OptionError(f"wavelengths must lie in {first:g}-{last:g} nm, got {outside[0]:g}", hint=hint)

@@ -3,25 +3,20 @@
 Commands import this module and write ``@options.cube``.
 """
 
-from __future__ import annotations
-
 import inspect
 import math
 import re
 from collections.abc import Callable, Collection
 from functools import reduce
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 from click.shell_completion import CompletionItem
 
 from uplift.common.text import format_value, parse_float, parse_whole
 
-from .inputs import parse_wavelengths
-
-if TYPE_CHECKING:
-    from uplift.common.arrays import Array
+from .inputs import check_page, check_plot, parse_wavelengths
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
@@ -110,30 +105,12 @@ class Whole(click.IntRange):
         return "" if (self.min, self.max) == (None, None) else super()._describe_range()
 
 
-class Wavelengths(click.ParamType):  # type: ignore[type-arg]
-    """Wavelengths in nm, by `parse_wavelengths`."""
-
-    name = "text"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Array:
-        """Return wavelengths, shape (N,)."""
-        return parse_wavelengths(value)
-
-
-class Plot(click.ParamType):  # type: ignore[type-arg]
-    """The name of a plot. A suffix of another format is an error at once."""
-
-    name = "text"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """Return the name."""
-        from uplift.viz.figure import check_suffix
-
-        check_suffix(value)
-        return str(value)
-
-
 NUMBER = Number()
+
+
+def converted(function: Callable[[str], Any]) -> Callable[..., Any]:
+    """Return a callback that converts a text by a function, which may raise `UpliftError`; None stays."""
+    return lambda context, parameter, text: None if text is None else function(text)
 
 
 def completion(*sources: str, files: bool = False) -> Callable[..., list[CompletionItem]]:
@@ -177,15 +154,27 @@ def atlas(help: str, default: str = "") -> Decorator:
 
 
 def light(help: str, default: str) -> Decorator:
-    """``--light`` as ``lights``."""
+    """``--light`` as ``lights``; why defaults differ is in `uplift help lights`."""
     help = f"{help}, such as led, 3200K or FL11"
     return _repeatable("--light", "lights", help, default, metavar="NAME", shell_complete=complete_light)
 
 
-def choice(option: str, *choices: str, help: str, name: str | None = None, default: str | None = None) -> Decorator:
+PACKAGED = ". [default: the packaged sRGB cube]"
+
+
+def cube(help: str = PACKAGED, name: str = "cube_path", **settings: Any) -> Decorator:
+    """``--cube``, as ``cube_path``."""
+    text = f"Cube file, or ACEScg for the packaged ACEScg cube{help}"
+    return click.option("--cube", name, metavar="FILE", help=text, shell_complete=complete_cube, **settings)
+
+
+def choice(
+    option: str, *choices: str, name: str | None = None, default: str | None = None, **settings: Any
+) -> Decorator:
     """An option with one of some values; without a ``default``, the first one is."""
-    names = (option,) if name is None else (option, name)
-    return click.option(*names, type=click.Choice(choices), default=default or choices[0], help=help)
+    return click.option(
+        *filter(None, (option, name)), type=click.Choice(choices), default=default or choices[0], **settings
+    )
 
 
 def encoding(subject: str = "colours") -> Decorator:
@@ -206,20 +195,25 @@ def input_space(subject: str, default: str = "as the file states", name: str = "
     )
 
 
-def out_of_gamut(default: str = "error", subject: str = "linear RGB", name: str = "method") -> Decorator:
+def out_of_gamut(default: str, why: str, subject: str = "colours", name: str = "method") -> Decorator:
     """``--out-of-gamut``: names of `uplift.colorimetry.gamut.METHODS`, which is not imported here."""
     methods = ("error", "clip", "scale", "desaturate", "desaturate-oklab")
     text = (
         f"Treatment of {subject} outside [0, 1]: raise an error, clip, darken, or desaturate at constant luminance and "
-        "dominant wavelength or at constant lightness and hue of Oklab."
+        f"dominant wavelength or at constant lightness and hue of Oklab. [default: {default}, {why}]"
     )
-    return choice("--out-of-gamut", *methods, name=name, default=default, help=text)
+    return choice("--out-of-gamut", *methods, name=name, default=default, help=text, show_default=False)
+
+
+def out_of_gamut_pixels(subject: str = "pixels", name: str = "method") -> Decorator:
+    """``--out-of-gamut`` of images."""
+    return out_of_gamut("clip", "as images often have a few, which are counted", subject, name)
 
 
 def pixels() -> Decorator:
     """``--encoding``, ``--input-space`` and ``--out-of-gamut`` of images, as `uplift.io.texture` names them."""
     return stacked(
-        encoding("the images"), input_space("the images", name="space"), out_of_gamut("clip", "pixels", "out_of_gamut")
+        encoding("the images"), input_space("the images", name="space"), out_of_gamut_pixels(name="out_of_gamut")
     )
 
 
@@ -244,21 +238,21 @@ def _remember_format(ctx: click.Context, param: click.Parameter, value: str) -> 
 
 def plot(help: str, option: str = "--plot", name: str = "plot_path") -> Decorator:
     """An option for the file of a plot, as ``name``. A suffix other than .png, .svg and .pdf is an error at once."""
-    return click.option(option, name, metavar="FILE", type=Plot(), help=f"{help}, as .png, .svg or .pdf.")
+    text = f"{help}, as .png, .svg or .pdf."
+    return click.option(option, name, metavar="FILE", callback=converted(check_plot), help=text)
+
+
+def page(help: str) -> Decorator:
+    """``--html``. A suffix other than .html is an error at once."""
+    return click.option("--html", metavar="FILE", callback=converted(check_page), help=help)
 
 
 def wavelengths(help: str) -> Decorator:
-    """``--wavelengths`` as an array in nm, or None."""
-    return click.option("--wavelengths", metavar="NM", type=Wavelengths(), help=help)
+    """``--wavelengths`` as an array in nm, or None; `uplift_cli.inputs.check_range` checks their range."""
+    text = f"Wavelengths in nm as START:END:STEP or a list such as 450,550,650{help}"
+    return click.option("--wavelengths", metavar="NM", callback=converted(parse_wavelengths), help=text)
 
 
-cube = click.option(
-    "--cube",
-    "cube_path",
-    metavar="FILE",
-    help="Cube file, or ACEScg for the packaged ACEScg cube. [default: the packaged sRGB cube]",
-    shell_complete=complete_cube,
-)
 cube_argument = click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
 scale = choice(  # names of uplift.atlas.MEASURED, which is not imported here
     "--scale",
@@ -268,8 +262,16 @@ scale = choice(  # names of uplift.atlas.MEASURED, which is not imported here
 coefficients = click.option(
     "--coefficients", type=Whole(), default=9, metavar="N", help="Coefficients per spectrum, 3 to 17."
 )
-output_wavelengths = wavelengths(
-    "Wavelengths as START:END:STEP or a list such as 450,550,650. [default: those of the cube]"
+output_wavelengths = wavelengths(". [default: those of the cube or table]")
+depth = click.option(
+    "--depth",
+    type=click.Choice(("half", "float")),
+    help="16 or 32 bits per channel. [default: half for reflectances, else float]",
+)
+table = click.option(
+    "--table",
+    type=click.Choice(("header", "file")),
+    help="Where the numbers of a program are. [default: header for C, else file]",
 )
 
 
@@ -294,34 +296,33 @@ fill = click.option(
     "--fill-missing", is_flag=True, help="Take colours that a cube built with --scene lacks from the packaged cube."
 )
 atlas_folders = _repeatable("--atlas-dir", "folders", "Folder to search for atlases", metavar="DIR")
-output_folder = click.option("-o", "--output", metavar="DIR", help="Folder for tables and plots.")
 force = click.option("--force", is_flag=True, help="Replace existing files.")
 quiet = click.option("-q", "--quiet", is_flag=True, help="Print only warnings and errors.")
 verbose = click.option("-v", "--verbose", is_flag=True, help="Print a line for every round and improvement step.")
 
 
-def output(help: str, **settings: Any) -> Decorator:
+def output(help: str, metavar: str = "FILE", **settings: Any) -> Decorator:
     """``--output``."""
-    return click.option("-o", "--output", metavar="FILE", type=click.Path(), help=help, **settings)
+    return click.option("-o", "--output", metavar=metavar, type=click.Path(), help=help, **settings)
+
+
+def space(camera: str = "") -> Decorator:
+    """``--space``: the space of what is built or listed."""
+    text = f"RGB space by its name in colour-science or OpenColorIO, such as ACEScg{camera}."
+    return click.option("--space", default="sRGB", help=text, shell_complete=complete_space)
+
+
+def observer(camera: str = "") -> Decorator:
+    """``--observer``."""
+    default, text = "CIE 1931 2 Degree Standard Observer", f"Standard observer{camera}."
+    return click.option("--observer", default=default, help=text, shell_complete=complete_observer)
 
 
 sensor = stacked(
+    space("; or camera: raw values"),
     click.option(
-        "--space",
-        default="sRGB",
-        help="RGB space by its name in colour-science or OpenColorIO, such as ACEScg; or camera: raw values.",
-        shell_complete=complete_space,
+        "--illuminant", default="D65", help="Illuminant under which RGB are defined.", shell_complete=complete_light
     ),
-    click.option(
-        "--illuminant",
-        default="D65",
-        help="Illuminant under which RGB are defined.",
-        shell_complete=complete_light,
-    ),
-    click.option(
-        "--observer",
-        default="CIE 1931 2 Degree Standard Observer",
-        help="Standard observer, or with --space camera a camera: name or CSV file of sensitivities.",
-        shell_complete=complete_observer,
-    ),
+    observer(", or with --space camera a camera: name or CSV file of sensitivities"),
 )
+"""``space``, ``illuminant`` and ``observer``, for `uplift.colorimetry.observer.sensor`."""

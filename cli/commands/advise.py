@@ -17,14 +17,7 @@ SHOWN = 4
 
 @click.command("advise")
 @click.argument("images", metavar="IMAGE...", nargs=-1, required=True)
-@click.option(
-    "--cube",
-    "cube_path",
-    metavar="FILE",
-    required=True,
-    help="Cube with an atlas of at least 8 entries.",
-    shell_complete=options.complete_cube,
-)
+@options.cube(", with an atlas of at least 8 entries.", required=True)
 @options.light("Illuminant of the scene", "A FL11 HP1")
 @click.option("--count", metavar="N", type=options.Whole(), default=6, help="Number of swatches, up to 100.")
 @options.pixels()
@@ -46,7 +39,7 @@ def command(
     \b
     Examples:
       uplift advise wood.png --cube macbeth-32.uplift
-      uplift advise wood.png still-life.png --cube macbeth-32.uplift --light FL11 --plot advice.png
+      uplift advise wood.png --cube macbeth-32.uplift --plot advice.png
       uplift advise wood.png --cube macbeth-32.uplift --count 12 --format json
 
     Errors are standard errors, ΔE00 under each --light, averaged over the area of the images. A swatch is a colour of
@@ -57,14 +50,13 @@ def command(
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
     from uplift.colorimetry.observer import light
     from uplift.colorimetry.srgb import hex_codes
-    from uplift.common.files import check_output
+    from uplift.common.files import check_outputs
     from uplift.io.scene_colours import Images
     from uplift.lookup import load
     from uplift.scene import advice
 
     paths = expand_patterns(images)
-    if plot_path is not None:
-        check_output(plot_path, inputs=(*paths, cube_path), force=force)
+    check_outputs((plot_path,), inputs=(*paths, cube_path), force=force)
     cube = load(cube_path)
     sensor = cube.data.sensor
     lit = [light(name, cube.observer, *sensor.range) for name in lights or RELIGHT_LIGHTS]

@@ -3,27 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from .. import options
-from ..output.console import (
-    has_colours,
-    make_table,
-    paragraph,
-    print_csv,
-    print_fields,
-    print_json,
-    say,
-    show,
-    swatch,
-)
+from ..output.console import has_colours, make_table, paragraph, print_csv, print_fields, print_json, say, show, swatch
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
     from uplift.colorimetry.sensor import Sensor
+    from uplift.common.arrays import Array
 
 SHIPPED = ("name", "entries", "content", "source", "licence")
 """Columns of the list of shipped atlases."""
@@ -38,16 +29,7 @@ SOURCE = ("name", "digest", "format", "measured", "notes")
 @options.output_format("table", "json", "csv")
 @options.output("Write all entries to FILE instead of a list.")
 @options.force
-def command(
-    files: tuple[str, ...],
-    scale: Any,
-    space: str,
-    illuminant: str,
-    observer: str,
-    style: str,
-    output: str | None,
-    force: bool,
-) -> None:
+def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, force: bool, **camera: str) -> None:
     """List the entries of atlas files, and how the files were understood.
 
     Without FILE, lists the atlases that are installed with uplift, with source and licence. Their names are valid
@@ -82,16 +64,14 @@ def command(
         say(f"{output}: {len(atlas)} entries", err=True)
         return
     atlas = read_atlas(*files, measured=scale)
-    camera = sensor(space, illuminant, observer)
-    rows, smallest = _list_entries(atlas, camera)
+    seen_by = sensor(**camera)
+    rows, codes, smallest = _list_entries(atlas, seen_by)
     if style == "json":
         fields = {
-            "space": camera.space,
-            "illuminant": camera.illuminant,
-            "observer": camera.observer,
+            **{name: getattr(seen_by, name) for name in camera},
             "sources": [{name: getattr(source, name) for name in SOURCE} for source in atlas.sources],
             "smallest_space": smallest,
-            "entries": [{key: value for key, value in asdict(row).items() if key != "swatch"} for row in rows],
+            "entries": rows,
             "skipped": [asdict(skipped) for skipped in atlas.skipped],
         }
         print_json(fields)
@@ -99,12 +79,12 @@ def command(
         print_csv(
             ["name", "start", "end", "step", "r", "g", "b", "in_gamut", "warnings"],
             [
-                [row.name, row.start, row.end, row.step, *row.rgb, str(row.in_gamut).lower(), "; ".join(row.warnings)]
+                [*list(row.values())[:4], *row["rgb"], str(row["in_gamut"]).lower(), "; ".join(row["warnings"])]
                 for row in rows
             ],
         )
     else:
-        _print_table(atlas, camera, rows, smallest)
+        _print_table(atlas, seen_by, rows, codes, smallest)
 
 
 def _print_shipped(style: str) -> None:
@@ -112,12 +92,12 @@ def _print_shipped(style: str) -> None:
     from uplift.atlas import shipped_atlases
 
     atlases = shipped_atlases()
-    rows = [{name: getattr(atlas, name) for name in SHIPPED} for atlas in atlases]
     if style == "json":
-        files = [{"path": str(atlas.path), "digest": atlas.digest} for atlas in atlases]
+        rows = ({name: getattr(atlas, name) for name in SHIPPED} for atlas in atlases)
+        files = ({"path": str(atlas.path), "digest": atlas.digest} for atlas in atlases)
         print_json({"atlases": [row | file for row, file in zip(rows, files, strict=True)]})
     elif style == "csv":
-        print_csv(SHIPPED, (list(row.values()) for row in rows))
+        print_csv(SHIPPED, ([getattr(atlas, name) for name in SHIPPED] for atlas in atlases))
     else:
         for atlas in atlases:
             print_fields({atlas.name: atlas.content, "": f"{atlas.source}. {atlas.licence}"})
@@ -125,22 +105,8 @@ def _print_shipped(style: str) -> None:
         paragraph("Use a name as --atlas NAME, or in place of FILE.")
 
 
-@dataclass(frozen=True)
-class Row:
-    """One entry: range in nm, linear RGB, 8-bit sRGB, and warnings."""
-
-    name: str
-    start: float
-    end: float
-    step: float | None
-    rgb: tuple[float, float, float]
-    swatch: tuple[int, int, int]
-    in_gamut: bool
-    warnings: tuple[str, ...]
-
-
-def _list_entries(atlas: Atlas, sensor: Sensor) -> tuple[list[Row], str | None]:
-    """List all entries, with reflectances clipped as in a build, and the smallest common RGB space that holds all."""
+def _list_entries(atlas: Atlas, sensor: Sensor) -> tuple[list[dict[str, Any]], Array, str | None]:
+    """List all entries, with reflectances clipped as in a build; return 8-bit sRGB (n, 3) and `smallest_space`."""
     from uplift.atlas import resample
     from uplift.colorimetry.gamut import SRGB
     from uplift.colorimetry.observer import sensor as make_sensor
@@ -150,32 +116,40 @@ def _list_entries(atlas: Atlas, sensor: Sensor) -> tuple[list[Row], str | None]:
     resampled = resample(atlas, sensor.wavelengths)
     display = make_sensor("sRGB", sensor.illuminant, sensor.observer)
     clips = {clip.name: (str(clip),) for clip in resampled.clips}
-    colours = sensor.rgb(resampled.values).tolist()
-    codes = to_display_codes(display.rgb(resampled.values), SRGB).astype(int).tolist()
-    rows = []
-    for entry, rgb, code in zip(atlas.entries, colours, codes, strict=True):
-        start, end = (float(entry.wavelengths[end]) for end in (0, -1))
-        in_gamut, clipped = bool(sensor.contains(rgb)), clips.get(entry.name, ())
-        rows.append(Row(entry.name, start, end, entry.step, tuple(rgb), tuple(code), in_gamut, clipped))
-    return rows, smallest_space(resampled.values, sensor.illuminant, sensor.observer)
+    rows = [
+        {
+            "name": entry.name,
+            "start": float(entry.wavelengths[0]),
+            "end": float(entry.wavelengths[-1]),
+            "step": entry.step,
+            "rgb": rgb,
+            "in_gamut": bool(sensor.contains(rgb)),
+            "warnings": clips.get(entry.name, ()),
+        }
+        for entry, rgb in zip(atlas.entries, sensor.rgb(resampled.values).tolist(), strict=True)
+    ]
+    codes = to_display_codes(display.rgb(resampled.values), SRGB).astype(int)
+    return rows, codes, smallest_space(resampled.values, sensor.illuminant, sensor.observer)
 
 
-def _print_table(atlas: Atlas, sensor: Sensor, rows: Sequence[Row], smallest: str | None) -> None:
+def _print_table(
+    atlas: Atlas, sensor: Sensor, rows: Sequence[dict[str, Any]], codes: Array, smallest: str | None
+) -> None:
     """Print the entries, their warnings, the sources, and the numbers of entries out of gamut and skipped."""
     coloured = has_colours()
     texts = [""] * coloured + ["name", "nm"]
     table = make_table(texts, "RGB", title=f"linear {sensor.space} under {sensor.illuminant}")
-    for row in rows:
-        step = "" if row.step is None else f":{row.step:g}"
-        rgb = (f"{channel:.4f}" for channel in row.rgb)
-        table.add_row(*[swatch(row.swatch)] * coloured, row.name, f"{row.start:g}:{row.end:g}{step}", *rgb)
+    for row, code in zip(rows, codes.tolist(), strict=True):
+        wavelengths = ":".join(f"{row[name]:g}" for name in ("start", "end", "step") if row[name] is not None)
+        rgb = (f"{channel:.4f}" for channel in row["rgb"])
+        table.add_row(*[swatch(code)] * coloured, row["name"], wavelengths, *rgb)
     show(table)
     for row in rows:
-        for warning in row.warnings:
-            paragraph(f"{row.name}: {warning}")
+        for warning in row["warnings"]:
+            paragraph(f"{row['name']}: {warning}")
     for source in atlas.sources:
         paragraph("; ".join((f"{source.name}: {source.format}", *source.notes)))
-    outside = [row.name for row in rows if not row.in_gamut]
+    outside = [row["name"] for row in rows if not row["in_gamut"]]
     skipped = [skipped.name for skipped in atlas.skipped]
     text = f"{len(rows)} entries, {_count(outside, f'out of the {sensor.space} gamut')}, {_count(skipped, 'skipped')}"
     if outside:

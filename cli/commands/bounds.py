@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from uplift.common.files import check_outputs, write_text
+
 from .. import options
-from ..inputs import check_page
 from ..output.answers import format_rgb, hex_code, patch
-from ..output.console import csv_writer, emit, make_table, print_fields, print_json_answers, say, show
-from .query import QueryStream, ask, colour_options, result_object
+from ..output.console import make_table, print_csv, print_fields, print_json_answers, say, show
+from .query import Answers, colour_options, result_object
 
 if TYPE_CHECKING:
     from uplift.lookup import Bounds, Cube, QueryResult
@@ -27,11 +28,7 @@ DIVISIONS, SINGLE_DIVISIONS = 2, 3
 @options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
 @options.output_format("table", "json", "csv")
 @options.plot("Plot the bounds")
-@click.option(
-    "--html",
-    metavar="FILE",
-    help="Write a page on which the colour under each --light is dragged within its bounds, for a file of looks.",
-)
+@options.page("Write a page on which the colour under each --light is dragged within its bounds, for a file of looks.")
 @options.force
 def command(
     lights: tuple[str, ...], style: str, plot_path: str | None, html: str | None, force: bool, **colours: Any
@@ -55,44 +52,39 @@ def command(
     import numpy as np
 
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
-    from uplift.common.files import check_outputs
     from uplift.lookup import bounds
 
-    if html is not None:
-        check_page(html)
     check_outputs((plot_path, html), inputs=(colours["cube_path"], colours["input_path"]), force=force)
-    stream, results, single = ask(lights=lights or RELIGHT_LIGHTS, **colours)
-    if html is not None and not single:
+    answers = Answers(lights=lights or RELIGHT_LIGHTS, **colours)
+    if html is not None and not answers.single:
         raise click.UsageError("--html shows one colour: give it on the command line.")
 
     def compute(block: Sequence[QueryResult]) -> Block:
         rgb = np.stack([result.rgb for result in block])
-        divisions = SINGLE_DIVISIONS if single else DIVISIONS
-        return block, [bounds(stream.cube, rgb, light, stream.mode, divisions) for light in stream.lights]
+        divisions = SINGLE_DIVISIONS if answers.single else DIVISIONS
+        return block, [bounds(answers.cube, rgb, light, answers.mode, divisions) for light in answers.lights]
 
-    blocks: Iterable[Block] = map(compute, results)
+    blocks: Iterable[Block] = map(compute, answers)
     if plot_path is not None or html is not None:
         blocks = list(blocks)
     if plot_path is not None:
         from uplift.viz.plots import plot_bounds
 
-        plot_bounds(stream.cube, [found for _, found in blocks], plot_path, force=force)
+        plot_bounds(answers.cube, [found for _, found in blocks], plot_path, force=force)
     if html is not None:
-        from uplift.common.files import write_text
         from uplift.report.look_page import page
 
-        write_text(page(stream.cube, next(iter(blocks))[1]), html, force=force)
+        write_text(page(answers.cube, next(iter(blocks))[1]), html, force=force)
         say(f"{html}: page to choose a look on", err=True)
     if style == "json":
-        print_json_answers((each for block in blocks for each in _objects(stream, *block)), single=single)
+        print_json_answers((each for block in blocks for each in _objects(answers, *block)), single=answers.single)
     elif style == "csv":
         _print_csv(blocks)
     else:
-        _print_table(stream.cube, blocks, single=single)
-    stream.warn()
+        _print_table(answers.cube, blocks, single=answers.single)
 
 
-def _objects(stream: QueryStream, results: Sequence[QueryResult], found: Sequence[Bounds]) -> Iterable[dict[str, Any]]:
+def _objects(answers: Answers, results: Sequence[QueryResult], found: Sequence[Bounds]) -> Iterable[dict[str, Any]]:
     from uplift.colorimetry.delta_e import lab
     from uplift.lookup.light_errors import LIKELY
 
@@ -112,23 +104,30 @@ def _objects(stream: QueryStream, results: Sequence[QueryResult], found: Sequenc
                 "likely": None if likely is None else likely.tolist(),
                 "likely_share": LIKELY,
             }
-        yield result_object(stream, result) | {"bounds": fields}
+        yield result_object(answers, result) | {"bounds": fields}
 
 
 def _print_csv(blocks: Iterable[Block]) -> None:
     """Print a row per colour and light."""
-    writer = csv_writer()
     lab_range = [f"{name}_{end}" for end in ("min", "max") for name in ("L*", "a*", "b*")]
     columns = ["r", "g", "b", "light", "L*", "a*", "b*", "standard_error", "error_bound"]
-    writer.write([*columns, "largest", "outer", *lab_range, "share"])
-    for results, found in blocks:
-        for row, result in enumerate(results):
-            for each in found:
-                light = each.light.name
-                errors = (result.standard_errors.get(light), result.error_bounds.get(light))
-                numbers = [float(each.largest.delta_e_2000[row]), float(each.largest.outer[row])]
-                numbers += [*each.box[row].ravel().tolist(), float(each.share[row])]
-                writer.write([*result.rgb.tolist(), light, *each.lab[row].tolist(), *errors, *numbers])
+    rows = (
+        [
+            *result.rgb.tolist(),
+            each.light.name,
+            *each.lab[row].tolist(),
+            result.standard_errors.get(each.light.name),
+            result.error_bounds.get(each.light.name),
+            float(each.largest.delta_e_2000[row]),
+            float(each.largest.outer[row]),
+            *each.box[row].ravel().tolist(),
+            float(each.share[row]),
+        ]
+        for results, found in blocks
+        for row, result in enumerate(results)
+        for each in found
+    )
+    print_csv([*columns, "largest", "outer", *lab_range, "share"], rows)
 
 
 def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
@@ -139,7 +138,7 @@ def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
         if single:
             rgb = results[0].rgb
             print_fields({"linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"}, {"linear RGB": patch(cube, rgb)})
-            emit("")
+            say()
         table = make_table(
             ("hex",) * (not single) + ("light",),
             ("L* a* b*", f"likely {LIKELY:.0%}", "largest", "a*", "b*", "share"),

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 
 ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet", "verbose"}
 """Parameters that may accompany --plan."""
-OF_IMAGES = {"encoding": "--encoding", "method": "--out-of-gamut", "input_space": "--input-space"}
-"""Options of --scene images by parameter."""
+OF_IMAGES = ("encoding", "method", "input_space")
+"""Parameters of --scene images, in the order of `uplift.io.scene_colours.Images`."""
 
 
 def parse_dim(ctx: click.Context, param: click.Parameter, value: str) -> int | str:
@@ -63,8 +63,9 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     "--tolerance",
     "auto_tolerance",
     type=options.NUMBER,
+    metavar="ΔE00",
     default=0.5,
-    help="ΔE00 within which the lattice of --dim auto must reproduce the entries.",
+    help="Largest difference to the entries that the lattice of --dim auto may have.",
 )
 @click.option("--model", default="moments", help="Spectrum model: moments or sigmoid.")
 @options.coefficients
@@ -120,7 +121,6 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 @click.option(
     "--growth",
     default="outward",
-    show_default=True,
     help="Order of the nodes: outward from the entries, coarse-to-fine, or neighbours: outward, each node from the "
     "spectra of its neighbours.",
 )
@@ -132,13 +132,13 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 @options.encoding("--scene images")
 @options.input_space("--scene images")
 @click.option("--plan", "plan_path", metavar="PLAN", help="Build the cube of a plan by 'uplift plan'.")
-@options.out_of_gamut("clip", "linear RGB of --scene images")
+@options.out_of_gamut_pixels("pixels of --scene images")
 @click.option(
     "--seed-corners",
     is_flag=True,
     help="Start all eight nodes around an entry from it: closer near entries, less so for other materials.",
 )
-@click.option("--debug", is_flag=True, help="Store the round of every node, and write slices as .exr next to the cube.")
+@click.option("--debug", is_flag=True, help="Store the round of every node, for 'uplift slices'.")
 @options.force
 @options.quiet
 @options.verbose
@@ -148,13 +148,9 @@ def command(
     scale: Any,
     output: str | None,
     images: tuple[str, ...],
-    encoding: str,
-    input_space: str | None,
-    method: str,
     force: bool,
     quiet: bool,
     verbose: bool,
-    limits: tuple[float, float],
     **settings: Any,
 ) -> None:
     """Build an uplifting cube constrained by measured spectra.
@@ -162,20 +158,20 @@ def command(
     \b
     Examples:
       uplift build --atlas macbeth --dim 32
-      uplift build --atlas paints.csv --atlas fabrics.csv --coefficients 17 -o book.uplift
+      uplift build --atlas paints.csv --atlas fabrics.csv -o book.uplift
       uplift build --atlas paints.csv --dim auto
       uplift build --atlas macbeth --space ACEScg
     \f
 
     \b
     More examples:
-      uplift build --atlas paints.csv --dim auto --tolerance 1
-      uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*.exr'
+      uplift build --atlas paints.csv --dim auto --tolerance 1 --coefficients 17
+      uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*'
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
       uplift build --atlas macbeth --look looks.toml -o looks.uplift
       uplift build --atlas paints.csv --range 360:830 --step 1 -o range.uplift
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
-      uplift build --atlas macbeth --observer 'Nikon 5100 (NPL)' --space camera --dim 16
+      uplift build --observer 'Nikon 5100 (NPL)' --space camera --dim 16
       uplift build --plan kitchen.plan.json
 
     Warnings name the entries that were left out, clipped or crowded. Colours without measurements get the
@@ -194,10 +190,14 @@ def command(
     from uplift.common.files import check_output
 
     context = click.get_current_context()
-    given = {name for name in context.params if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
+    given = {
+        str(each.name): each.opts[-1]
+        for each in context.command.params
+        if context.get_parameter_source(str(each.name)) is ParameterSource.COMMANDLINE
+    }
     inputs: list[str | Path | None]
     if plan_path is not None:
-        if others := [each.opts[-1] for each in context.command.params if each.name in given - ALLOWED_WITH_PLAN]:
+        if others := [option for name, option in given.items() if name not in ALLOWED_WITH_PLAN]:
             raise click.UsageError(f"The plan already sets these options: leave out {', '.join(others)}.")
         from uplift.scene.plan.plan_file import cube_name, read_plan
 
@@ -206,42 +206,29 @@ def command(
         name = cube_name(plan_path)
         inputs = [plan_path, *plan.textures, *plan.atlases]
     else:
-        if not images and (useless := given & set(OF_IMAGES)):
-            names = ", ".join(OF_IMAGES[name] for name in sorted(useless))
-            raise click.UsageError(f"{names}: no --scene image is given to which this applies.")
+        if not images and (useless := [given[name] for name in OF_IMAGES if name in given]):
+            raise click.UsageError(f"{', '.join(useless)}: no --scene image is given to which this applies.")
         name = _default_name(files, images, settings)
         inputs = [*files, *settings["library"], settings["looks"], settings["observer"]]
-        settings["shortest"], settings["longest"] = limits
+        settings["shortest"], settings["longest"] = settings.pop("limits")
+        pixels = [settings.pop(name) for name in OF_IMAGES]
         if images:
             from uplift.io.scene_colours import Images
 
-            scene = Images(tuple(map(Path, expand_patterns(images))), encoding, method, input_space)
-            settings["scene"] = scene
-            inputs += scene.paths
+            settings["scene"] = Images(tuple(map(Path, expand_patterns(images))), *pixels)
+            inputs += settings["scene"].paths
         from uplift.atlas import read_atlas
         from uplift.pipeline.build import build
 
         stated = {name: value for name, value in settings.items() if value not in (None, ())}
         make = partial(build, read_atlas(*files, measured=scale) if files else None, **stated)
     path = check_output(name if output is None else output, inputs=inputs, force=force)
-    slices = path.with_suffix(".exr") if settings["debug"] else None
-    if slices is not None:
-        check_output(slices, inputs=inputs, force=force)
     begin = time.perf_counter()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
         cube = make(progress=progress)
     cube.save(path, force=force)
-    if slices is not None:
-        from uplift.io.exr import write_slices
-
-        write_slices(cube.data, slices, force=force)
-    if verbose:
-        for step in cube.data.provenance["improvements"]:
-            say(f"improvement, {step['step']}: tried {step['tried']}, fixed {step['mended']}", err=True)
     if not quiet:
         _print_summary(cube, path, time.perf_counter() - begin)
-        if slices is not None:
-            say(f"{slices}: {cube.data.lattice.dim} blue slices")
 
 
 def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]) -> str:
@@ -277,8 +264,8 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
     entries = f"{measured} atlas entries, " if data.provenance["atlases"] else ""
     entries += f"{looks} look{'s' * (looks != 1)}, " if looks else ""
     steps = data.provenance["improvements"]
-    improved = f"{sum(step['mended'] for step in steps)} of {steps[0]['tried']} improved" if steps else "0 improved"
+    improved = f"{sum(step['mended'] for step in steps)} of {steps[0]['tried']} improved, " if steps else ""
     say(
         f"{path}: {nodes}, {entries}{accuracy} (worst {worst:.1e}), "
-        f"{improved}, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
+        f"{improved}{path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
     )

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from .. import options
 from ..inputs import DEFAULT_ATLASES, read_atlases
-from ..output.console import make_table, paragraph, say, show
+from ..output.console import make_table, paragraph, say, show, write_files
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache, use_one_blas_thread
 
@@ -17,26 +18,21 @@ if TYPE_CHECKING:
 
 PRINTED = 3
 """Pareto fronts of each number of colours that are printed; the page has all."""
+COLOURS = 2000
+"""Random colours of the round trip."""
 FILES = ("chart.csv", "chart.png", "chart.html")
 
 
 @click.command("chart")
-@click.option("-o", "--output", metavar="DIR", default="chart", help="Folder to write to.")
+@options.output("Folder to write to.", metavar="DIR", default="chart")
 @click.option(
-    "--methods",
+    "--method",
     "patterns",
     metavar="PATTERN",
     multiple=True,
     help="Methods by name, with '*' as a wildcard; repeatable.",
 )
 @options.atlas("Measured spectra", DEFAULT_ATLASES)
-@click.option(
-    "--colours",
-    metavar="N",
-    type=options.Whole(max=1_000_000),
-    default=2000,
-    help="Number of random colours for the round trip.",
-)
 @click.option("--quick", is_flag=True, help="Few methods and repeats: about a minute instead of half an hour.")
 @click.option("--from", "source", metavar="CSV", help="Table of an earlier chart to draw or to recommend from.")
 @click.option(
@@ -64,7 +60,6 @@ def command(
     output: str,
     patterns: tuple[str, ...],
     files: tuple[str, ...],
-    colours: int,
     quick: bool,
     source: str | None,
     recommend: bool,
@@ -85,7 +80,7 @@ def command(
     Examples:
       uplift chart --quick
       uplift chart --atlas paints.csv -o paints
-      uplift chart --methods 'moments9-32-*' --methods mallett2019 -o few
+      uplift chart --method 'moments9-32-*' --method mallett2019 -o few
       uplift chart --recommend
       uplift chart --recommend --time-ns 500
       uplift chart --recommend --tolerance 0.5 --light FL11 --atlas-materials
@@ -96,20 +91,17 @@ def command(
     if recommend:
         _recommend(source, required)
         return
-    if any(value not in (None, False) for value in required.values()):
+    if any(required.values()):
         raise click.UsageError("The limits of a recommendation require --recommend.")
     from uplift.common.files import check_folder, write_text
     from uplift.lab.chart.picture import render_chart, write_picture
     from uplift.lab.chart.table import chart_csv, read_chart
 
     folder = check_folder(output, FILES, inputs=files, force=force)
-    chart = read_chart(source) if source is not None else _measure(files, patterns, colours, quick=quick)
-    table, png, html = (folder / name for name in FILES)
-    write_text(chart_csv(chart), table, force=force)
-    write_picture(chart, png, force=force)
-    write_text(render_chart(chart), html, force=force)
+    chart = read_chart(source) if source is not None else _measure(files, patterns, quick=quick)
+    table, page = partial(write_text, chart_csv(chart)), partial(write_text, render_chart(chart))
+    write_files(folder, FILES, table, partial(write_picture, chart), page, force=force)
     _print_fronts(chart)
-    say(f"{folder}: {', '.join(FILES)}", err=True)
 
 
 def _recommend(source: str | None, required: dict[str, Any]) -> None:
@@ -118,8 +110,7 @@ def _recommend(source: str | None, required: dict[str, Any]) -> None:
     from uplift.viz.format import format_error, format_size, format_time
 
     chart = read_chart(source) if source is not None else shipped_chart()
-    is_given = any(value not in (None, False) for value in required.values())
-    for title, each in {"": Requirement(**required)}.items() if is_given else SITUATIONS.items():
+    for title, each in {"": Requirement(**required)}.items() if any(required.values()) else SITUATIONS.items():
         row = recommend_cube(chart, each)
         paragraph(
             f"{title}{': ' * bool(title)}{row.title}: {format_time(row.numbers['time_ns'])} per RGB, mean ΔE00 "
@@ -129,12 +120,12 @@ def _recommend(source: str | None, required: dict[str, Any]) -> None:
         say(f"  {row.call}")
 
 
-def _measure(files: tuple[str, ...], patterns: tuple[str, ...], colours: int, *, quick: bool) -> Chart:
+def _measure(files: tuple[str, ...], patterns: tuple[str, ...], *, quick: bool) -> Chart:
     from uplift.lab.chart.measure import QUICK_METHODS, measure_methods, select_methods
     from uplift.lab.chart.method import QUICK, Effort, make_task
 
     methods = select_methods(patterns or (QUICK_METHODS if quick else ()))
-    task = make_task(read_atlases(files), colours, QUICK if quick else Effort())
+    task = make_task(read_atlases(files), COLOURS, QUICK if quick else Effort())
     with progress_bar("methods") as progress:
         return measure_methods(methods, task, progress)
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -21,11 +21,10 @@ from ..startup import enable_jit_cache
 if TYPE_CHECKING:
     from uplift.common.progress import ProgressCallback
     from uplift.lookup import Cube
-    from uplift.report.regression import RebuildDifference
 
 
 @click.command("check")
-@click.argument("files", nargs=-1, required=True, shell_complete=options.complete_cube)
+@click.argument("files", metavar="CUBE...", nargs=-1, required=True, shell_complete=options.complete_cube)
 @options.atlas_folders
 @click.option("--update", is_flag=True, help="Replace the cubes that differ by the rebuilt ones.")
 @options.output_format("table", "json")
@@ -55,85 +54,60 @@ def command(
     enable_jit_cache()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
         results = [_check(Path(file), folders, progress) for file in dict.fromkeys(files)]
+    records = [record for record, _, _ in results]
     if style == "json":
-        print_json([_object(result) for result in results])
+        print_json(records)
     elif not quiet:
-        _print_table(results)
-        for result in results:
-            _explain(result)
+        _print_table(records)
     is_failed = False
-    for result in results:
-        if result.failures and update and result.rebuilt:
-            result.rebuilt.save(result.path, force=True)
-            say(f"{result.path}: replaced", err=True)
-        elif result.failures:
+    for record, rebuilt, error in results:
+        if record["failures"] and update and rebuilt:
+            rebuilt.save(record["cube"], force=True)
+            say(f"{record['cube']}: replaced", err=True)
+        elif record["failures"]:
             is_failed = True
-            if result.error and style != "json":
-                CommandFailure(result.error).show()
+            if error and style != "json":
+                CommandFailure(error).show()
     if is_failed:
         raise SystemExit(1)
 
 
-@dataclass(frozen=True, eq=False)
-class _Result:
-    """Result of the check of one cube: a comparison, or the error that prevented it."""
-
-    path: Path
-    rebuilt: Cube | None
-    comparison: RebuildDifference | None = None
-    error: UpliftError | None = None
-    changed: tuple[UpliftWarning, ...] = ()
-
-    @property
-    def failures(self) -> tuple[str, ...]:
-        """Measures over their limits, or the code of the error, and those of changed atlases."""
-        changed = tuple(dict.fromkeys(warning.code for warning in self.changed))
-        if self.comparison:
-            return self.comparison.failures + changed
-        return (self.error.code,) if self.error else changed
-
-
-def _check(path: Path, folders: Sequence[str], progress: ProgressCallback) -> _Result:
+def _check(
+    path: Path, folders: Sequence[str], progress: ProgressCallback
+) -> tuple[dict[str, Any], Cube | None, UpliftError | None]:
+    """Return the record of a check, the rebuilt cube if there is one, and the error that prevented the comparison."""
     from uplift.lookup import load
     from uplift.pipeline.rebuild import rebuild
     from uplift.report.regression import compare_rebuilt
 
-    rebuilt = None
+    rebuilt = comparison = error = None
+    changed: list[UpliftWarning] = []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UpliftWarning)
         try:
             stored = load(path)
             rebuilt = rebuild(stored, path, folders, progress=progress)
-            changed = tuple(each.message for each in caught if isinstance(each.message, UpliftWarning))
-            return _Result(path, rebuilt, compare_rebuilt(path, stored.data, rebuilt.data), changed=changed)
-        except UpliftError as error:
-            return _Result(path, rebuilt, error=error)
-
-
-def _explain(result: _Result) -> None:
-    """Print what has changed in the atlas of a cube."""
-    for warning in result.changed:
-        say(f"{result.path}: {warning.problem}")
-    for entry in result.comparison.entries if result.comparison else ():
-        by = "" if entry.delta_e is None else f", ΔE00 {entry.delta_e:.2g}"
-        say(f"  {entry.name}: {entry.change}{by}")
-
-
-def _object(result: _Result) -> dict[str, object]:
-    comparison, error = result.comparison, result.error
-    return {
-        "cube": str(result.path),
-        "passed": not result.failures,
-        "failures": list(result.failures),
+            changed = [each.message for each in caught if isinstance(each.message, UpliftWarning)]
+            comparison = compare_rebuilt(path, stored.data, rebuilt.data)
+        except UpliftError as cause:
+            error = cause
+    codes = [error.code] if error else [each.code for each in changed]
+    failures = [*(comparison.failures if comparison else ()), *codes]
+    record = {
+        "cube": str(path),
+        "passed": not failures,
+        "failures": list(dict.fromkeys(failures)),
         "measures": comparison.measures if comparison else {},
         "status": {"stored": comparison.stored_counts, "rebuilt": comparison.rebuilt_counts} if comparison else {},
-        "atlas_changed": [warning.problem for warning in result.changed],
+        "atlas_changed": [] if error else [each.problem for each in changed],
         "entries": [asdict(entry) for entry in comparison.entries] if comparison else [],
         "error": error_object(error) if error else None,
     }
+    return record, rebuilt, error
 
 
-def _print_table(results: Sequence[_Result]) -> None:
+def _print_table(records: Sequence[dict[str, Any]]) -> None:
+    """Print a row per cube, and what has changed in their atlases."""
     from rich.text import Text
 
     from uplift.report.regression import LIMITS
@@ -142,13 +116,19 @@ def _print_table(results: Sequence[_Result]) -> None:
     table = make_table(("cube",), (headings.get(name, name.replace("delta_e_", "ΔE ")) for name in LIMITS))
     for heading in ("nodes", "verdict"):
         table.add_column(heading, no_wrap=True)
-    for result in results:
+    for record in records:
         cells = dict.fromkeys((*LIMITS, "status"), "–")
-        if result.comparison:
-            cells = {name: f"{result.comparison.measures[name]:.1e}" for name in LIMITS}
-            cells["status"] = "differs" if "status" in result.failures else "same"
-        styled = (Text(text, style="bold red" if name in result.failures else "") for name, text in cells.items())
-        verdict = Text("FAILED", style="bold red") if result.failures else Text("passed", style="green")
-        table.add_row(str(result.path), *styled, verdict)
+        if record["measures"]:
+            cells = {name: f"{record['measures'][name]:.1e}" for name in LIMITS}
+            cells["status"] = "differs" if "status" in record["failures"] else "same"
+        styled = (Text(text, style="bold red" if name in record["failures"] else "") for name, text in cells.items())
+        verdict = Text("passed", style="green") if record["passed"] else Text("FAILED", style="bold red")
+        table.add_row(record["cube"], *styled, verdict)
     table.add_row("limit", *(f"{limit:.0e}" for limit in LIMITS.values()), "same", "", style="dim")
     show(table)
+    for record in records:
+        for problem in record["atlas_changed"]:
+            say(f"{record['cube']}: {problem}")
+        for entry in record["entries"]:
+            by = "" if entry["delta_e"] is None else f", ΔE00 {entry['delta_e']:.2g}"
+            say(f"  {entry['name']}: {entry['change']}{by}")

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from functools import partial
 from typing import TYPE_CHECKING
 
 import click
 
+from uplift.common.files import check_folder, write_text
+
 from .. import options
 from ..inputs import DEFAULT_ATLASES, read_atlases
-from ..output.console import make_table, print_csv_text, print_json, say, show
+from ..output.console import make_table, print_csv_text, print_json, say, show, write_files
 from ..output.progress import progress_bar
 from ..startup import use_one_blas_thread
 
@@ -40,7 +42,7 @@ SPECTRA = ("surfaces.csv", "lights.csv")
     help="Write surfaces and lights as a representation or filter stores them to --output, and compare nothing: PS16, "
     "PF16, RS32, TM9, SG3, or PS16:KIND:EXTENT:PARAMETERS with a filter, such as PS16:gaussian:7:0.5.",
 )
-@options.output_folder
+@options.output("Folder for tables and plots.", metavar="DIR")
 @options.output_format("table", "json", "csv")
 @options.force
 def command(
@@ -78,10 +80,9 @@ def command(
       uplift compare --tolerance 1.0
       uplift compare --atlas paints.csv --light LED-B3 --light HP1 --tolerance 0.5
       uplift compare --filters --output filters --force
-      uplift compare --atlas paints.csv --light FL11 --write PF16 --output filtered
+      uplift compare --atlas paints.csv --light FL11 --write PF16 -o filtered
     """
     use_one_blas_thread()
-    from uplift.common.files import check_folder
     from uplift.lab.comparison.compare import check_target
 
     if write is not None:
@@ -94,7 +95,12 @@ def command(
     folder = None if output is None else check_folder(output, FILES, inputs=files, force=force)
     comparison, tuned = _measure(files, lights, filters=filters, quick=quick)
     if folder is not None:
-        _write(comparison, tuned, folder, force=force)
+        from uplift.lab.comparison.pictures import render_comparison, write_boxes, write_costs
+
+        page = partial(write_text, render_comparison(comparison, tuned))
+        write_files(
+            folder, FILES, partial(write_boxes, comparison), partial(write_costs, comparison), page, force=force
+        )
     if tolerance is not None:
         _print_advice(comparison, tolerance)
     elif style == "table":
@@ -105,15 +111,13 @@ def command(
 
 def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[str, ...], output: str, *, force: bool) -> None:
     from uplift.atlas import merge, write_atlas
-    from uplift.common.files import check_folder
     from uplift.lab.comparison.compare import make_scene, represent
     from uplift.scene.representations import find_representation
 
     representation, atlases = find_representation(name), read_atlases(files)
     pair = represent(representation, make_scene(atlases, lights), merge(atlases.values()).names)
     folder = check_folder(output, SPECTRA, inputs=files, force=force)
-    for atlas, file in zip(pair, SPECTRA, strict=True):
-        write_atlas(atlas, folder / file, force=force)
+    write_files(folder, SPECTRA, *(partial(write_atlas, atlas) for atlas in pair), force=force)
     say(f"{folder}: {len(pair[0])} surfaces and {len(pair[1])} lights as {representation.name}")
 
 
@@ -132,17 +136,6 @@ def _measure(
         return comparison, ()
     with progress_bar("filters") as progress:
         return comparison, tune_filters(scene, COARSE_STRIDE if quick else FINE_STRIDE, progress=progress)
-
-
-def _write(comparison: Comparison, tuned: tuple[TunedFilter, ...], folder: Path, *, force: bool) -> None:
-    from uplift.common.files import write_text
-    from uplift.lab.comparison.pictures import render_comparison, write_boxes, write_costs
-
-    boxes, costs, html = (folder / name for name in FILES)
-    write_boxes(comparison, boxes, force=force)
-    write_costs(comparison, costs, force=force)
-    write_text(render_comparison(comparison, tuned), html, force=force)
-    say(f"{folder}: {', '.join(FILES)}", err=True)
 
 
 def _print_advice(comparison: Comparison, tolerance: float) -> None:

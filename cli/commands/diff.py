@@ -20,15 +20,13 @@ from ..output.progress import progress_bar
 @click.option(
     "--tolerance",
     type=options.NUMBER,
-    metavar="DE",
+    metavar="ΔE00",
     help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by more, if one cube alone lacks a "
     "colour, or if entries were added or removed.",
 )
-@click.option(
-    "--worst", type=options.Whole(0), default=5, show_default=True, help="Number of worst colours of each set."
-)
+@click.option("--worst", type=options.Whole(0), default=5, help="Number of worst colours of each set.")
 @options.pixels()
-@options.output("HTML page with pictures of where the cubes differ.")
+@options.output("HTML page with pictures of where the cubes differ.", callback=options.converted(check_page))
 @options.output_format("table", "json")
 @options.force
 def command(
@@ -56,7 +54,7 @@ def command(
     """
     from uplift.colorimetry.lights import SCENE_LIGHTS
     from uplift.common.errors import OptionError
-    from uplift.common.files import check_output, write_text
+    from uplift.common.files import check_outputs, write_text
     from uplift.lookup import load
     from uplift.report.diff import diff_cubes, to_json
 
@@ -65,9 +63,7 @@ def command(
     paths = expand_patterns(images)
     names = (first, second) if first != second else (first, f"{second} (again)")
     cubes = dict(zip(names, map(load, (first, second)), strict=True))
-    if output is not None:
-        check_page(output)
-        check_output(output, inputs=(first, second, *paths), force=force)
+    check_outputs((output,), inputs=(first, second, *paths), force=force)
     with progress_bar("comparing answers"):
         read = read_pictures(paths, next(iter(cubes.values())).data.sensor, **pixels)
         pictures = {path: picture.rgb.astype(float) for path, picture in zip(paths, read, strict=True)}

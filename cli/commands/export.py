@@ -44,6 +44,7 @@ APPLIES = {
     "--format",
     "style",
     type=click.Choice(tuple(SUFFIXES)),
+    metavar="FORMAT",
     help="Format to write. [default: by the suffix of --output]",
 )
 @click.option(
@@ -60,25 +61,10 @@ APPLIES = {
     type=click.Choice(("spectra", "moments")),
     help="What programs interpolate: spectra, with exact colours, or coefficients. [default: spectra]",
 )
-@click.option(
-    "--table",
-    type=click.Choice(("header", "file")),
-    help="Where the table of a program is. [default: header for c, else file]",
-)
+@options.table
 @options.fill
 @options.force
-def command(
-    cube: str,
-    output: str | None,
-    style: str | None,
-    res: int | None,
-    light: str | None,
-    adapt: bool | None,
-    mode: str | None,
-    table: str | None,
-    fill_missing: bool,
-    force: bool,
-) -> None:
+def command(cube: str, output: str | None, style: str | None, fill_missing: bool, force: bool, **given: Any) -> None:
     """Write a cube in a format that other tools read.
 
     \b
@@ -118,12 +104,11 @@ def command(
     style = style or {SUFFIXES[name]: name for name in SUFFIXES}.get(".cuh" if suffix == ".cu" else suffix)
     if style is None:
         raise click.UsageError(f"Give --format, or --output ending in {', '.join(dict.fromkeys(SUFFIXES.values()))}.")
-    given = {"res": res, "light": light, "adapt": adapt, "mode": mode, "table": table}
     settings = {name: value for name, value in given.items() if value is not None}
     for name in settings:
         if style not in APPLIES[name]:
             raise click.UsageError(f"--{name} applies to {', '.join(APPLIES[name])} only.")
-    if style in LUTS and light is None:
+    if style in LUTS and "light" not in settings:
         raise click.UsageError("A cube or clf table shows the colours under a light: give --light, such as HP1.")
     from uplift.common.files import check_output
     from uplift.lookup import load

@@ -9,10 +9,10 @@ from ..output.console import print_fields, print_json, say
 
 
 @click.command("info")
-@click.argument("file", required=False, shell_complete=options.complete_cube)
+@click.argument("cube", metavar="[CUBE]", required=False, shell_complete=options.complete_cube)
 @options.output_format("table", "json")
-def command(file: str | None, style: str) -> None:
-    """Show the contents and provenance of a cube file. FILE defaults to the packaged cube.
+def command(cube: str | None, style: str) -> None:
+    """Show the contents and provenance of a cube file. CUBE defaults to the packaged cube.
 
     \b
     Examples:
@@ -22,7 +22,7 @@ def command(file: str | None, style: str) -> None:
     from uplift.cube import summarise
     from uplift.lookup import load
 
-    print_facts(file or "packaged cube", summarise(load(file).data), style)
+    print_facts(cube or "packaged cube", summarise(load(cube).data), style)
 
 
 def print_facts(name: str, fields: dict[str, Any], style: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -11,17 +11,9 @@ from uplift.common.errors import OutputError, UpliftWarning
 
 from .. import options
 from ..ingredients import SpectrumResolver
-from ..inputs import find_input_space
-from ..output.answers import (
-    coordinates,
-    describe_coordinates,
-    format_rgb,
-    hex_code,
-    patch,
-    print_columns,
-    sparkline,
-)
-from ..output.console import emit, has_colours, print_fields, print_json, say
+from ..inputs import check_range, find_input_space
+from ..output.answers import coordinates, describe_coordinates, format_rgb, hex_code, patch, print_spectrum
+from ..output.console import print_fields, print_json, say
 from ..output.diagnostics import warn
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
@@ -62,9 +54,6 @@ if TYPE_CHECKING:
     metavar="N",
     help="Refractive index of the binder, 1.5 for oil; 1 leaves out the surface.",
 )
-@options.choice(
-    "--incidence", "perpendicular", "diffuse", help="Incidence of light on the surface given by --refractive-index."
-)
 @click.option(
     "--surface-reflectance",
     type=options.NUMBER,
@@ -94,10 +83,10 @@ if TYPE_CHECKING:
     is_flag=True,
     help="Mix the colours by every model: Kubelka and Munk, Amy, Duntley, dyes, filters, and heuristics of RGB.",
 )
-@options.cube
+@options.cube()
 @options.atlas("Measured spectra whose entries are ingredients")
 @options.output_wavelengths
-@options.out_of_gamut("scale", "mixtures and pixels")
+@options.out_of_gamut("scale", "which keeps the hue of bright mixtures", "mixtures and pixels")
 @options.output_format("table", "json")
 @options.plot("Plot the ramp from the first ingredient to the last")
 @click.option("--steps", type=options.Whole(2, 1000), default=9, help="Number of swatches on the ramp.")
@@ -112,7 +101,6 @@ def command(
     thickness: float | None,
     ground: str | None,
     refractive_index: float,
-    incidence: str,
     surface_reflectance: float | None,
     internal_reflectance: float | None,
     plate: str | None,
@@ -146,13 +134,13 @@ def command(
 
     \b
     More examples:
-      uplift mix --dye 1:'#d03060' 3:'#f0c000' --refractive-index 1.5 --thickness 2
+      uplift mix --dye '#d03060' 3:'#f0c000' --refractive-index 1.5 --thickness 2
       uplift mix '#e8c070' --surface-reflectance 0.04 --internal-reflectance 0.6
       uplift mix --dye '#d03060' --refractive-index 1.5 --plate transmitted
       uplift mix --duntley 2:duntley.csv --thickness 0.5 --ground black
       uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5
       uplift mix --additive '#ff0000' 0.5:'#00ff00'
-      uplift mix '#c8342a/#601810' --thickness 0.4 --over painting.exr -o glazed.exr
+      uplift mix '#c8342a/#601810' --thickness 0.4 --over painting.exr -o coat.exr
       uplift mix --theories '#005fa0' '#ffd200'
     """
     import numpy as np
@@ -186,6 +174,7 @@ def command(
     check_outputs((plot_path, output), inputs=(cube_path, over, *files), force=force)
     cube = load(cube_path)
     sensor, space = cube.data.sensor, find_input_space(input_space)
+    check_range(wavelengths, cube.wavelengths)
     further = np.array([]) if theories or over is not None else as_wavelengths(wavelengths, cube.wavelengths)
     grid = np.concatenate([sensor.wavelengths, further])  # for colours, followed by those of the output
     resolver = SpectrumResolver(cube, read_atlas(*files) if files else Atlas(), grid, space)
@@ -196,7 +185,7 @@ def command(
         return
     assumed: dict[str, Scattering] = {"root": SQUARE_ROOT, "constant": CONSTANT}
     law = assumed.get(scattering) or dispersive(sensor, further)
-    of_index = Surface.of_index(refractive_index, incidence)
+    of_index = Surface.of_index(refractive_index)
     surface = Surface(
         of_index.outside if surface_reflectance is None else surface_reflectance,
         of_index.inside if internal_reflectance is None else internal_reflectance,
@@ -233,13 +222,28 @@ def command(
     if mapped.outside[0]:
         problem = f"the mixture lies outside [0, 1]: mapped into the gamut ({method})"
         warn([UpliftWarning(problem)])
-    mixture = Mixture(kind, names, amounts, further, mixed[0, count:], mapped.rgb)
+    title = ", ".join(f"{each:g} of {name}" for each, name in zip(parts, names, strict=True))
     if plot_path is not None:
-        _plot(cube, mixture, plot_path, force=force)
+        from uplift.colorimetry.srgb import to_display_codes
+        from uplift.viz.plots import Strip, plot_strips
+
+        codes = to_display_codes(mapped.rgb, sensor) / 255
+        strips = [Strip(f"{kind}: {title}", codes[:1]), Strip(f"from {names[0]} to {names[-1]}", codes[1:])]
+        plot_strips(strips[: len(names)], plot_path, force=force)
+    # The mixture, followed by the ramp from its first to its last ingredient.
+    colours = [{"parts": row.tolist(), **_colour(cube, rgb)} for row, rgb in zip(amounts, mapped.rgb, strict=True)]
     if style == "json":
-        _print_json(cube, mixture)
-    else:
-        _print_table(cube, mixture, complete=wavelengths is not None)
+        spectrum = {"wavelengths": further.tolist(), "spectrum": mixed[0, count:].tolist()}
+        print_json({"kind": kind, "names": names, **colours[0], **spectrum, "ramp": colours[1:]}, indent=None)
+        return
+    fields = {kind: title, "linear RGB": f"{format_rgb(mapped.rgb[0])}  {colours[0]['hex']}"}
+    fields |= describe_coordinates(colours[0])
+    if len(names) > 1:
+        fields["ramp"] = " ".join(each["hex"] for each in colours[1:])
+    values = mixed[0, count:]
+    patches = {"linear RGB": patch(cube, mapped.rgb[0]), "ramp": "".join(patch(cube, rgb, 4) for rgb in mapped.rgb[1:])}
+    highest = max(1, values.max())
+    print_spectrum(fields, further, values, complete=wavelengths is not None, patches=patches, highest=highest)
 
 
 def _print_theories(cube: Cube, names: tuple[str, ...], parts: Array, spectra: Array, method: str, style: str) -> None:
@@ -256,72 +260,9 @@ def _print_theories(cube: Cube, names: tuple[str, ...], parts: Array, spectra: A
         rows = [{"theory": title, **_colour(cube, rgb)} for title, rgb in mixed.items()]
         print_json({"names": names, "theories": rows}, indent=None)
         return
-    for title, rgb in mixed.items():
-        swatch = f"{patch(cube, rgb)}  " if has_colours() else ""
-        emit(f"{swatch}{hex_code(cube, rgb)}  {format_rgb(rgb)}  {title}")
-
-
-@dataclass(frozen=True, eq=False)
-class Mixture:
-    """A mixture and the ramp from its first to its last ingredient.
-
-    Row 0 of ``parts`` (1 + k, n) and of ``rgb`` (1 + k, 3), linear in [0, 1], is the mixture. The other rows are the
-    ramp. ``spectrum`` (N,) at ``wavelengths`` (N,) nm is that of the mixture.
-    """
-
-    kind: str
-    names: tuple[str, ...]
-    parts: Array
-    wavelengths: Array
-    spectrum: Array
-    rgb: Array
-
-    @property
-    def recipe(self) -> str:
-        """The ingredients as '2 of blue, 1 of yellow'."""
-        return ", ".join(f"{parts:g} of {name}" for parts, name in zip(self.parts[0], self.names, strict=True))
-
-
-def _plot(cube: Cube, mixture: Mixture, path: str, *, force: bool) -> None:
-    """Plot swatches of the mixture and of the ramp."""
-    from uplift.colorimetry.srgb import to_display_codes
-    from uplift.viz.plots import Strip, plot_strips
-
-    codes = to_display_codes(mixture.rgb, cube.data.sensor) / 255
-    strips = [Strip(f"{mixture.kind}: {mixture.recipe}", codes[:1])]
-    if len(mixture.names) > 1:
-        strips.append(Strip(f"from {mixture.names[0]} to {mixture.names[-1]}", codes[1:]))
-    plot_strips(strips, path, force=force)
+    patches = {title: patch(cube, rgb) for title, rgb in mixed.items()}
+    print_fields({title: f"{hex_code(cube, rgb)}  {format_rgb(rgb)}" for title, rgb in mixed.items()}, patches)
 
 
 def _colour(cube: Cube, rgb: Array) -> dict[str, Any]:
     return {"rgb": rgb.tolist(), "hex": hex_code(cube, rgb), **coordinates(cube, rgb)}
-
-
-def _print_json(cube: Cube, mixture: Mixture) -> None:
-    mixed, *ramp = (
-        {"parts": parts.tolist(), **_colour(cube, rgb)} for parts, rgb in zip(mixture.parts, mixture.rgb, strict=True)
-    )
-    fields = {
-        "kind": mixture.kind,
-        "names": mixture.names,
-        **mixed,
-        "wavelengths": mixture.wavelengths.tolist(),
-        "spectrum": mixture.spectrum.tolist(),
-        "ramp": ramp,
-    }
-    print_json(fields, indent=None)
-
-
-def _print_table(cube: Cube, mixture: Mixture, *, complete: bool) -> None:
-    rgb, spectrum, wavelengths = mixture.rgb[0], mixture.spectrum, mixture.wavelengths
-    fields = {mixture.kind: mixture.recipe, "linear RGB": f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"}
-    fields |= describe_coordinates(cube, rgb)
-    if len(mixture.names) > 1:
-        fields["ramp"] = " ".join(hex_code(cube, step) for step in mixture.rgb[1:])
-    shape = spectrum / max(1, spectrum.max())
-    fields["spectrum"] = f"{sparkline(shape)}  {wavelengths[0]:g}–{wavelengths[-1]:g} nm"
-    ramp = "".join(patch(cube, step, 4) for step in mixture.rgb[1:])
-    print_fields(fields, {"linear RGB": patch(cube, rgb), "ramp": ramp})
-    emit("")
-    print_columns(wavelengths, spectrum, complete=complete)

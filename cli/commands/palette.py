@@ -31,7 +31,7 @@ LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of th
 @options.output("Write the designed materials as an atlas; CSV if FILE ends in .csv.")
 @options.plot("Plot the matrix of colours")
 @options.plot("Plot the spectra of lights and materials", "--plot-spectra", "spectra_path")
-@click.option("--html", metavar="HTML", help="Write a page that shows the materials under any mixture of the lights.")
+@options.page("Write a page that shows the materials under any mixture of the lights.")
 @click.option(
     "--image",
     metavar="FILE",

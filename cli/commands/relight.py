@@ -29,7 +29,7 @@ DIM = 32
 @click.command("relight")
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
 @options.light("Illuminant", "A FL11 HP1")
-@click.option("--cube", "cube_path", metavar="FILE", help="Cube whose spectra are shown as well.")
+@options.cube(", whose spectra are shown as well.")
 @options.atlas("Measured spectra; a cube is built from them and shown as well")
 @options.pixels()
 @options.output(
@@ -63,7 +63,7 @@ def command(
     Examples:
       uplift relight
       uplift relight wood.png -o wood.html
-      uplift relight wood.png still-life.png --atlas paints.csv --light LED-B3 --light HP1 -o both.png
+      uplift relight wood.png --atlas paints.csv --light led --light HP1 -o my.png
       uplift relight --cube macbeth-32.uplift --format json -o cube.html
       uplift relight painting.exr --light 3200K --light led -o relit.exr
 

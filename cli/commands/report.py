@@ -45,7 +45,7 @@ def command(
     Examples:
       uplift report macbeth-32.uplift
       uplift report macbeth-32.uplift --atlas cie2017 -o unseen.html
-      uplift report macbeth-32.uplift --light D50 --light FL4 --worst 6 -o worst.html
+      uplift report macbeth-32.uplift --light FL4 --worst 6 -o worst.html
       uplift report macbeth-32.uplift --format json | jq .failures
 
     The measured spectra are those of the cube's atlases. Atlases are identified by name and content, and searched for
@@ -56,20 +56,17 @@ def command(
     """
     from uplift.atlas import read_atlas
     from uplift.colorimetry.lights import REPORT_LIGHTS
-    from uplift.common.files import check_output, write_text
+    from uplift.common.files import check_outputs, write_text
     from uplift.lookup import load
     from uplift.pipeline.rebuild import recorded_atlas
     from uplift.report.assessment import assess
     from uplift.report.page import render_report, to_json
 
-    path = None if output is None else Path(output)
-    if path is None and style == "html":
-        path = Path(f"{Path(cube).stem}.html")
-    if path is not None and style == "html":
-        check_page(path)
+    path = output
+    if style == "html":
+        path = check_page(output or f"{Path(cube).stem}.html")
     loaded = load(cube)
-    if path is not None:
-        check_output(path, inputs=(cube, *files), force=force)
+    check_outputs((path,), inputs=(cube, *files), force=force)
     with progress_bar("evaluating the cube"):
         atlas = read_atlas(*files) if files else recorded_atlas(loaded.data, cube, folders)
         size = Path(cube).stat().st_size

@@ -1,18 +1,17 @@
 """``uplift study``: measurements of models, solver and errors."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import click
 
-from uplift.common.text import format_value, parse_float, parse_whole
+from uplift.common.files import check_folder
 
 from .. import options
 from ..inputs import DEFAULT_ATLASES, read_atlases
-from ..output.console import make_table, print_csv_text, print_json, say, show
+from ..output.console import make_table, print_csv_text, print_json, say, show, write_files
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
@@ -21,7 +20,6 @@ STABILITY_PLOTS, SENSITIVITY_PLOTS = ("stability.png",), ("sensitivity-locality.
 """Files of --output."""
 MACBETH = "macbeth"
 Row = Mapping[str, Any]
-output_option = click.option("-o", "--output", metavar="DIR", help="Folder for plots.")
 
 
 @click.group("study")
@@ -31,24 +29,11 @@ def command() -> None:
     \b
     Examples:
       uplift study moments
-      uplift study moments --atlas paints.csv --output moments-paints --format json
+      uplift study moments --atlas paints.csv -o moments-paints --format json
       uplift study held-out --atlas paints.csv
       uplift study stability --quick
       uplift study sensitivity macbeth-32.uplift
     """
-
-
-def _check_plots(output: str | None, names: Sequence[str], inputs: Sequence[str | None], *, force: bool) -> None:
-    from uplift.common.files import check_folder
-
-    if output is not None:
-        check_folder(output, names, inputs=inputs, force=force)
-
-
-def _write_plots(output: str, writers: Mapping[str, Callable[..., None]], *, force: bool) -> None:
-    for name, write in writers.items():
-        write(Path(output) / name, force=force)
-    say(f"{Path(output)}: {', '.join(writers)}", err=True)
 
 
 def _print(style: str, records: Any, rows: Sequence[Row], table: Sequence[Row]) -> None:
@@ -76,13 +61,9 @@ def _print_table(rows: Sequence[Row]) -> None:
 @command.command("moments")
 @options.atlas("Atlas", DEFAULT_ATLASES)
 @click.option(
-    "--max-moments",
-    metavar="N",
-    type=options.Whole(),
-    default=15,
-    help="Largest number of moments, up to 32.",
+    "--max-moments", metavar="N", type=options.Whole(), default=15, help="Largest number of moments, up to 32."
 )
-@output_option
+@options.output("Folder for plots.", metavar="DIR")
 @options.output_format("table", "json", "csv")
 @options.force
 def moments(files: tuple[str, ...], max_moments: int, output: str | None, style: str, force: bool) -> None:
@@ -105,15 +86,14 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
     from uplift.lab.study.moments import TECHNIQUES, study_moments
 
     atlases = read_atlases(files)
-    _check_plots(output, MOMENTS_PLOTS, files, force=force)
+    folder = None if output is None else check_folder(output, MOMENTS_PLOTS, inputs=files, force=force)
     with progress_bar("reconstructions") as progress:
         study = study_moments(atlases, max_moments, progress)
-    if output is not None:
+    if folder is not None:
         from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
 
         plots = partial(plot_errors, {"all entries": study.curves()}), partial(plot_patches, study)
-        writers = (*plots, partial(plot_worst, study))
-        _write_plots(output, dict(zip(MOMENTS_PLOTS, writers, strict=True)), force=force)
+        write_files(folder, MOMENTS_PLOTS, *plots, partial(plot_worst, study), force=force)
     results = [[study.result(technique, count) for technique in TECHNIQUES] for count in range(max_moments + 1)]
     table = [
         {"moments": str(count)}
@@ -162,39 +142,18 @@ def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, s
             say(f"{record['atlas']}: {means}; {shares}")
 
 
-def _list_option(name: str, kind: Callable[[str], Any], metavar: str, help: str) -> Callable[..., Any]:
-    """An option for a list such as '4,8,16', by default None."""
-
-    def parse(context: click.Context, parameter: click.Parameter, text: str | None) -> tuple[Any, ...] | None:
-        try:
-            return None if text is None else tuple(kind(word.strip()) for word in text.split(","))
-        except ValueError as error:
-            raise click.BadParameter(f"{format_value(text)} is not a list of such values, as 4,8,16") from error
-
-    return click.option(name, callback=parse, metavar=metavar, help=help)
-
-
 @command.command("stability")
 @click.option("--quick", is_flag=True, help="Small lattices and few values: some seconds per model.")
-@_list_option("--dims", parse_whole, "N,…", "Lattice nodes along each axis.")
-@_list_option("--coefficients", parse_whole, "N,…", "Coefficients per spectrum, 3 to 17.")
-@_list_option("--spaces", str, "NAME,…", "RGB spaces of colour-science.")
-@_list_option("--models", str, "NAME,…", "moments, sigmoid.")
-@_list_option("--thresholds", parse_float, "X,…", "Largest residuals, |linear RGB|.")
 @options.atlas("Atlas in addition to the synthetic ones", MACBETH)
-@_list_option("--atlases", str, "NAME,…", "Atlases to use by name, or 'none'.")
-@click.option("--samples", type=options.Whole(0, 100_000), help="Number of random settings in addition to the grids.")
-@output_option
+@options.output("Folder for plots.", metavar="DIR")
 @options.output_format("table", "json", "csv")
 @options.force
-def stability(
-    quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool, **settings: Any
-) -> None:
+def stability(quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool) -> None:
     """Build cubes over dims, coefficients, models, spaces, thresholds and atlases, and count unfitted nodes.
 
     Reports for each build the realisable and the unfitted nodes, rounds, improvement attempts, the largest residual and
     the time. The builds are a grid of each setting against models and coefficients, and a random sample of other
-    combinations.
+    combinations; `uplift.lab.study.stability` takes other ones.
 
     Atlases are none, the ColorChecker, and three difficult synthetic ones: crowded, spiky and noisy. --output writes a
     heat map of the largest residuals, as PNG.
@@ -202,23 +161,21 @@ def stability(
     \b
     Examples:
       uplift study stability --quick --output out --force
-      uplift study stability --format json
-      uplift study stability --thresholds 1e-4,1e-6 --dims 9 --format csv
+      uplift study stability --atlas paints.csv --format json
     """
     enable_jit_cache()
     from uplift.lab.study.stability import NO_ATLAS, QUICK_DESIGN, SYNTHETIC_ATLASES, DesignSpace, study_stability
 
     atlases = read_atlases(files or (MACBETH,)) | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
-    given = {name: value for name, value in settings.items() if value is not None}
-    design = replace(QUICK_DESIGN if quick else DesignSpace(), **({"atlases": (NO_ATLAS, *atlases)} | given))
-    _check_plots(output, STABILITY_PLOTS, files, force=force)
+    design = replace(QUICK_DESIGN if quick else DesignSpace(), atlases=(NO_ATLAS, *atlases))
+    folder = None if output is None else check_folder(output, STABILITY_PLOTS, inputs=files, force=force)
     with progress_bar("builds") as progress:
         results = study_stability(design.configs(), atlases, progress)
     records = list(results.values())
-    if output is not None:
+    if folder is not None:
         from uplift.lab.study.plots import plot_map
 
-        _write_plots(output, {STABILITY_PLOTS[0]: partial(plot_map, records)}, force=force)
+        write_files(folder, STABILITY_PLOTS, partial(plot_map, records), force=force)
     hidden = ("success", "points", "stand_ins")
     _print(style, records, records, [{key: row[key] for key in row if key not in hidden} for row in records])
     if style == "table":
@@ -238,7 +195,7 @@ def stability(
     metavar="NAME",
     help="Published method whose queries are perturbed too, such as otsu2018 or mallett2019; repeatable.",
 )
-@output_option
+@options.output("Folder for plots.", metavar="DIR")
 @options.output_format("table", "json")
 @options.force
 def sensitivity(
@@ -280,13 +237,13 @@ def sensitivity(
     atlas = recorded_atlas(loaded.data, cube, folders) if cube is not None and entries else None
     if output is not None and atlas is None:
         raise click.UsageError("--output draws the effect of entries: it needs a CUBE with an atlas, and --entries.")
-    _check_plots(output, SENSITIVITY_PLOTS, [cube], force=force)
+    folder = None if output is None else check_folder(output, SENSITIVITY_PLOTS, inputs=[cube], force=force)
     with progress_bar("builds") as progress:
         moves, changes = study_sensitivity(loaded, atlas, entries, progress)
-    if output is not None:
+    if folder is not None:
         from uplift.lab.study.plots import plot_locality
 
-        _write_plots(output, {SENSITIVITY_PLOTS[0]: partial(plot_locality, changes)}, force=force)
+        write_files(folder, SENSITIVITY_PLOTS, partial(plot_locality, changes), force=force)
     for method in others:
         moves += perturb_method(method, observer.light(NARROW_BAND_LIGHT))
     record = {"moves": moves, "changes": [change.record() for change in changes]}

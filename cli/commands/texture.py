@@ -17,7 +17,7 @@ from uplift.common.errors import OptionError, OutputError
 from uplift.common.progress import Progress
 
 from .. import options
-from ..inputs import UDIM, expand_patterns
+from ..inputs import UDIM, check_range, expand_patterns
 from ..output.console import say
 from ..output.diagnostics import CommandFailure, warn
 from ..output.progress import progress_bar
@@ -55,14 +55,7 @@ image_options = options.stacked(
 
 @click.command("texture", cls=options.Command, everyday=("target", "cube_paths", "mask", "kind", "depth", "force"))
 @image_options
-@click.option(
-    "--cube",
-    "cube_paths",
-    multiple=True,
-    metavar="FILE",
-    help="Cube file, or ACEScg for the packaged ACEScg cube; repeatable with --mask. [default: the packaged sRGB cube]",
-    shell_complete=options.complete_cube,
-)
+@options.cube(f"; repeatable with --mask{options.PACKAGED}", name="cube_paths", multiple=True)
 @click.option(
     "--mask",
     metavar="FILE",
@@ -70,11 +63,7 @@ image_options = options.stacked(
 )
 @options.choice("--representation", "spectrum", "moments", "multipliers", name="kind", help="Contents of a pixel.")
 @options.output_wavelengths
-@click.option(
-    "--depth",
-    type=click.Choice(("half", "float")),
-    help="16 or 32 bits per channel. [default: half for reflectances, else float]",
-)
+@options.depth
 @options.pixels()
 @options.fill
 @click.option(
@@ -85,24 +74,19 @@ image_options = options.stacked(
     shell_complete=options.complete_light,
 )
 def command(
-    cube_paths: tuple[str, ...],
-    mask: str | None,
-    kind: str,
-    wavelengths: Array | None,
-    **settings: Any,
+    cube_paths: tuple[str, ...], mask: str | None, kind: str, wavelengths: Array | None, **settings: Any
 ) -> None:
     """Convert every pixel of an image (EXR, HDR, PNG, JPEG, TIFF) to a spectrum and write an OpenEXR texture.
 
     \b
     Examples:
       uplift texture wood.png -o wood.exr
-      uplift texture wood.png -o moments-32.exr --cube macbeth-32.uplift --representation moments
+      uplift texture wood.png -o moments.exr --representation moments
       uplift texture 'shot.*.exr' -o uplifted-31 --wavelengths 400:700:10 --resume
       uplift texture fire.exr -o bright.exr --out-of-gamut scale
       uplift texture painting.exr -o ap1.exr --input-space ACEScg
       uplift texture shot.*.exr -o uplifted --scheduler tcp://10.0.0.5:8786
       uplift texture wood.png -o errors.exr --cube macbeth-32.uplift --errors FL11
-      uplift texture wood.png -o parts.exr --mask mask.png --cube macbeth-32.uplift --cube looks.uplift
 
     'spectrum' stores a spectral EXR in the layout of Fichet et al. 2021, at --wavelengths. 'moments' can be filtered
     and mip-mapped. 'multipliers' can be evaluated directly, by the formula in the header. Alpha and other channels are
@@ -122,7 +106,7 @@ def command(
     Pixels that are light, such as those of an environment map, need 'uplift lights texture'.
     """
     from uplift.io import texture
-    from uplift.lookup.cube import find_file
+    from uplift.lookup.cube import find_file, load
 
     encode = texture.PIXEL_ENCODINGS[kind]
     if encode is not texture.Spectrum and wavelengths is not None:
@@ -130,9 +114,11 @@ def command(
         raise OptionError(f"{kind} have no wavelengths", hint=hint)
     if len(cube_paths) > 1 and mask is None:
         raise click.UsageError("Several cubes need --mask, an image of which cube a pixel belongs to.")
-    cubes = tuple(os.path.abspath(find_file(path)) for path in cube_paths)
+    cubes = tuple(os.path.abspath(find_file(path)) for path in cube_paths) or (None,)
+    for path in cubes if wavelengths is not None else ():
+        check_range(wavelengths, load(path).wavelengths)
     pixels = texture.Spectrum(as_tuple(wavelengths)) if encode is texture.Spectrum else encode()
-    convert(cubes or (None,), pixels, mask=None if mask is None else os.path.abspath(mask), **settings)
+    convert(cubes, pixels, mask=None if mask is None else os.path.abspath(mask), **settings)
 
 
 def convert(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .. import options
-from ..inputs import DEFAULT_ATLASES, read_atlases
+from ..inputs import DEFAULT_ATLASES, check_range, read_atlases
 from ..output.console import make_table, print_csv, print_json, show
 from ..output.progress import progress_bar
 
@@ -18,9 +18,7 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    "wavelengths",
-    cls=options.Command,
-    everyday=("count", "tolerance", "files", "lights", "style", "plot_path"),
+    "wavelengths", cls=options.Command, everyday=("count", "tolerance", "files", "lights", "style", "plot_path")
 )
 @click.option("--count", metavar="N", type=options.Whole(), help="Number of wavelengths, 1 to 40.")
 @click.option(
@@ -29,7 +27,7 @@ if TYPE_CHECKING:
     type=options.NUMBER,
     help="Choose the fewest wavelengths with an error below this ΔE00.",
 )
-@options.wavelengths("Wavelengths as START:END:STEP or a list; only their weights and powers are fitted.")
+@options.wavelengths("; only their weights and powers are fitted.")
 @click.option(
     "--measure",
     type=click.Choice(("mean", "p95", "max")),
@@ -69,12 +67,10 @@ def command(
     channels: str | None,
     files: tuple[str, ...],
     lights: tuple[str, ...],
-    space: str,
-    illuminant: str,
-    observer: str,
     style: str,
     plot_path: str | None,
     force: bool,
+    **camera: str,
 ) -> None:
     """Choose the wavelengths at which a renderer samples the materials and lights of a scene.
 
@@ -85,8 +81,8 @@ def command(
     \b
     Examples:
       uplift wavelengths --count 8
-      uplift wavelengths --tolerance 1 --light D65 --light FL11 --plot wavelengths.png
-      uplift wavelengths --tolerance 0.5 --measure p95 --atlas paints.csv --format json
+      uplift wavelengths --tolerance 1 --light D65 --light FL11 --plot chosen.png
+      uplift wavelengths --tolerance 0.5 --measure p95 --atlas paints.csv
       uplift wavelengths --wavelengths 400:700:20 --light A --format csv
       uplift wavelengths --count 4 --method meyer --light C --atlas macbeth
       uplift wavelengths --orders 3 2 1 --light C --atlas macbeth
@@ -99,18 +95,17 @@ def command(
         raise click.UsageError("--channels requires --orders.")
     from uplift.atlas import merge, on_grid
     from uplift.colorimetry.observer import sensor
-    from uplift.common.files import check_output
+    from uplift.common.files import check_outputs
     from uplift.scene import wavelengths as library
 
-    if plot_path is not None:
-        check_output(plot_path, inputs=files, force=force)
-    camera = sensor(space, illuminant, observer)
+    check_outputs((plot_path,), inputs=files, force=force)
     atlas = merge(read_atlases(files).values())
-    setting = library.make_setup(on_grid(atlas, library.grid()), lights or ("D65",), observer_name=observer)
+    setting = library.make_setup(on_grid(atlas, library.grid()), lights or ("D65",), observer_name=camera["observer"])
     with progress_bar("fitting wavelengths"):
         if orders is not None:
             choice = library.choose_orders(setting, orders, channels or "opponent")
         elif wavelengths is not None:
+            check_range(wavelengths, library.grid())
             choice = library.fit_weights(setting, wavelengths)
         else:
             choice = library.choose(
@@ -120,7 +115,7 @@ def command(
         from uplift.scene.wavelengths.plots import plot_choice
 
         plot_choice(setting, choice, plot_path, force=force)
-    _print(choice, camera, atlas.names, style)
+    _print(choice, sensor(**camera), atlas.names, style)
 
 
 def _print(choice: Choice, camera: Sensor, materials: tuple[str, ...], style: str) -> None:

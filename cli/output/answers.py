@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .console import columns, say
+from .console import columns, print_fields, say
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -21,8 +21,22 @@ MAX_CELLS = 24
 """Wavelengths that are printed where the user names none; JSON and CSV have all."""
 
 
-def print_columns(wavelengths: Array, values: Array, *, complete: bool) -> None:
-    """Print wavelengths and values in columns, ordered downwards; at most `MAX_CELLS` of them unless ``complete``."""
+def print_spectrum(
+    fields: dict[str, str],
+    wavelengths: Array,
+    values: Array,
+    *,
+    complete: bool,
+    patches: dict[str, str] | None = None,
+    highest: float = 1.0,
+) -> None:
+    """Print fields, a sparkline up to the ``highest`` value, and wavelengths and values in columns, downwards.
+
+    At most `MAX_CELLS` of them are printed, unless ``complete``.
+    """
+    ends = f"{wavelengths[0]:g}–{wavelengths[-1]:g} nm"
+    print_fields(fields | {"spectrum": f"{sparkline(values / highest)}  {ends}"}, patches)
+    say()
     step = 1 if complete else -(-len(wavelengths) // MAX_CELLS)
     pairs = zip(wavelengths[::step], values[::step], strict=True)
     cells = [f"{wavelength:>6g} nm {value:8.5f}" for wavelength, value in pairs]
@@ -79,10 +93,9 @@ def coordinates(cube: Cube, rgb: Array) -> dict[str, Any]:
     }
 
 
-def describe_coordinates(cube: Cube, rgb: Array) -> dict[str, str]:
-    """Return the coordinates of linear RGB (3,) for a table, by the name of the row; empty for a camera."""
-    values = coordinates(cube, rgb)
-    if not values:
+def describe_coordinates(values: dict[str, Any]) -> dict[str, str]:
+    """Return `coordinates` for a table, by the name of the row; empty for a camera."""
+    if "hsv" not in values:
         return {}
     kind = "complement of " if values["complementary"] else ""
     wavelength = values["dominant_wavelength"]

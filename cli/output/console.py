@@ -11,7 +11,9 @@ import os
 import shutil
 import sys
 import textwrap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import chain
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -20,8 +22,6 @@ from uplift.common.text import json_escapes, printable
 
 if TYPE_CHECKING:
     from rich.text import Text
-
-    from uplift.common.csv import CsvWriter
 
     from .tables import SafeTable
 
@@ -89,30 +89,33 @@ def print_json(values: Any, indent: int | None = 2, *, before: str = "", nl: boo
 def print_json_answers(objects: Iterable[Any], *, single: bool) -> None:
     """Print one object on a line, or else an array, each object before the next one is computed."""
     if single:
-        print_json(next(iter(objects)), indent=None)
+        (values,) = objects
+        print_json(values, indent=None)
         return
     for number, values in enumerate(objects):
         print_json(values, indent=None, before=",\n" if number else "[\n", nl=False)
     emit("\n]")
 
 
-def csv_writer() -> CsvWriter:
-    """Return a writer of CSV to standard output."""
+def print_csv(header: Sequence[object], rows: Iterable[Sequence[object]]) -> None:
+    """Print a table as CSV, each row before the next one is computed."""
     from uplift.common.csv import CsvWriter
 
-    return CsvWriter(_Lines())
-
-
-def print_csv(header: Sequence[object], rows: Iterable[Sequence[object]]) -> None:
-    """Print a table as CSV."""
-    writer = csv_writer()
-    for row in (header, *rows):
+    writer = CsvWriter(_Lines())
+    for row in chain([header], rows):
         writer.write(row)
 
 
 def print_csv_text(text: str) -> None:
     """Print CSV."""
     _Lines().write(text)
+
+
+def write_files(folder: Path, names: Sequence[str], *writers: Callable[..., None], force: bool) -> None:
+    """Write the files of a folder, and print their names to standard error."""
+    for name, write in zip(names, writers, strict=True):
+        write(folder / name, force=force)
+    say(f"{folder}: {', '.join(names)}", err=True)
 
 
 class _Lines:

@@ -7,7 +7,6 @@ import subprocess
 import sys
 import time
 
-import numpy as np
 import pytest
 
 import uplift
@@ -46,21 +45,25 @@ def test_default_name_has_atlas_or_space_and_dim(run, home, args, name):
     assert {path.name for path in home.iterdir()} - {"a.csv", "far"} == {name}
 
 
-def test_all_options_are_passed_to_the_build(run, home):
-    run("build", "--dim", "3", "--coefficients", "5", "--warp", "vision",
-        "--axis", "linear", "--space", "Display P3", "--illuminant", "D50",
-        "--observer", "CIE 1964 10 Degree Standard Observer", "--light", "A", "--light", "FL2",
-        "--growth", "neighbours", "--solver", "dogleg", "--threshold", "1e-3", "--debug",
-        "--range", "360:830", "--step", "10", "-o", "cube")  # fmt: skip
-    data = uplift.load(home / "cube").data
-    assert data.model == uplift.models.Moments(5, 360, 830, "vision")
-    np.testing.assert_array_equal(data.lattice.nodes, [0, 0.5, 1])
-    assert (data.sensor.space, data.sensor.illuminant) == ("Display P3", "D50")
-    assert data.sensor.observer == "CIE 1964 10 Degree Standard Observer"
-    assert (data.threshold, data.sensor.range) == (1e-3, (360, 830, 10))
-    assert data.points.round is not None
-    given = {"lights": ["A", "FL2"], "growth": "neighbours", "solver": "dogleg"}
-    assert given.items() <= data.provenance["options"].items()
+def test_all_options_are_passed_to_the_build(run, home, monkeypatch, plain_cube):
+    given = {
+        **{"dim": 3, "coefficients": 5, "entry_coefficients": 12, "warp": "vision", "axis": "linear", "step": 10.0},
+        **{"space": "Display P3", "illuminant": "D50", "observer": "CIE 1964 10 Degree Standard Observer"},
+        **{"model": "moments", "growth": "neighbours", "solver": "dogleg", "prior": "smooth", "neutral": "flat"},
+        **{"lights": ("A", "FL2"), "library": ("b.csv",), "looks": "l.toml", "leave_out": ("wood",)},
+        **{"threshold": 1e-3, "auto_tolerance": 0.7, "seed_corners": True, "debug": True},
+    }
+    names = {"lights": "light", "looks": "look", "leave_out": "exclude-family", "auto_tolerance": "tolerance"}
+    words = ["--range", "360:830"]
+    for name, value in given.items():
+        option = "--" + names.get(name, name).replace("_", "-")
+        values = value if isinstance(value, tuple) else (value,)
+        words += [option] if value is True else [word for each in values for word in (option, each)]
+    passed = {}
+    monkeypatch.setattr("uplift.pipeline.build.build", lambda atlas, **options: passed.update(options) or plain_cube)
+    run("build", *words, "-o", "cube")
+    assert callable(passed.pop("progress"))
+    assert passed == given | {"shortest": 360, "longest": 830}
 
 
 def test_the_same_input_gives_the_same_bytes_and_warnings(run, home, macbeth):

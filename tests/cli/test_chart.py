@@ -7,6 +7,7 @@ from dataclasses import replace
 import matplotlib.image
 import pytest
 from click.testing import CliRunner
+from uplift_cli.commands import chart
 from uplift_cli.main import main
 
 from tests.lab.chart import faulty
@@ -29,7 +30,8 @@ def quick(repository, tmp_path_factory):
         for name, value in ONE_THREAD.items():
             patch.setenv(name, value)
         atlas = str(repository / "atlases" / "macbeth.txt")
-        words = ["chart", "--quick", "--atlas", atlas, "--colours", "300", "-o", "out"]
+        patch.setattr(chart, "COLOURS", 300)
+        words = ["chart", "--quick", "--atlas", atlas, "-o", "out"]
         result = CliRunner().invoke(main, words, catch_exceptions=False)
     assert result.exit_code == 0, result.output
     return folder / "out", result
@@ -88,8 +90,8 @@ def test_an_atlas_improves_its_own_materials(numbers):
 def test_methods_that_crash_hang_or_are_missing_have_rows(run, macbeth, monkeypatch, limit, reasons):
     monkeypatch.setattr(method, "QUICK", replace(method.QUICK, limit=limit))
     monkeypatch.setattr(measure, "METHODS", (*measure.METHODS, *faulty.METHODS))
-    names = [f"--methods=faulty-{name}" for name in reasons]
-    result = run("chart", "--quick", "--atlas", macbeth, "--methods", "mallett2019", *names, "-o", "out")
+    names = [f"--method=faulty-{name}" for name in reasons]
+    result = run("chart", "--quick", "--atlas", macbeth, "--method", "mallett2019", *names, "-o", "out")
     rows = {row.method: (row.state, row.why) for row in read_chart("out/chart.csv").results}
     assert rows.pop("mallett2019") == ("measured", "")
     assert rows == {f"faulty-{name}": reason for name, reason in reasons.items()}
@@ -127,8 +129,7 @@ def test_recommendations(quick, run, refuse, repository):
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
-        (("--methods", "x"), "option"),
-        (("--colours", 3), "option"),
+        (("--method", "x"), "option"),
         (("--recommend", "--smallest"), "option"),
         (("--recommend", "--tolerance", 1, "--light", "FL12"), "unknown-name"),
         (("--from", "none.csv"), "file-not-found"),

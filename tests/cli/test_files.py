@@ -52,7 +52,7 @@ def inputs(home, cubes, macbeth):
         "mix black --atlas atlas.txt --plot atlas.png",
         "palette palette.toml --plot palette.png",
         "palette palette.toml -o atlas.txt",
-        "palette palette.toml --html image.exr --image image.exr",
+        "palette palette.toml --html atlas.html",
         "plan scene.toml -o image.exr",
         "query --cube cube.uplift #c8342a --plot cube.svg",
         "query --input colours.csv --plot colours.pdf",

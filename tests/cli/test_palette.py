@@ -100,7 +100,7 @@ def test_pages(run, pair, home):
         (("--html", "a.html", "--image", "labels.png", "--label", "leaf"), "option"),
         (("--html", "a.html", "--image", "labels.png"), "texture"),
         (("--html", "a.html", "--image", "labels.png", "--label", "leaf=#1", "--label", "leaf=#2"), "option"),
-        (("--html", "two.toml"), "output-is-input"),
+        (("--html", "two.toml"), "output"),
     ],
 )
 def test_invalid_input_is_reported_before_any_work(refuse, pair, home, monkeypatch, arguments, code):
