@@ -2,10 +2,6 @@
 
 import os
 import re
-import signal
-import subprocess
-import sys
-import time
 
 import pytest
 
@@ -122,22 +118,6 @@ def test_invalid_input_is_reported_before_the_build(refuse, monkeypatch, home, a
     assert os.listdir(home) == ["mine"]
 
 
-@pytest.mark.skipif(os.name == "nt", reason="no SIGKILL there")
-def test_killed_builds_leave_the_old_cube(home, cubes):
-    path = home / "cube.uplift"
-    before = (cubes / "moments-8.uplift").read_bytes()
-    path.write_bytes(before)
-    words = ["build", "-v", "--dim", "48", "-o", str(path), "--force"]
-    command = [sys.executable, "-m", "uplift_cli", *words]
-    with subprocess.Popen(command, cwd=home, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True) as process:
-        assert process.stderr.readline().startswith("fitting: ")
-        time.sleep(0.2)
-        assert process.poll() is None
-        process.send_signal(signal.SIGKILL)
-        assert process.wait() == -signal.SIGKILL
-    assert path.read_bytes() == before
-
-
 def test_looks_are_built_summarised_and_shown(run, home):
     (home / "looks.toml").write_text(LOOK)
     result = run("build", *SMALL, "--prior", "smooth", "--look", "looks.toml", "-o", "looks.uplift")
@@ -160,15 +140,3 @@ def test_a_camera_cube_is_built_queried_shown_and_checked(run, ask):
     facts = ask("info", "camera-3.uplift")
     assert (facts["space"], facts["provenance"]["options"]["observer"]) == (NIKON, NIKON)
     run("check", "camera-3.uplift")
-
-
-def test_an_atlas_outside_the_space_is_refused_and_writes_nothing(refuse, run, home):
-    run("build", "--atlas", "./Macbeth.txt", *SMALL, "-o", "cube.uplift")
-    assert uplift.load(home / "cube.uplift").data.atlas.outside.names == ("cyan",)
-    nm = range(380, 790, 10)
-    values = ",".join(str(0.9 if 490 < each < 510 else 0.01) for each in nm)
-    (home / "green.csv").write_text(f"name,{','.join(map(str, nm))}\nnarrow,{values}\n")
-    error = refuse("build", "--atlas", "green.csv", *SMALL, "-o", "none.uplift")
-    assert error.code == "atlas-out-of-gamut"
-    assert "1 outside, 0 skipped" in error.problem
-    assert not (home / "none.uplift").exists()

@@ -12,7 +12,7 @@ from uplift_cli.main import main
 
 from tests.lab.chart import faulty
 from uplift.lab.chart import measure, method
-from uplift.lab.chart.table import MEASURED, chart_csv, read_chart, shipped_chart
+from uplift.lab.chart.table import read_chart
 from uplift.lab.timing import ONE_THREAD
 
 FILES = ["chart.csv", "chart.html", "chart.png"]
@@ -52,19 +52,6 @@ def test_all_files_are_written_and_fronts_printed(quick, numbers):
     assert result.stderr == "out: chart.csv, chart.png, chart.html\n"
     assert all(found["time_ns"] > 0 and found["bytes"] > 0 for found in numbers.values())
     assert {row.method for row in read_chart(folder / "chart.csv").results} - set(numbers) <= FOREIGN
-
-
-@pytest.mark.parametrize("kind", ["mean", "p99", "max"])
-def test_round_trips_are_as_the_methods_predict(numbers, kind):
-    """Fine lattices are more accurate, and interpolated spectra at least as accurate as interpolated moments."""
-
-    def error(name):
-        return numbers[name][f"coarse_round_trip_{kind}"]
-
-    assert error("moments9-64-moments") < error("moments9-16-moments") / 2
-    assert error("mallett2019") < 0.02  # exact in sRGB up to the rounding of its table
-    for cube in ("moments9-16", "moments9-64", "moments9-16-atlas"):
-        assert error(f"{cube}-spectra") <= error(f"{cube}-moments")
 
 
 def test_an_atlas_improves_its_own_materials(numbers):
@@ -115,15 +102,13 @@ def test_page_and_command_recommend_the_same_cubes(run, repository):
     assert [pair for pair in pairs if pair not in page] == []
 
 
-def test_recommendations(quick, run, refuse, repository):
+def test_recommendations(quick, run, refuse):
     table = quick[0] / "chart.csv"
     result = run("chart", "--recommend", "--from", table, "--tolerance", 0.05, "--light", "D65")
     assert re.search(r"\n  uplift build (--atlas FILE )?--dim \d+ ", result.stdout)
     assert refuse("chart", "--recommend", "--from", table, "--time-ns", 0.5).code == "requirements-not-met"
     result = run("chart", "--recommend", "--tolerance", 1, "--light", "FL11", "--atlas-materials")
     assert "--atlas FILE" in result.stdout
-    stored = (repository / "uplift" / "lab" / "chart" / MEASURED).read_text(encoding="utf-8")
-    assert chart_csv(shipped_chart()) == stored
 
 
 @pytest.mark.parametrize(

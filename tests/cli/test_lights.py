@@ -24,6 +24,8 @@ def test_xyz_wavelengths_and_plot(run, home):
     found = run("lights", "query", *words, "--format", "csv").stdout.splitlines()
     assert found[0].split(",")[-4:] == ["400", "500", "600", "700"]
     assert (home / "white.png").exists()
+    for words in (("query", "1", "1", "1"), ("texture", "in.exr", "-o", "out.exr")):
+        assert "0.4 µm are 400 nm" in run("lights", *words, "--wavelengths", "0.4", code=2).stderr
 
 
 def test_colours_that_no_light_has(run):

