@@ -64,11 +64,11 @@ def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, 
         say(f"{output}: {len(atlas)} entries", err=True)
         return
     atlas = read_atlas(*files, measured=scale)
-    seen_by = sensor(**camera)
-    rows, codes, smallest = _list_entries(atlas, seen_by)
+    target = sensor(**camera)
+    rows, codes, smallest = _list_entries(atlas, target)
     if style == "json":
         fields = {
-            **{name: getattr(seen_by, name) for name in camera},
+            **{name: getattr(target, name) for name in camera},
             "sources": [{name: getattr(source, name) for name in SOURCE} for source in atlas.sources],
             "smallest_space": smallest,
             "entries": rows,
@@ -84,7 +84,7 @@ def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, 
             ],
         )
     else:
-        _print_table(atlas, seen_by, rows, codes, smallest)
+        _print_table(atlas, target, rows, codes, smallest)
 
 
 def _print_shipped(style: str) -> None:

@@ -11,7 +11,7 @@ from ..output.console import paragraph, print_fields, say
 
 DEFAULT_LIGHTS = """
 Without --light, 'relight', 'bounds' and 'advise' take A, FL11 and HP1, under which RGB goes wrong most. 'build' and
-'diff' take the lights of ordinary scenes, D65, A, FL2, FL11 and LED-B3, and 'report' adds FL7, which no build has seen.
+'diff' take the lights of ordinary scenes, D65, A, FL2, FL11 and LED-B3, and 'report' adds FL7, which builds do not use.
 'compare' has a smooth set and a spiky one, 'wavelengths' the illuminant of sRGB, and 'query' none: errors cost time.
 """
 
