@@ -53,14 +53,9 @@ def test_colours_are_kept_under_the_lights_of_the_objective(sensor, measured):
 
 
 def test_the_ends_of_the_spectrum_follow_the_measurement(sensor, measured):
-    """The colour-matching functions vanish there, so only the weight of the ends constrains the fit."""
+    """The colour-matching functions vanish there."""
     ends = np.r_[:8, 73:81]
-
-    def off(**weights):
-        return np.sqrt(((fitted(sensor, measured, **weights) - measured)[:, ends] ** 2).mean())
-
-    assert off() <= 0.04
-    assert off(ends=0.001) > 1.5 * off()
+    assert np.sqrt(((fitted(sensor, measured) - measured)[:, ends] ** 2).mean()) <= 0.04
 
 
 def steps_along_noise(sensor, spectrum, **weights):
@@ -116,11 +111,7 @@ def test_a_fit_does_not_depend_on_the_others(sensor, measured):
 
 def test_weighted_squares_sum_to_a_mean_square(sensor):
     problem, difference = problem_of(sensor), np.random.default_rng(0).normal(size=81)
-    goal = objective(problem)
-    assert np.sum((goal.values * difference) ** 2) == pytest.approx((difference**2).mean())
-    heavy = objective(problem, ends=3.0).values
-    assert np.sum(heavy**2) == pytest.approx(1)
-    assert heavy[0] ** 2 == pytest.approx(3 * heavy[40] ** 2)
+    assert np.sum((objective(problem).values * difference) ** 2) == pytest.approx((difference**2).mean())
 
 
 def test_smoothness_leaves_the_level_to_the_measurement(sensor):

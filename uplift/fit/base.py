@@ -14,11 +14,11 @@ from importlib.resources import files
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import lab, lab_jacobian, rgb_to_lab
+from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, blocks
 from uplift.fit.batch import to_storage
-from uplift.fit.entries import FittedEntries
+from uplift.fit.entries import FittedEntries, colour_objective
 from uplift.fit.families import FILE, Family, FamilySamples, krige_families, learn_relevance
 from uplift.fit.kriging import average_close
 from uplift.fit.problem import Problem, nodes_of
@@ -66,20 +66,18 @@ class Base:
 
     model: Model
     nodes: Array | None
-    brightening: float = BRIGHTENING
-    grey: float = GREY
 
     def coefficients(self, rgb: Array) -> Array:
         """Coefficients (n, C) of nearly the linear RGB (n, 3) in [0, 1], continuous in it; the solver does the rest."""
         if self.nodes is None:
-            return self.model.to_storage(_grey(self.model, rgb, self.grey))
+            return self.model.to_storage(_grey(self.model, rgb))
         # s(x) = k s(x / k), as moments are linear in the spectrum
         factor = self.brightness(rgb)
         return factor * weighted_sum(self.nodes, *TABLE.corners(np.minimum(rgb / factor, 1)))
 
     def brightness(self, rgb: Array) -> Array:
         """Factor k = max(x)^½ (n, 1) between a colour and the brightened one."""
-        return np.asarray(np.maximum(rgb.max(axis=1), MIN_LEVEL)[:, None] ** self.brightening)
+        return np.asarray(np.maximum(rgb.max(axis=1), MIN_LEVEL)[:, None] ** BRIGHTENING)
 
 
 def smooth_table(problem: Problem, goal: Array) -> Base:
@@ -93,23 +91,17 @@ def smooth_table(problem: Problem, goal: Array) -> Base:
     return smooth(problem.model, problem.forward, goal)
 
 
-def smooth(
-    model: Model,
-    forward: ForwardMap,
-    goal: Array = TABLE.points,
-    brightening: float = BRIGHTENING,
-    grey: float = GREY,
-) -> Base:
+def smooth(model: Model, forward: ForwardMap, goal: Array = TABLE.points) -> Base:
     """Solve the table for smooth spectra of brightened colours ``goal`` (17³, 3), each from its grey."""
     if model.count == NO_FREEDOM:
-        return Base(model, None, brightening, grey)
-    solution = solve(forward, _grey(model, goal, grey), goal, tolerance=1e-5, max_passes=8)
-    return Base(model, to_storage(model, solution.multipliers), brightening, grey)
+        return Base(model, None)
+    solution = solve(forward, _grey(model, goal), goal, tolerance=1e-5, max_passes=8)
+    return Base(model, to_storage(model, solution.multipliers))
 
 
-def _grey(model: Model, rgb: Array, power: float) -> Array:
+def _grey(model: Model, rgb: Array) -> Array:
     # mean(x′)^⅔, as multipliers of a constant
-    level = np.clip(rgb.mean(axis=1) ** power, MIN_LEVEL, MAX_LEVEL)
+    level = np.clip(rgb.mean(axis=1) ** GREY, MIN_LEVEL, MAX_LEVEL)
     return model.from_reflectance(level)[:, None] * model.constant()
 
 
@@ -143,7 +135,7 @@ def learn_base(
 
     # s(x′) + d(x) / k at the nodes x′ of the table, inside (0, 1), as coefficients, where x = x′ max(x′)
     spectra = reflectance(model, plain.nodes, sensor.wavelengths)
-    colours = bright * bright.max(axis=1, keepdims=True) ** (plain.brightening / (1 - plain.brightening))
+    colours = bright * bright.max(axis=1, keepdims=True) ** (BRIGHTENING / (1 - BRIGHTENING))
     deviations = kriging(rgb_to_lab(sensor, colours), relevance)
     deviations = deviations * np.minimum(bright.max(axis=1, keepdims=True) / DIMMEST, 1)
     goal = np.clip(spectra + deviations, BOUND * spectra, 1 - BOUND * (1 - spectra))
@@ -178,12 +170,23 @@ def _samples(plain: Base, problem: Problem, family: Family, entries: FittedEntri
 def match_spectra(model: Moments, wavelengths: Array, reflectances: Array, lights: Sequence[Light]) -> Array:
     """Multipliers (n, C) of spectra near reflectances (n, N) in (0, 1), with nearly their colours under several lights.
 
-    The wavelengths (N,) are evenly spaced over the range of the model.
+    The wavelengths (N,) are evenly spaced over the range of the model. The moments of a detailed reflectance lose its
+    colour under other lights if they are few. One Gauss–Newton step of the objective (6) restores it; spectra that it
+    would not bring nearer stay.
     """
+    goal = colour_objective(model, model.basis(wavelengths), lights, COLOUR_WEIGHT)
     multipliers = model.from_storage(blocked_matmul(reflectances, moment_matrix(model, wavelengths)))
-    basis = model.basis(wavelengths)
     for block in blocks(len(multipliers), MATCH_ROWS):
-        multipliers[block] = _step(model, basis, lights, multipliers[block], reflectances[block])
+        p, measured = multipliers[block], reflectances[block]
+        colours = goal.colours(measured)
+        # p − (JᵀJ + μ I)⁻¹ Jᵀ r minimises mean (g − m)² + Σ |w ΔL*a*b*|², linearised
+        residual, jacobian = goal.residuals(p, measured, colours), goal.jacobian(p)
+        matrix = jacobian.mT @ jacobian
+        damping = DAMPING * np.trace(matrix, axis1=1, axis2=2) / model.count
+        matrix += damping[:, None, None] * np.eye(model.count)
+        trial = p - np.linalg.solve(matrix, jacobian.mT @ residual[..., None])[..., 0]
+        better = (goal.residuals(trial, measured, colours) ** 2).sum(axis=1) < (residual**2).sum(axis=1)
+        p[better] = trial[better]
     return multipliers
 
 
@@ -196,42 +199,3 @@ def moment_matrix(model: Moments, wavelengths: Array) -> Array:
     weights = cosine_basis(phase, model.count) / MATCH_NODES
     weights[:, 1:] /= 2
     return np.asarray(samples @ weights)
-
-
-def _step(model: Moments, basis: Array, lights: Sequence[Light], multipliers: Array, goal: Array) -> Array:
-    """Take a Gauss–Newton step of the objective (6); spectra that it would not bring nearer stay.
-
-    The moments of a detailed reflectance lose its colour under other lights if they are few. One step restores it, and
-    costs microseconds per spectrum.
-    """
-    matrices, whites = np.concatenate([light.xyz for light in lights]), np.stack([light.white for light in lights])
-    colours = (matrices.T[:, :, None] * basis[:, None, :]).reshape(len(basis), -1)
-    squares = (basis[:, :, None] * basis[:, None, :]).reshape(len(basis), -1) / len(basis)
-
-    def differences(x: Array) -> tuple[Array, Array, Array]:
-        """Differences of the spectra (n, N), weighted ones of their colours (n, 3 L), and their XYZ (n, L, 3)."""
-        spectra = model.to_reflectance(x)
-        xyz, goal_xyz = ((each @ matrices.T).reshape(len(x), -1, 3) for each in (spectra, goal))
-        difference = lab(xyz, whites) - lab(goal_xyz, whites)
-        return spectra - goal, COLOUR_WEIGHT * difference.reshape(len(x), -1), xyz
-
-    # With g = S(B p), minimise mean (g − goal)² + Σ |w ΔL*a*b*|²: p − (JᵀJ + μ I)⁻¹ Jᵀ r.
-    count = multipliers.shape[1]
-    x = multipliers @ basis.T
-    difference, colour_difference, xyz = differences(x)
-    derivative = model.derivative(x)
-    to_lab = COLOUR_WEIGHT * lab_jacobian(xyz, whites)
-    change = (derivative @ colours).reshape(len(x), -1, 3, count)
-    change = (to_lab @ change).reshape(len(x), -1, count)
-    # JᵀJ of the spectra is Σ_λ S′(x)² b bᵀ / N; that of the colours is the product of their changes.
-    matrix = ((derivative * derivative) @ squares).reshape(-1, count, count) + change.mT @ change
-    damping = DAMPING * np.trace(matrix, axis1=1, axis2=2) / count
-    matrix[:, np.arange(count), np.arange(count)] += damping[:, None]
-    gradient = (difference * derivative) @ basis / len(basis)
-    gradient += (colour_difference[:, None, :] @ change)[:, 0]
-    trial = multipliers - np.linalg.solve(matrix, gradient[..., None])[..., 0]
-    before, after = (
-        (spectra**2).mean(axis=1) + (lit**2).sum(axis=1)
-        for spectra, lit, _ in ((difference, colour_difference, xyz), differences(trial @ basis.T))
-    )
-    return np.where((after < before)[:, None], trial, multipliers)

@@ -41,13 +41,12 @@ def solve_bounded(problem: BoundedProblem) -> Array:
     x = np.zeros(problem.matrix.shape[1])
     with single_threaded_blas():
         for rows, columns in _independent_blocks(problem.matrix):
-            block = BoundedProblem(
-                problem.matrix[np.ix_(rows, columns)],
-                problem.values[rows],
-                problem.low[columns],
-                problem.high[columns],
-            )
-            x[columns] = _solve_block(block)
+            matrix, values = problem.matrix[np.ix_(rows, columns)], problem.values[rows]
+            bounds = problem.low[columns], problem.high[columns]
+            if np.isinf(bounds).all() or not len(values):
+                x[columns] = np.linalg.lstsq(matrix, values, rcond=None)[0]
+            else:
+                x[columns] = _bvls(matrix, values, bounds)
     return np.clip(x, problem.low, problem.high)  # removes rounding errors
 
 
@@ -63,20 +62,10 @@ def _independent_blocks(matrix: Array) -> Iterator[tuple[Rows, Rows]]:
         yield np.flatnonzero(labels[:rows] == label), np.flatnonzero(labels[rows:] == label)
 
 
-def _solve_block(problem: BoundedProblem) -> Array:
+def _bvls(matrix: Array, values: Array, bounds: tuple[Array, Array]) -> Array:
     from scipy.optimize import lsq_linear
 
-    unbounded = np.isinf(problem.low).all() and np.isinf(problem.high).all()
-    if unbounded or not len(problem.values):
-        return np.asarray(np.linalg.lstsq(problem.matrix, problem.values, rcond=None)[0])
-    result = lsq_linear(
-        problem.matrix,
-        problem.values,
-        (problem.low, problem.high),
-        method="bvls",
-        tol=TOLERANCE,
-        max_iter=MAX_ITERATIONS,
-    )
+    result = lsq_linear(matrix, values, bounds, method="bvls", tol=TOLERANCE, max_iter=MAX_ITERATIONS)
     if not result.success:
         text = f"the solver stopped after {MAX_ITERATIONS} iterations: colours may be slightly off"
         warnings.warn(UpliftWarning(text, code="design-not-converged"), stacklevel=4)

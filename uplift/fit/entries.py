@@ -4,18 +4,17 @@ docs/mathematics.md, 6. `Marquardt`, a solver of optimistix that is stepped in n
 needs to be compiled for a few entries, and those that have converged leave the batch (docs/speed.md).
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-import equinox
 import numpy as np
-import optimistix
 
 from uplift.colorimetry.delta_e import delta_e_spectra, lab_jacobian, lab_of
+from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.fit.problem import Problem
-from uplift.fit.solver import Options, iterate_rows, solve_in_numpy
+from uplift.fit.solver import BatchSolver, Options, iterate_rows, solve_in_numpy
 from uplift.models.model import Model
 
 LIGHTS_WEIGHT, SMOOTHNESS = 0.03, 1e-3
@@ -25,8 +24,6 @@ docs/mathematics.md, 5, relative to the root-mean-square difference of the spect
 Without smoothness the minimum of a dark entry jumps: of two spectra that meet its colours nearly equally well one has
 multipliers ten times as large, and noise decides between them.
 """
-ENDS = 8
-"""Each end of the spectrum is this part of it: 50 nm of 380–780."""
 FLATNESS = 1e-5
 """Weight that keeps the constant multiplier finite where neither the spectrum nor the lights constrain it."""
 MAX_STEPS = 256
@@ -40,13 +37,13 @@ FIRST_DAMPING = 1e-3
 class Objective:
     """Residuals of the fit of a measured reflectance (N,), and their derivative.
 
-    ``values`` (N,) weighs a difference of spectra, ``weight`` a unit of CIE L*a*b*, ``multipliers`` (C,) the
+    ``values`` weighs a difference of spectra, ``weight`` a unit of CIE L*a*b*, ``multipliers`` (C,) the
     multipliers. ``lights`` (L, 3, N) maps spectra to XYZ, and ``whites`` (L, 3) are those of the perfect reflector.
     """
 
     model: Model
     basis: Array
-    values: Array
+    values: float
     lights: Array
     whites: Array
     weight: float
@@ -77,30 +74,24 @@ class Objective:
         xyz = (self.lights @ self.model.to_reflectance(x)[..., None, :, None])[..., 0]
         colours = lab_jacobian(xyz, self.whites) @ (self.lights @ change[..., None, :, :])
         own = np.broadcast_to(np.diag(self.multipliers), (*shape, count, count))
-        change *= self.values[:, None]
+        change *= self.values
         return np.concatenate([change, self.weight * colours.reshape(*shape, -1, count), own], axis=-2)
 
 
-def objective(
-    problem: Problem, lights: float = LIGHTS_WEIGHT, ends: float = 1.0, smoothness: float = SMOOTHNESS
-) -> Objective:
-    """Make the objective of entries; the squared weights of values sum to a weighted mean square.
+def colour_objective(model: Model, basis: Array, lights: Sequence[Light], weight: float) -> Objective:
+    """Make the objective of spectra and of their colours under lights alone; the first is the mean square."""
+    xyz, whites = (np.stack([getattr(light, name) for light in lights]) for name in ("xyz", "white"))
+    return Objective(model, basis, float(np.sqrt(1 / len(basis))), xyz, whites, weight, np.zeros(model.count))
 
-    ``ends`` is the weight of the two ends of the spectrum relative to its middle.
-    """
-    model, count = problem.model, len(problem.forward.basis)
-    importance = np.ones(count)
-    importance[: count // ENDS] = importance[-(count // ENDS) :] = ends
+
+def objective(problem: Problem, lights: float = LIGHTS_WEIGHT, smoothness: float = SMOOTHNESS) -> Objective:
+    """Make the objective of entries."""
+    model = problem.model
     # M = diag(1 + j²), but the constant multiplier is left to the measurement.
     smooth = np.maximum(smoothness * np.sqrt(model.metric_diagonal()), FLATNESS)
-    return Objective(
-        model,
-        problem.forward.basis,
-        np.sqrt(importance / importance.sum()),
-        np.stack([light.xyz for light in problem.lights]),
-        np.stack([light.white for light in problem.lights]),
-        lights,
-        np.where(model.constant() > 0, FLATNESS, smooth),
+    return replace(
+        colour_objective(model, problem.forward.basis, problem.lights, lights),
+        multipliers=np.where(model.constant() > 0, FLATNESS, smooth),
     )
 
 
@@ -117,7 +108,7 @@ class MarquardtState(NamedTuple):
     """(n,) whether the fit has ended."""
 
 
-class Marquardt(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
+class Marquardt(BatchSolver):
     """Levenberg and Marquardt's method for a batch of fits in numpy, with Nielsen's damping.
 
     The option ``jacobian`` maps ``y`` (n, C) to the derivative (n, m, C) of the residuals. Madsen, Nielsen & Tingleff
@@ -126,7 +117,6 @@ class Marquardt(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
 
     rtol: float = PRECISION
     atol: float = 0.0
-    norm: Callable[[Any], Any] = equinox.field(static=True, default=optimistix.max_norm)
 
     def init(
         self, fn: Any, y: Any, args: Any, options: Options, f_struct: Any, aux_struct: Any, tags: Any
@@ -166,15 +156,8 @@ class Marquardt(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
             aux,
         )
 
-    def terminate(
-        self, fn: Any, y: Any, args: Any, options: Options, state: MarquardtState, tags: Any
-    ) -> tuple[Any, Any]:
-        """Whether all fits have ended."""
-        return state.done.all(), optimistix.RESULTS.successful
-
-    def postprocess(self, fn: Any, y: Any, aux: Any, *rest: Any) -> tuple[Any, Any, dict[str, Any]]:
-        """Return the solution as it is."""
-        return y, aux, {}
+    def done(self, state: MarquardtState) -> Mask:
+        return state.done
 
 
 def minimise(goal: Objective, measured: Array) -> Array:
@@ -184,9 +167,7 @@ def minimise(goal: Objective, measured: Array) -> Array:
     def fn(y: Array, rows: Indices) -> tuple[Array, None]:
         return goal.residuals(y, measured[rows], colours[rows]), None
 
-    return iterate_rows(
-        Marquardt(), fn, grey, lambda _: {"jacobian": goal.jacobian}, lambda state: state.done, MAX_STEPS
-    )
+    return iterate_rows(Marquardt(), fn, grey, lambda _: {"jacobian": goal.jacobian}, MAX_STEPS)
 
 
 class FittedEntries(NamedTuple):

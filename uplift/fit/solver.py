@@ -5,6 +5,7 @@ minimise |R⁻¹ (p − p₀)|² subject to r(p) = t, by damped steps (Nocedal &
 other solver of optimistix (`uplift.fit.stock_solvers`), over batches of fixed shapes.
 """
 
+import abc
 from collections.abc import Callable, Iterator
 from functools import cache
 from itertools import chain, islice, repeat
@@ -17,7 +18,7 @@ import numpy as np
 import optimistix
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Array, Indices, Mask, blocks
+from uplift.common.arrays import Array, Indices, blocks
 from uplift.fit.batch import map_batches
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import MAX_MULTIPLIER
@@ -37,6 +38,30 @@ Options = dict[str, Any]
 """Options of a solver's ``init``: arrays with a row for each problem."""
 NO_TAGS: frozenset[object] = frozenset()
 """Nothing is known of the matrices of the problem."""
+
+
+class BatchSolver(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
+    """A solver of optimistix for a batch of problems: ``y`` and the arrays of its state have a row for each."""
+
+    norm: Callable[[Any], Any] = equinox.field(static=True, default=optimistix.max_norm, kw_only=True)
+
+    @abc.abstractmethod
+    def done(self, state: Any) -> Any:
+        """Whether (n,) each problem is solved, or given up."""
+
+    def terminate(
+        self, fn: Any, y: Any, args: Any, options: Options, state: Any, tags: Any
+    ) -> tuple[Any, optimistix.RESULTS]:
+        """Whether all problems are done."""
+        return self.done(state).all(), optimistix.RESULTS.successful
+
+    def postprocess(self, fn: Any, y: Any, aux: Any, *rest: Any) -> tuple[Any, Any, dict[str, Any]]:
+        """Return the solution as it is."""
+        return y, aux, {}
+
+    def resume(self, options: Options, y: Any, state: Any) -> Options:
+        """Return the options with which ``init`` goes on, from those before, multipliers ``y`` (n, C) and the state."""
+        return options
 
 
 class Method(Protocol):
@@ -73,7 +98,7 @@ class LeastChangeState(NamedTuple):
         return abs(self.residual).max(axis=1)
 
 
-class LeastChange(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
+class LeastChange(BatchSolver):
     """Damped steps that reach the colour and change the prior least, for a batch of problems with three residuals each.
 
     ``atol`` is the distance in linear RGB at which a problem is solved. The options of `init` are ``prior`` (n, C), the
@@ -84,7 +109,6 @@ class LeastChange(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
     forward: ForwardMap
     atol: Any
     rtol: float = 0.0
-    norm: Callable[[Any], Any] = equinox.field(static=True, default=optimistix.max_norm)
 
     def init(
         self, fn: Any, y: Any, args: Any, options: Options, f_struct: Any, aux_struct: Any, tags: Any
@@ -115,15 +139,8 @@ class LeastChange(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
         )
         return where(accept, trial, y), after, aux
 
-    def terminate(
-        self, fn: Any, y: Any, args: Any, options: Options, state: LeastChangeState, tags: Any
-    ) -> tuple[Any, Any]:
-        """Whether all problems are solved."""
-        return (state.distance <= self.atol).all(), optimistix.RESULTS.successful
-
-    def postprocess(self, fn: Any, y: Any, aux: Any, *rest: Any) -> tuple[Any, Any, dict[str, Any]]:
-        """Return the solution as it is."""
-        return y, aux, {}
+    def done(self, state: LeastChangeState) -> Any:
+        return state.distance <= self.atol
 
     def resume(self, options: Options, y: Any, state: LeastChangeState) -> Options:
         """Go on with the damping and the weight reached."""
@@ -201,8 +218,7 @@ def _advance(method: Method) -> Callable[..., Any]:
 
     def advance(constants: Any, y: jax.Array, target: jax.Array, options: Options) -> Any:
         forward, tolerance, max_steps = constants
-        solver = method(forward, tolerance)
-        residual = jax.jit(ForwardMap.residual)
+        solver, residual = method(forward, tolerance), jax.jit(ForwardMap.residual)
         y, state, steps = iterate(
             solver, lambda p, goal: (residual(forward, p, goal), None), y, target, options, max_steps
         )
@@ -235,11 +251,10 @@ def iterate(solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps
 
 
 def iterate_rows(
-    solver: Any,
+    solver: BatchSolver,
     fn: Callable[[Array, Indices], tuple[Array, None]],
     start: Array,
     options: Callable[[slice], Options],
-    done: Callable[[Any], Mask],
     max_steps: int,
 ) -> Array:
     """Step a batch solver in numpy from ``start`` (n, C), in blocks of rows; those that are done leave their block.
@@ -252,7 +267,7 @@ def iterate_rows(
         state = solver.init(fn, found[rows], rows, options(block), None, None, NO_TAGS)
         for _ in range(max_steps):
             found[rows], state, _ = solver.step(fn, found[rows], rows, options(block), state, NO_TAGS)
-            kept = ~done(state)
+            kept = ~solver.done(state)
             rows, state = rows[kept], jax.tree.map(lambda each, kept=kept: each[kept], state)
             if not rows.size:
                 break
@@ -265,11 +280,5 @@ def solve_in_numpy(forward: ForwardMap, start: Array, target: Array, tolerance: 
     def fn(y: Array, rows: Indices) -> tuple[Array, None]:
         return forward.residual(y, target[rows]), None
 
-    return iterate_rows(
-        LeastChange(forward, tolerance),
-        fn,
-        start,
-        lambda block: LeastChange.options(start[block], None),
-        lambda state: state.distance <= tolerance,
-        max_steps,
-    )
+    solver = LeastChange(forward, tolerance)
+    return iterate_rows(solver, fn, start, lambda block: LeastChange.options(start[block], None), max_steps)

@@ -18,7 +18,7 @@ import numpy as np
 import optimistix
 
 from uplift.common.arrays import Array
-from uplift.fit.solver import Options
+from uplift.fit.solver import BatchSolver, Options
 from uplift.models.minimum_norm import ForwardMap
 
 CLOSENESS = 1e-5
@@ -78,14 +78,13 @@ class EachRowState(NamedTuple):
     """(n,) whether the solver has terminated."""
 
 
-class EachRow(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
+class EachRow(BatchSolver):
     """Another solver for every row of a batch, in the coordinates x = R⁻¹ p of the metric."""
 
     solver: Solver
     forward: ForwardMap
     rtol: float = 0.0
     atol: float = 0.0
-    norm: Callable[[Any], Any] = equinox.field(static=True, default=optimistix.max_norm)
 
     def init(
         self, fn: Any, y: Any, args: Any, options: Options, f_struct: Any, aux_struct: Any, tags: Any
@@ -121,15 +120,8 @@ class EachRow(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
         residual, aux = fn(y, args)
         return y, EachRowState(inner, jnp.where(jnp.isfinite(residual), residual, jnp.inf), done), aux
 
-    def terminate(
-        self, fn: Any, y: Any, args: Any, options: Options, state: EachRowState, tags: Any
-    ) -> tuple[Any, Any]:
-        """Whether the solver has terminated in all rows."""
-        return state.done.all(), optimistix.RESULTS.successful
-
-    def postprocess(self, fn: Any, y: Any, aux: Any, *rest: Any) -> tuple[Any, Any, dict[str, Any]]:
-        """Return the solution as it is."""
-        return y, aux, {}
+    def done(self, state: EachRowState) -> Any:
+        return state.done
 
     def resume(self, options: Options, y: Any, state: EachRowState) -> Options:
         """Go on closer to the colour: the first answers are near the prior, later ones near the last answer."""
