@@ -155,12 +155,10 @@ def _samples(plain: Base, problem: Problem, family: Family, entries: FittedEntri
     rows = np.flatnonzero(sensor.contains(rgb))
     rgb, measured = np.clip(rgb[rows], 0, 1), family.measured[rows]
     locations = rgb_to_lab(sensor, rgb)
-    if entries is not None and len(entries.rgb) and len(rgb):
+    if entries is not None:
         close = distances(locations, rgb_to_lab(sensor, entries.rgb)) <= SAME_COLOUR
-        differences = [
-            ((entries.measured[near] - own) ** 2).mean(axis=1) for near, own in zip(close, measured, strict=True)
-        ]
-        new = np.array([not (difference <= SAME_SPECTRUM**2).any() for difference in differences])
+        apart = [((entries.measured[near] - own) ** 2).mean(axis=1) for near, own in zip(close, measured, strict=True)]
+        new = [row for row, squares in enumerate(apart) if squares.min(initial=np.inf) > SAME_SPECTRUM**2]
         rgb, measured, locations = rgb[new], measured[new], locations[new]
     expected = reflectance(plain.model, plain.coefficients(rgb), sensor.wavelengths)
     deviations = (measured - expected) / plain.brightness(rgb)
