@@ -83,9 +83,9 @@ class OcioSpace:
     is_linear: bool
     """Whether its values are linear."""
     processor: Any
-    """CPU processor to linear RGB of `AP0`."""
+    """CPU processor to linear RGB of `AP0`, or to XYZ."""
 
-    def to_ap0(self, values: Array) -> Array:
+    def convert(self, values: Array) -> Array:
         """Convert values. Shapes: ``values`` (…, 3) → (…, 3)."""
         converted = np.array(values, dtype=np.float32, order="C")
         if converted.size:
@@ -94,8 +94,8 @@ class OcioSpace:
 
     @functools.cached_property
     def matrix(self) -> Array:
-        """Matrix (3, 3) of a linear space to linear RGB of `AP0`."""
-        return self.to_ap0(np.eye(3)).T
+        """Matrix (3, 3) of a linear space."""
+        return self.convert(np.eye(3)).T
 
     @property
     def rgb_to_xyz(self) -> Array:
@@ -106,7 +106,7 @@ class OcioSpace:
         """Describe colours of the space."""
         if self.is_linear:
             return ImageSpace(self.name, self, lambda codes: codes)
-        return ImageSpace(self.name, AP0, self.to_ap0, floats_are_codes=True, mixes_channels=True)
+        return ImageSpace(self.name, AP0, self.convert, floats_are_codes=True, mixes_channels=True)
 
 
 def find_space(text: str) -> ImageSpace:

@@ -17,7 +17,7 @@ from uplift.io import texture
 from uplift.pipeline.build import build
 
 GAMMA = struct.pack(">4sIIHxx", b"curv", 0, 1, round(2.2 * 256))
-LINEAR = struct.pack(">4sII", b"curv", 0, 0)
+LINEAR = struct.pack(">4sIIHxx", b"curv", 0, 1, 256)
 SRGB_PARA = struct.pack(
     ">4sIHH5i", b"para", 0, 3, 0, *(round(65536 * n) for n in (2.4, 1 / 1.055, 0.055 / 1.055, 1 / 12.92, 0.04045))
 )

@@ -1,19 +1,20 @@
 """Colour space that an image file states: colorInteropID or chromaticities of OpenEXR, PNG code points, or ICC.
 
-Matrix profiles, as displays have them, state their primaries, adapted to D50, and tone curves (ICC.1:2022, 8.4.3).
-Profiles with lookup tables are not used.
+OpenColorIO reads matrix profiles, as displays have them, with their primaries and tone curves. Profiles of grey images,
+and those with lookup tables, are not used.
 """
 
 import contextlib
-import struct
-from collections.abc import Callable, Mapping
+import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, Primaries
-from uplift.colorimetry.spaces import ImageSpace, find_ocio_space
+from uplift.colorimetry.spaces import ImageSpace, OcioSpace, find_ocio_space
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
@@ -28,19 +29,12 @@ H273_PRIMARIES = {
     12: Primaries((0.680, 0.320), (0.265, 0.690), (0.150, 0.060), SRGB.white),
 }
 """Colour primaries of ITU-T H.273, table 2, that PNG files name: sRGB, Rec. 2020, DCI-P3 and Display P3."""
-D50 = (0.3457, 0.3585)
-"""White point of the ICC profile connection space."""
-GREY = b"GRAY"
 NOT_STATED = ("", "unknown")
 """Values of colorInteropID that name no space."""
-COLORANTS = (b"rXYZ", b"gXYZ", b"bXYZ")
-TONE_CURVES = (b"rTRC", b"gTRC", b"bTRC")
-GREY_CURVE = b"kTRC"
-MAX_TAGS = 100
-FIXED = 65536.0
-"""Scale of s15Fixed16 numbers."""
-PARAMETERS = (1, 3, 4, 5, 7)
-"""Number of parameters of each function type of ICC.1:2022, 10.18."""
+CORNERS = np.vstack([np.eye(3), np.ones(3)])
+"""RGB of the primaries and white."""
+ROUNDING = 1e-6
+"""Largest step back of a curve by single precision."""
 
 
 def _decode_bt709(codes: Array) -> Array:
@@ -115,69 +109,22 @@ def _primaries(numbers: Any) -> Primaries | None:
 
 
 def _icc_space(name: str, data: bytes) -> ImageSpace | None:
-    """Return the space of a matrix or grey profile; None for others, and for damaged ones."""
-    try:
-        (count,) = struct.unpack_from(">I", data, 128)
-        entries = (struct.unpack_from(">4sII", data, 132 + 12 * index) for index in range(min(count, MAX_TAGS)))
-        tags = {tag: data[start : start + size] for tag, start, size in entries}
-        curves = _tone_curves(tags)
-        xyz = [] if data[16:20] == GREY else [struct.unpack_from(">3i", tags[colorant], 8) for colorant in COLORANTS]
-        numbers = [part / sum(each) for each in xyz for part in each[:2]]
-    except (KeyError, ValueError, ZeroDivisionError, struct.error):
+    """Return the space of a matrix profile by OpenColorIO; None for others, and for damaged ones."""
+    import PyOpenColorIO as ocio  # noqa: N813
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "image.icc"
+        path.write_bytes(data)
+        transform = ocio.FileTransform(str(path), direction=ocio.TRANSFORM_DIR_INVERSE)
+        try:
+            processor = ocio.Config.CreateRaw().getProcessor(transform)
+        except ocio.Exception:
+            return None
+    to_xyz = OcioSpace(name, False, processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS))
+    gamut = _primaries([part / sum(each) for each in to_xyz.convert(CORNERS) for part in each[:2]])
+    if gamut is None:
         return None
-    gamut = _primaries((*numbers, *D50)) if numbers else SRGB
-    return None if gamut is None or curves is None else ImageSpace(name, gamut, curves)
-
-
-def _tone_curves(tags: Mapping[bytes, bytes]) -> Curve | None:
-    """Return the tone curves (…, 3), None for implausible ones. Raises `KeyError`, `ValueError`, `struct.error`."""
-    names = TONE_CURVES if all(name in tags for name in TONE_CURVES) else (GREY_CURVE,) * 3
-    curves = [_tone_curve(tags[name]) for name in names]
-
-    def evaluate(codes: Array) -> Array:
-        return np.stack([curve(codes[..., channel]) for channel, curve in enumerate(curves)], axis=-1)
-
-    values = evaluate(np.linspace([0.0] * 3, [1.0] * 3, 256))
-    is_plausible = np.isfinite(values).all() and np.ptp(values[[0, -1]], axis=0).min() > 0.5
-    return evaluate if is_plausible and (np.diff(values, axis=0) >= 0).all() else None
-
-
-def _tone_curve(tag: bytes) -> Curve:
-    """Read a curve (ICC.1:2022, 10.6 curveType and 10.18 parametricCurveType). Raises `ValueError`."""
-    if tag[:4] == b"para":
-        (kind,) = struct.unpack_from(">H", tag, 8)
-        if kind >= len(PARAMETERS):
-            raise ValueError("another function")
-        return _parametric([number / FIXED for number in struct.unpack_from(f">{PARAMETERS[kind]}i", tag, 12)])
-    if tag[:4] != b"curv":
-        raise ValueError("another type of curve")
-    (count,) = struct.unpack_from(">I", tag, 8)
-    if count == 0:
-        return _linear
-    if 12 + 2 * count > len(tag):
-        raise ValueError("the curve is cut short")
-    numbers = np.frombuffer(tag, ">u2", count, 12)
-    if count == 1:
-        return _power(float(numbers[0]) / 256)
-    positions, table = np.linspace(0, 1, count), numbers / 65535
-    return lambda codes: np.interp(codes, positions, table)
-
-
-def _parametric(parameters: list[float]) -> Curve:
-    """Return Y = (aX + b)^g + e for X ≥ d, else cX + f; the function type follows from the number of parameters."""
-    g, a, b, c, d, e, f = 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    match parameters:
-        case [g]:
-            pass
-        case [g, a, b]:
-            d = -b / a if a else 0.0
-        case [g, a, b, e]:
-            d, f = -b / a if a else 0.0, e
-        case _:
-            g, a, b, c, d, e, f = (*parameters, e, f)[:7]
-
-    def evaluate(codes: Array) -> Array:
-        with np.errstate(all="ignore"):
-            return np.where(codes >= d, np.maximum(a * codes + b, 0) ** g + e, c * codes + f)
-
-    return evaluate
+    to_linear = np.linalg.inv(to_xyz.matrix).T
+    values = to_xyz.convert(np.linspace([0.0] * 3, [1.0] * 3, 256)) @ to_linear
+    is_plausible = np.isfinite(values).all() and (np.diff(values, axis=0) >= -ROUNDING).all()
+    return ImageSpace(name, gamut, lambda codes: to_xyz.convert(codes) @ to_linear) if is_plausible else None
