@@ -16,7 +16,6 @@ from benchmarks.pictures import Picture, colour, pictures
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array
 from uplift.io import texture
-from uplift.io.mitsuba.texture_file import multipliers_of_rounded
 from uplift.io.texture.uplifter import PixelEncoding
 from uplift.lab.timing import time_process
 from uplift.lookup import Cube
@@ -66,7 +65,7 @@ def _rgb(cube: Cube, form: PixelEncoding, names: tuple[str, ...], path: Path) ->
     for block in np.array_split(values, max(len(values) // 50_000, 1)):
         numbers = block.astype(float)
         if isinstance(model, Moments) and isinstance(form, texture.Moments):
-            numbers, valid = multipliers_of_rounded(model, numbers)
+            numbers, valid = model.from_rounded(numbers)
             if not valid.all():
                 raise ValueError(f"{path}: {(~valid).sum()} pixels hold no moments of a reflectance")
         if not isinstance(form, texture.Spectrum):

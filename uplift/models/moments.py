@@ -28,6 +28,7 @@ MIN_COUNT, MAX_COUNT = 3, 17
 MAX_SAFE_LINEAR = 30.0
 """Bound of the linear part up to which single precision keeps colours (tests/models/test_models.py): reflectances
 from .01 to .99."""
+GREY_SHARES = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
 
 
 WARPS: dict[str, tuple[tuple[float, float, float], ...]] = {
@@ -157,6 +158,20 @@ class Moments(Model):
 
     def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
         return duality.try_multipliers(coefficients)
+
+    def from_rounded(self, moments: Array) -> tuple[Array, Mask]:
+        """Return multipliers (n, C) of moments (n, C) that were rounded or filtered, and their validity (n,).
+
+        Rounding can move moments of saturated colours out of the moment space. They are mixed with the least of
+        `GREY_SHARES` of grey that returns them.
+        """
+        multipliers, valid = self.try_from_storage(moments)
+        for share in GREY_SHARES:
+            if valid.all():
+                break
+            mixed = (1 - share) * moments[~valid] + share * np.eye(self.count)[0] / 2
+            multipliers[~valid], valid[~valid] = self.try_from_storage(mixed)
+        return multipliers, valid
 
     def is_float32_safe(self, multipliers: Array) -> Mask:
         # The linear part is at most |p₀| + 2 Σ |p_l|.

@@ -14,7 +14,7 @@ from uplift.colorimetry.gamut import map_to_gamut
 from uplift.common.errors import TextureError
 from uplift.io import texture as textures
 from uplift.io.mitsuba.texture import blend
-from uplift.io.mitsuba.texture_file import multipliers_of_rounded, read_texels
+from uplift.io.mitsuba.texture_file import read_texels
 from uplift.models import Moments, Sigmoid, evaluate
 
 pytestmark = pytest.mark.filterwarnings("ignore:the texture calls Python:uplift.UpliftWarning")
@@ -247,7 +247,7 @@ def test_moments_that_rounding_moved_outside_return():
     moments = model.to_storage([[0, 3e4, 0, -1e4, 0, 0, 0, 0, 0]])
     rounded = moments.astype(np.float16).astype(float)
     assert not model.try_from_storage(rounded)[1].all()
-    multipliers, valid = multipliers_of_rounded(model, rounded)
+    multipliers, valid = model.from_rounded(rounded)
     assert valid.all()
     np.testing.assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=0.01)
 

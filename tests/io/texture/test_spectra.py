@@ -73,7 +73,7 @@ def test_multipliers_of_a_colour_do_not_depend_on_how_often_it_occurs(small_cube
     rng = np.random.default_rng(5)
     few = rng.uniform(0, 1, (50, 3)).astype(np.float32)
     rows = rng.integers(0, 50, (30, 40))
-    sample = texture.Multipliers().make_sampler(small_cube, 1)
+    sample = texture.prepare(small_cube, texture.Multipliers(), threads=1).sample
     np.testing.assert_array_equal(sample(few[rows]), sample(few)[rows])
 
 

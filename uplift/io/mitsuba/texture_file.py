@@ -3,20 +3,17 @@
 import contextlib
 import json
 import re
-from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array
 from uplift.common.errors import TextureError, UpliftError, UpliftWarning
 from uplift.io.mitsuba.texels import THREADS, Samples, Texels, model_texels
 from uplift.io.texture import exr_file
 from uplift.io.texture.colours import Counts, Floats, coloured_parts, space_warnings
-from uplift.io.texture.image import open_image
+from uplift.io.texture.image import Image, Values, open_image
 from uplift.io.texture.uplifter import Converter
 from uplift.lookup.blocks import blockwise
 from uplift.models import Moments, from_description
@@ -26,7 +23,6 @@ QUANTITIES = ("T", "S0")
 """Beginnings of the names of channels of reflectance and of power in the layout of Fichet et al. 2021."""
 WAVELENGTH = re.compile(r"(\d+)(?:,(\d+))?nm")
 NUMBERED = re.compile(r"(moment|multiplier)\.\d+")
-GREY_SHARES = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
 EVEN = 1e-3
 """Tolerance of equidistant wavelengths in nm."""
 
@@ -39,21 +35,21 @@ def read_texels(path: Path) -> Texels | None:
     """
     if not (path.is_file() and exr_file.is_exr(path)):
         return None
-    exr_file.check_size(path)
-    header, channels = _read(path)
-    spectral = next(filter(None, (_spectral_channels(channels, each) for each in QUANTITIES)), None)
-    numbered = sorted(name for name in channels if NUMBERED.fullmatch(name))
-    if spectral:
-        wavelengths = np.array(sorted(spectral))
-        numbers = _stack(path, channels, [spectral[each] for each in wavelengths])
-        return Texels(_samples(path, wavelengths), numbers, float(numbers.mean(dtype=float)))
-    if not numbered:
-        return None
-    model, numbers = _model(path, header, len(numbered)), _stack(path, channels, numbered)
-    if numbered[0].startswith("moment"):
-        assert isinstance(model, Moments)
-        numbers = blockwise(partial(_multipliers, path, model), numbers, model.count, np.float32, THREADS)
-    return model_texels(model, numbers)
+    with open_image(path) as image:
+        channels = image.parts[0].channels
+        spectral = next(filter(None, (_spectral_channels(channels, each) for each in QUANTITIES)), None)
+        if spectral:
+            wavelengths = np.array(sorted(spectral))
+            numbers = _numbers(image, [spectral[each] for each in wavelengths])
+            return Texels(_samples(wavelengths), numbers, float(numbers.mean(dtype=float)))
+        numbered = sorted(name for name in channels if NUMBERED.fullmatch(name))
+        if not numbered:
+            return None
+        model, numbers = _model(image.header_text("uplift.model"), len(numbered)), _numbers(image, numbered)
+        if numbered[0].startswith("moment"):
+            assert isinstance(model, Moments)
+            numbers = blockwise(partial(_multipliers, model), numbers, model.count, np.float32, THREADS)
+        return model_texels(model, numbers)
 
 
 def read_colours(path: Path, converter: Converter) -> tuple[Floats, Counts, tuple[UpliftWarning, ...]]:
@@ -68,78 +64,50 @@ def read_colours(path: Path, converter: Converter) -> tuple[Floats, Counts, tupl
         return np.concatenate(bands), sum(counts, Counts()), space_warnings(image, converter.sensor)
 
 
-def _read(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    import OpenEXR
-
-    try:
-        part = OpenEXR.File(str(path), separate_channels=True).parts[0]
-    except (RuntimeError, IndexError) as error:
-        raise TextureError(
-            "the OpenEXR file is damaged or incomplete", path=path, hint="write the file again"
-        ) from error
-    return part.header, part.channels
-
-
-def _spectral_channels(channels: Iterable[str], quantity: str) -> dict[float, str]:
+def _spectral_channels(channels: tuple[str, ...], quantity: str) -> dict[float, str]:
     """Return the names of the channels of a quantity by wavelength in nm."""
     ends = {name: WAVELENGTH.fullmatch(name.removeprefix(f"{quantity}.")) for name in channels}
     return {float(f"{end[1]}.{end[2] or 0}"): name for name, end in ends.items() if end and name[0] == quantity[0]}
 
 
-def _stack(path: Path, channels: dict[str, Any], names: list[str]) -> NDArray[Any]:
-    numbers = np.stack([channels[name].pixels for name in names], axis=-1).astype(np.float32)
+def _numbers(image: Image, names: list[str]) -> Values:
+    """Return the channels (h, w, C) of these names."""
+    part = image.parts[0]
+    places = [part.channels.index(name) for name in names]
+    numbers = np.concatenate([rows[..., places].astype(np.float32) for _, rows in image.bands(part)])
     if not np.isfinite(numbers).all():
         raise TextureError(
-            "the numbers of a texture must be finite", path=path, hint="write the texture again with 'uplift texture'"
+            "the numbers of a texture must be finite", hint="write the texture again with 'uplift texture'"
         )
     return numbers
 
 
-def _samples(path: Path, wavelengths: Array) -> Samples:
+def _samples(wavelengths: Array) -> Samples:
     even = np.linspace(wavelengths[0], wavelengths[-1], len(wavelengths))
     if len(wavelengths) < 2 or np.abs(wavelengths - even).max() > EVEN:
         raise TextureError(
             "wavelengths of a spectral texture must be at least two and equidistant",
-            path=path,
             hint="write the texture with --wavelengths START:END:STEP",
         )
     return Samples(float(wavelengths[0]), float(wavelengths[-1]), len(wavelengths))
 
 
-def _model(path: Path, header: dict[str, Any], count: int) -> Model:
+def _model(description: str, count: int) -> Model:
     with contextlib.suppress(KeyError, TypeError, ValueError, UpliftError):
-        model = from_description(json.loads(header["uplift.model"]))
+        model = from_description(json.loads(description))
         if model.count == count:
             return model
     raise TextureError(
         "the header of a texture must describe the model of its channels in uplift.model",
-        path=path,
         hint="write the texture with 'uplift texture', and keep its header in other programs",
     )
 
 
-def multipliers_of_rounded(model: Moments, moments: Array) -> tuple[Array, Mask]:
-    """Return multipliers (n, C) of moments (n, C) that were rounded or filtered, and their validity (n,).
-
-    Rounding can move moments of saturated colours out of the moment space. They are mixed with the least of
-    `GREY_SHARES` of grey that returns them.
-    """
-    multipliers, valid = model.try_from_storage(moments)
-    grey = np.eye(model.count)[0] / 2
-    for share in GREY_SHARES:
-        if valid.all():
-            break
-        mixed = (1 - share) * moments[~valid] + share * grey
-        multipliers[~valid], valid[~valid] = model.try_from_storage(mixed)
-    return multipliers, valid
-
-
-def _multipliers(path: Path, model: Moments, moments: Array) -> Array:
-    multipliers, valid = multipliers_of_rounded(model, moments.astype(float))
+def _multipliers(model: Moments, moments: Array) -> Array:
+    multipliers, valid = model.from_rounded(moments.astype(float))
     if not valid.all():
         raise TextureError(
             "the moments of a texel belong to no reflectance in [0, 1]",
-            path=path,
             hint="write the texture with --depth float, and do not sharpen it",
         )
     return multipliers

@@ -95,6 +95,21 @@ class Converter(ABC):
         yield lambda part, first, rgb: self.convert(rgb)
 
 
+@dataclass(frozen=True, eq=False)
+class Pixels:
+    """Numbers of a pixel encoding of a cube.
+
+    ``channels`` (N,) are named, and described by ``details`` as JSON values. ``sample``, ``outside`` and ``model`` are
+    those of `Uplifter`.
+    """
+
+    channels: tuple[str, ...]
+    sample: Sampler
+    outside: Floats | None
+    model: Model | None = None
+    details: Mapping[str, Any] = field(default_factory=dict)
+
+
 class PixelEncoding(ABC):
     """The numbers of a pixel, the channels for them, and their description in the header."""
 
@@ -106,24 +121,8 @@ class PixelEncoding(ABC):
     """Attributes that the layout requires."""
 
     @abstractmethod
-    def channels(self, cube: Cube) -> tuple[str, ...]:
-        """Names of the channels, one per number. Raises `OptionError` if the cube has no such numbers."""
-
-    @abstractmethod
-    def make_sampler(self, cube: Cube, threads: int) -> Sampler:
-        """The function that computes the numbers."""
-
-    @abstractmethod
-    def outside(self, cube: Cube) -> Floats | None:
-        """The numbers (O, N) of the entries outside the RGB space; None without any."""
-
-    def model(self, cube: Cube) -> Model | None:
-        """The model whose multipliers the numbers are; None for numbers that are linear in the spectrum."""
-        return None
-
-    def describe(self, cube: Cube) -> dict[str, Any]:
-        """The encoding as JSON values: ``as``, its name, and the wavelengths of a spectrum."""
-        return {"as": self.name}
+    def pixels(self, cube: Cube, threads: int) -> Pixels:
+        """The numbers for a cube. Raises `OptionError` if it has none of this kind."""
 
 
 @dataclass(frozen=True)
@@ -145,22 +144,15 @@ class Spectrum(PixelEncoding):
     depths = ("half", "float")
     header = SPECTRAL_LAYOUT
 
-    def channels(self, cube: Cube) -> tuple[str, ...]:
-        return spectral_channels("T", as_wavelengths(self.wavelengths, cube.wavelengths))
-
-    def describe(self, cube: Cube) -> dict[str, Any]:
-        return {"as": self.name, "wavelengths": as_wavelengths(self.wavelengths, cube.wavelengths).tolist()}
-
-    def make_sampler(self, cube: Cube, threads: int) -> Sampler:
+    def pixels(self, cube: Cube, threads: int) -> Pixels:
         from uplift.lookup import bulk
 
-        return bulk.spectra(cube, self.wavelengths, threads=threads)
-
-    def outside(self, cube: Cube) -> Floats | None:
-        if (spectra := cube.data.outside_spectra) is None:
-            return None
-        at = as_wavelengths(self.wavelengths, cube.wavelengths)
-        return spectra.reflectance(np.arange(len(spectra.coefficients)), at).astype(np.float32)
+        at, spectra = as_wavelengths(self.wavelengths, cube.wavelengths), cube.data.outside_spectra
+        channels, outside = spectral_channels("T", at), None
+        if spectra is not None:
+            outside = spectra.reflectance(np.arange(len(spectra.coefficients)), at).astype(np.float32)
+        sample = bulk.spectra(cube, self.wavelengths, threads=threads)
+        return Pixels(channels, sample, outside, details={"wavelengths": at.tolist()})
 
 
 @dataclass(frozen=True)
@@ -170,23 +162,18 @@ class Moments(PixelEncoding):
     name = "moments"
     depths = ("float", "half")
 
-    def channels(self, cube: Cube) -> tuple[str, ...]:
-        model = cube.data.model
+    def pixels(self, cube: Cube, threads: int) -> Pixels:
+        from uplift.lookup import bulk
+
+        model, entries = cube.data.model, cube.data.atlas.outside
         if not isinstance(model, models.Moments):
             raise OptionError(
                 f"moments need a moments cube, got a {model.name} cube",
                 hint="write multipliers, or use a moments cube",
             )
-        return tuple(f"moment.{index:02}" for index in range(model.count))
-
-    def make_sampler(self, cube: Cube, threads: int) -> Sampler:
-        from uplift.lookup import bulk
-
-        return bulk.coefficients(cube, threads=threads)
-
-    def outside(self, cube: Cube) -> Floats | None:
-        table = cube.data.atlas.outside
-        return None if table is None else table.coefficients.astype(np.float32)
+        outside = None if entries is None else entries.coefficients.astype(np.float32)
+        channels = tuple(f"moment.{index:02}" for index in range(model.count))
+        return Pixels(channels, bulk.coefficients(cube, threads=threads), outside)
 
 
 @dataclass(frozen=True)
@@ -205,28 +192,20 @@ class Multipliers(PixelEncoding):
     name = "multipliers"
     depths = ("float",)
 
-    def model(self, cube: Cube) -> Model:
-        return cube.data.entry_spectra.model if self.of_entries else cube.data.model
-
-    def channels(self, cube: Cube) -> tuple[str, ...]:
-        return tuple(f"multiplier.{index:02}" for index in range(self.model(cube).count))
-
-    def make_sampler(self, cube: Cube, threads: int) -> Sampler:
-        function = partial(extended_multipliers if self.of_entries else refined_multipliers, cube.data)
-        width = self.model(cube).count
+    def pixels(self, cube: Cube, threads: int) -> Pixels:
+        data, entries, spectra = cube.data, cube.data.atlas.outside, cube.data.outside_spectra
+        function, model, outside = partial(refined_multipliers, data), data.model, None
+        if self.of_entries:
+            function, model = partial(extended_multipliers, data), data.entry_spectra.model
+        if entries is not None and spectra is not None:
+            own = spectra.multipliers if self.of_entries else data.model.from_storage(entries.coefficients)
+            outside = own.astype(np.float32)
 
         def sample(rgb: Floats) -> Floats:
             colours, rows = _different(rgb)  # images have few: a colour takes long, and has the same answer each time
-            return blockwise(function, colours.astype(float), width, np.float32, threads)[rows]
+            return blockwise(function, colours.astype(float), model.count, np.float32, threads)[rows]
 
-        return sample
-
-    def outside(self, cube: Cube) -> Floats | None:
-        table, spectra = cube.data.atlas.outside, cube.data.outside_spectra
-        if table is None or spectra is None:
-            return None
-        own = spectra.multipliers if self.of_entries else cube.data.model.from_storage(table.coefficients)
-        return own.astype(np.float32)
+        return Pixels(tuple(f"multiplier.{index:02}" for index in range(model.count)), sample, outside, model)
 
 
 PIXEL_ENCODINGS: dict[str, Callable[[], PixelEncoding]] = {each.name: each for each in (Spectrum, Moments, Multipliers)}
@@ -370,28 +349,28 @@ def prepare(
     UnknownNameError
         The RGB space or a light is unknown.
     """
-    pixels = Spectrum() if pixel_encoding is None else pixel_encoding
-    depth = resolve_depth(depth, pixels.depths, pixels.name)
+    kind = Spectrum() if pixel_encoding is None else pixel_encoding
+    depth = resolve_depth(depth, kind.depths, kind.name)
     check_encoding(encoding)
     check_method(out_of_gamut)
-    channels = pixels.channels(cube)
+    pixels = kind.pixels(cube, threads)
     settings: dict[str, Any] = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
     settings |= {} if space is None else {"space": space}
     lights = [light(name, cube.observer, *cube.data.sensor.range) for name in dict.fromkeys(errors)]
     settings |= {"errors": [each.name for each in lights]} if lights else {}
-    description = json.dumps({**pixels.describe(cube), **settings}, allow_nan=False)
-    header = {**exr.attributes(cube.data), "uplift.texture": description, **pixels.header}
+    description = json.dumps({"as": kind.name, **pixels.details, **settings}, allow_nan=False)
+    header = {**exr.attributes(cube.data), "uplift.texture": description, **kind.header}
     return Uplifter(
         cube.data.sensor,
         depth,
         encoding,
         out_of_gamut,
-        (*channels, *(f"error.{channel_name(each.name)}" for each in lights)),
+        (*pixels.channels, *(f"error.{channel_name(each.name)}" for each in lights)),
         header,
         cube,
-        sample=pixels.make_sampler(cube, threads),
-        model=pixels.model(cube),
-        outside=pixels.outside(cube),
+        sample=pixels.sample,
+        model=pixels.model,
+        outside=pixels.outside,
         errors=tuple(light_errors(cube.data, each) for each in lights),
         space=None if space is None else find_space(space),
     )
