@@ -73,7 +73,7 @@ class LampEntries:
     def locate(self, uv: Array) -> DiscHits:
         """Find the discs of chromaticities (n, 2)."""
         places, lists = self._candidates
-        u, v = _bins(uv).T
+        u, v = _bins(uv, BINS).T
         listed = places.take(u * BINS + v)
         near = np.flatnonzero(listed >= 0)
         candidates = lists[listed[near]]
@@ -95,15 +95,11 @@ class LampEntries:
 
         (BINS²,) rows of the bins in the second array, −1 for bins without lamps; (m, k) numbers of lamps, the rest −1.
         """
-        low, high = _bins(self.uv - self.radius[:, None]), _bins(self.uv + self.radius[:, None])
-        found: dict[int, list[int]] = {}
-        for number, (first, last) in enumerate(zip(low.tolist(), high.tolist(), strict=True)):
-            for u, v in product(*map(range, first, (last[0] + 1, last[1] + 1))):
-                found.setdefault(u * BINS + v, []).append(number)
+        found = touched_bins(self.uv, self.radius, BINS)
         places = np.full(BINS**2, -1)
         lists = np.full((len(found), max(map(len, found.values()), default=0)), -1)
-        for row, (place, numbers) in enumerate(found.items()):
-            places[place] = row
+        for row, ((v, u), numbers) in enumerate(found.items()):
+            places[u * BINS + v] = row
             lists[row, : len(numbers)] = numbers
         return places, lists
 
@@ -139,9 +135,19 @@ def lamp_entries(
     return entries, tuple(duplicates)
 
 
-def _bins(uv: Array) -> Indices:
+def touched_bins(uv: Array, radius: Array, count: int) -> dict[tuple[int, int], list[int]]:
+    """Return the numbers of the discs that reach into each of ``count``² bins, by the bin along v′ and u′."""
+    low, high = (_bins(uv + sign * radius[:, None], count).tolist() for sign in (-1, 1))
+    found: dict[tuple[int, int], list[int]] = {}
+    for number, ((left, bottom), (right, top)) in enumerate(zip(low, high, strict=True)):
+        for place in product(range(bottom, top + 1), range(left, right + 1)):
+            found.setdefault(place, []).append(number)
+    return found
+
+
+def _bins(uv: Array, count: int) -> Indices:
     """Bins (n, 2) along u′ and v′."""
-    return np.clip(uv * float(BINS), 0, BINS - 1).astype(np.int64)
+    return np.clip(uv * float(count), 0, count - 1).astype(np.int64)
 
 
 def _unit(power: Array, radiometry: Array) -> tuple[Array, Array]:

@@ -10,7 +10,7 @@ import pytest
 
 from tests.helpers import raises
 from tests.io.texture.conftest import planes, read_channels, write_exr
-from uplift.common.errors import OptionError, OutputError, TextureError
+from uplift.common.errors import OptionError, OutputError
 from uplift.io import texture
 from uplift.io.texture.sequence import run
 
@@ -104,7 +104,7 @@ def test_resume_repeats_textures_of_other_settings(jobs, change):
 
 
 def test_two_images_with_one_target_raise(jobs):
-    with raises(TextureError):
+    with raises(OutputError):
         texture.pending([jobs[0], replace(jobs[2], target=jobs[0].target)])
 
 

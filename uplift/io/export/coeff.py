@@ -19,6 +19,7 @@ W. Jakob and J. Hanika, "A Low-Dimensional Function Space for Efficient Spectral
 reference implementation ``rgb2spec``.
 """
 
+from string import Template
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,7 @@ from uplift.common.arrays import Array, StrPath, blocks
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write
 from uplift.cube import CubeData
+from uplift.io.export.program import read_source
 from uplift.lookup.interpolate import around
 from uplift.models import Sigmoid
 from uplift.models.arithmetic import blocked_matmul_columns
@@ -106,22 +108,14 @@ def _binary(sensor: Sensor, scale: Array, table: NDArray[np.float32]) -> bytes:
 
 def _source(layout: str, name: str, scale: Array, table: NDArray[np.float32]) -> str:
     """Return the source of a layout in C++."""
-    res = len(scale)
-    axes = f"[3][{res}][{res}][{res}]"
-    if layout == "luisa":
-        padded = np.pad(table, [(0, 0)] * 4 + [(0, 1)])
-        return f"namespace luisa::render {{\n{_array(name, 'Data', axes + '[4]', padded)}}}\n"
-    return (
-        f"namespace pbrt {{\nextern const int {name}ToSpectrumTable_Res = {res};\n"
-        f"{_array(name, 'Scale', f'[{res}]', scale)}{_array(name, 'Data', axes + '[3]', table)}}}\n"
-    )
+    numbers = np.pad(table, [(0, 0)] * 4 + [(0, 1)]) if layout == "luisa" else table
+    words = {"name": name, "res": str(len(scale)), "scale": _rows(scale), "data": _rows(numbers)}
+    return Template(read_source(f"{layout}.cpp")).substitute(words)
 
 
-def _array(name: str, part: str, axes: str, numbers: NDArray[Any]) -> str:
-    """Return the definition of an array of floats in C++."""
+def _rows(numbers: NDArray[Any]) -> str:
     rows = numbers.reshape(-1, numbers.shape[-1]).tolist()
-    lines = "\n".join(",".join(f"{number:.9g}" for number in row) + "," for row in rows)
-    return f"extern const float {name}ToSpectrumTable_{part}{axes} = {{\n{lines}\n}};\n"
+    return "\n".join(",".join(f"{number:.9g}" for number in row) + "," for row in rows)
 
 
 def _f32(*arrays: Array | NDArray[np.float32]) -> bytes:

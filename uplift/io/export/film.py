@@ -20,6 +20,7 @@ Li et al. 2002, "CMCCAT2000 and CAT02": the adaptation of spektrafilm's RGB to t
 import io
 from dataclasses import dataclass
 from pathlib import Path
+from string import Template
 
 import numpy as np
 
@@ -31,6 +32,7 @@ from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write, write_text
+from uplift.io.export.program import read_source
 from uplift.lookup import Cube
 
 SIZE, MIN_SIZE, MAX_SIZE = 192, 2, 1024
@@ -204,19 +206,9 @@ def _stops(cube: Cube, scene: Scene, table: Array) -> float:
 
 
 def _description(path: Path, light: str, kind: str, size: int) -> str:
-    scene = f'[reflectance]\nscene_illuminant = "{light}"\nmidgray = {MIDGRAY}' if kind == "reflectance" else ""
-    return (
-        f"""identifier = "{path.stem}"
-file = "{path.name}"
-kind = "{kind}"
-title = "uplift: {path.stem} under {light}"
-
-[array]
-lut_size = {size}
-bands = {len(grid())}
-spectral_shape = [{START}, {END}, {STEP}]
-
-{scene}
-""".rstrip()
-        + "\n"
+    """Return the text of the TOML file; lights have no section of their reflectance."""
+    text = Template(read_source("film.toml")).substitute(
+        {"stem": path.stem, "file": path.name, "kind": kind, "light": light, "observer": DEFAULT_OBSERVER},
+        **{"size": size, "bands": len(grid()), "start": START, "end": END, "step": STEP, "midgray": MIDGRAY},
     )
+    return text if kind == "reflectance" else text.partition("\n[reflectance]")[0]

@@ -10,7 +10,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.io.export.program import check_form, comment, compose, write_files
 from uplift.io.export.table import Table, concatenate
-from uplift.lights.discs import MIN_RADIUS
+from uplift.lights.discs import MIN_RADIUS, touched_bins
 from uplift.lights.lattice import DENOMINATOR, ChromaticityLattice
 from uplift.lights.table import EmissionData, emission_digest
 
@@ -87,15 +87,8 @@ def _first_angle(lattice: ChromaticityLattice) -> float:
 
 def _bins(uv: Array, radius: Array) -> NDArray[np.float64]:
     """Return the position of each bin's list of lamps, and the lists, each after its length."""
-    low = np.clip(np.floor((uv - radius[:, None]) * BIN_COUNT), 0, BIN_COUNT - 1).astype(int)
-    high = np.clip(np.floor((uv + radius[:, None]) * BIN_COUNT), 0, BIN_COUNT - 1).astype(int)
-    touching: dict[tuple[int, int], list[int]] = {}
-    for lamp, ((left, bottom), (right, top)) in enumerate(zip(low.tolist(), high.tolist(), strict=True)):
-        for row in range(bottom, top + 1):
-            for column in range(left, right + 1):
-                touching.setdefault((row, column), []).append(lamp)
     places, lists = np.full((BIN_COUNT, BIN_COUNT), BIN_COUNT**2), [0]
-    for (row, column), listed in touching.items():
+    for (row, column), listed in touched_bins(uv, radius, BIN_COUNT).items():
         places[row, column] = BIN_COUNT**2 + len(lists)
         lists += [len(listed), *listed]
     return np.concatenate([places.ravel(), lists]).astype(float)

@@ -7,7 +7,6 @@ import os
 import re
 import warnings
 import zlib
-from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -15,10 +14,9 @@ from string import Template
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.common.errors import OptionError, UpliftWarning, unknown_name
-from uplift.common.files import atomic_write, check_output
+from uplift.common.files import atomic_write, check_output, write_text
 from uplift.common.version import VERSION
 from uplift.cube import CubeData, digest
 from uplift.io.export.table import COLUMNS, MODES, Table, make_table, rounding_error
@@ -157,12 +155,10 @@ def write_files(text: str, table: Table, path: Path, form: str, *, per_line: int
     numbers = path.with_suffix(".bin")
     if form == "file":
         check_output(numbers, force=force)
-    with (
-        atomic_write(path, force=force) as temporary,
-        temporary.open("w", encoding="ascii", newline="\n") as opened,
-    ):
-        opened.writelines(_with_numbers(text, table.numbers, per_line))
-    if form != "file":
+    rows = np.split(table.numbers, range(per_line, len(table.numbers), per_line)) if form == "header" else []
+    lines = "".join(", ".join(map(literal, row.tolist())) + ",\n" for row in rows)
+    write_text(text.replace("${numbers}", lines), path, force=force)
+    if form == "header":
         return [path]
     with atomic_write(numbers, force=force) as temporary:
         temporary.write_bytes(table.image().tobytes())
@@ -201,13 +197,3 @@ def literal(value: float) -> str:
         return str(value)
     text = f"{value:.9g}"
     return f"{text}f" if {".", "e"} & set(text) else f"{text}.0f"
-
-
-def _with_numbers(text: str, numbers: NDArray[np.float32], per_line: int) -> Iterator[str]:
-    """Yield a program, with its table as text where it has ``${numbers}``."""
-    before, found, after = text.partition("${numbers}")
-    yield before
-    if found:
-        for start in range(0, len(numbers), per_line):
-            yield ", ".join(map(literal, numbers[start : start + per_line].tolist())) + ",\n"
-    yield after

@@ -14,10 +14,11 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, Primaries
-from uplift.colorimetry.spaces import ImageSpace, OcioSpace, find_ocio_space
+from uplift.colorimetry.spaces import ImageSpace, LinearGamut, OcioSpace, find_ocio_space
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.io import exr
 
 Curve = Callable[[Array], Array]
 """From codes in [0, 1] to linear values."""
@@ -31,8 +32,6 @@ H273_PRIMARIES = {
 """Colour primaries of ITU-T H.273, table 2, that PNG files name: sRGB, Rec. 2020, DCI-P3 and Display P3."""
 NOT_STATED = ("", "unknown")
 """Values of colorInteropID that name no space."""
-CORNERS = np.vstack([np.eye(3), np.ones(3)])
-"""RGB of the primaries and white."""
 ROUNDING = 1e-6
 """Largest step back of a curve by single precision."""
 
@@ -121,7 +120,7 @@ def _icc_space(name: str, data: bytes) -> ImageSpace | None:
         except ocio.Exception:
             return None
     to_xyz = OcioSpace(name, False, processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS))
-    gamut = _primaries([part / sum(each) for each in to_xyz.convert(CORNERS) for part in each[:2]])
+    gamut = _primaries(exr.chromaticities(LinearGamut(to_xyz.matrix)))
     if gamut is None:
         return None
     to_linear = np.linalg.inv(to_xyz.matrix).T

@@ -5,7 +5,8 @@ Colours that had to change are counted.
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,6 +125,11 @@ def coloured_parts(image: Image) -> list[tuple[Part, ColourChannels]]:
     return [(part, colours) for part, colours in colour_channels_by_part(image) if colours is not None]
 
 
+def _counted(code: str, text: str) -> Any:
+    """Return a field of `Counts`, and the warning about its pixels."""
+    return field(default=0, metadata={"code": code, "text": text})
+
+
 @dataclass(frozen=True)
 class Counts:
     """Numbers of pixels that were not plain colours in [0, 1].
@@ -149,13 +155,17 @@ class Counts:
     """
 
     pixels: int = 0
-    outside: int = 0
-    not_finite: int = 0
-    unrealisable: int = 0
+    outside: int = _counted("pixels-out-of-gamut", "lie outside [0, 1]: {mapped}, a component by up to {change:.3g}")
+    not_finite: int = _counted("pixels-not-finite", "are not finite: NaN is replaced by 0, infinity is clamped")
+    unrealisable: int = _counted("pixels-unrealisable", "are unrealisable colours: their spectra have less chroma")
     max_change: float = 0.0
-    painted_outside: int = 0
-    not_lights: int = 0
-    too_bright: int = 0
+    painted_outside: int = _counted("painted-pixels-out-of-gamut", "lie outside [0, 1] after painting: {mapped}")
+    not_lights: int = _counted(
+        "pixels-not-lights", "have colours that no light has: moved towards white of the same luminance"
+    )
+    too_bright: int = _counted(
+        "pixels-too-bright", "are brighter than half floats can store: clamped; use 32-bit channels"
+    )
 
     def __add__(self, other: "Counts") -> "Counts":
         """Counts of both."""
@@ -177,33 +187,15 @@ class Counts:
         tuple of UpliftWarning
             The warnings. They are not emitted.
         """
-        texts = {
-            "outside": (
-                "pixels-out-of-gamut",
-                f"lie outside [0, 1]: {PAST_TENSE[method]}, a component by up to {self.max_change:.3g}",
-            ),
-            "not_finite": ("pixels-not-finite", "are not finite: NaN is replaced by 0, infinity is clamped"),
-            "unrealisable": (
-                "pixels-unrealisable",
-                "are unrealisable colours: their spectra have less chroma",
-            ),
-            "painted_outside": (
-                "painted-pixels-out-of-gamut",
-                f"lie outside [0, 1] after painting: {PAST_TENSE[method]}",
-            ),
-            "not_lights": (
-                "pixels-not-lights",
-                "have colours that no light has: moved towards white of the same luminance",
-            ),
-            "too_bright": (
-                "pixels-too-bright",
-                "are brighter than half floats can store: clamped; use 32-bit channels",
-            ),
-        }
+        words = {"mapped": PAST_TENSE[method], "change": self.max_change}
+        found = [each for each in fields(self) if each.metadata and getattr(self, each.name)]
         return tuple(
-            UpliftWarning(f"{getattr(self, name):,} of {self.pixels:,} pixels {text}", code=code, path=path)
-            for name, (code, text) in texts.items()
-            if getattr(self, name)
+            UpliftWarning(
+                f"{getattr(self, each.name):,} of {self.pixels:,} pixels {each.metadata['text'].format(**words)}",
+                code=each.metadata["code"],
+                path=path,
+            )
+            for each in found
         )
 
 

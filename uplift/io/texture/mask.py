@@ -75,9 +75,7 @@ def _interpret(image: Image, part: Part, rgb: tuple[int, int, int], cubes: int) 
     meanings = {2: "0 and 1, or weights up to white", 3: "0 to 2, or weights in R, G and B that are not all 0"}
     raise TextureError(
         f"a mask of {cubes} cubes must hold {meanings.get(cubes, f'0 to {cubes - 1}')}, "
-        f"got {'grey' if is_grey else 'coloured'} values from {low:g} to {high:g}"
-        + (f" of {white}" if is_integer else "")
-        + (" with black pixels" if has_black and not is_grey else ""),
+        f"got {'grey' if is_grey else 'coloured'} values from {low:g} to {high:g}",
         hint=HINT,
     )
 

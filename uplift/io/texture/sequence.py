@@ -2,7 +2,6 @@
 
 import contextlib
 import logging
-import os
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, as_completed
 from dataclasses import dataclass, field
@@ -243,23 +242,14 @@ def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
 
     Raises
     ------
-    TextureError
-        Two images have the same target.
     OutputError
-        A target cannot be written, exists, or is an image or the cube of any job.
+        A target cannot be written, exists, or is an image or the cube of any job, or two images have the same target.
     """
     jobs = list(jobs)
-    for target in {job.target for job in jobs}:
-        sources = [os.fspath(job.source) for job in jobs if job.target == target]
-        if len(sources) > 1:
-            raise TextureError(
-                f"every image needs its own target, got {target} for {' and '.join(sources)}",
-                hint="write them to different folders",
-            )
     remaining = [job for job in jobs if not (resume and _is_up_to_date(job))]
     inputs = [path for job in jobs for path in (job.source, *job.settings.cubes, job.settings.mask)]
-    for force in (False, True):
-        check_outputs([job.target for job in remaining if job.force == force], inputs=inputs, force=force)
+    check_outputs([job.target for job in jobs], inputs=inputs, force=True)
+    check_outputs([job.target for job in remaining if not job.force], inputs=inputs)
     return remaining
 
 
