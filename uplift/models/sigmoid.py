@@ -65,6 +65,12 @@ class Sigmoid(Model):
     def metric_diagonal(self) -> Array:
         return np.ones(self.count)
 
+    def unscaled(self, multipliers: Array) -> Array:
+        """Convert multipliers (n, 3) to the coefficients of `evaluate_unscaled`."""
+        middle, half = (self.start + self.end) / 2, (self.end - self.start) / 2
+        square, linear, constant = (multipliers / half ** np.array([2, 1, 0])).T
+        return np.column_stack([square, linear - 2 * middle * square, constant + middle * (middle * square - linear)])
+
     def is_float32_safe(self, multipliers: Array) -> Mask:
         return np.asarray(np.abs(multipliers).sum(axis=1) <= MAX_SAFE_LINEAR)
 

@@ -163,7 +163,7 @@ def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> NDA
                 multipliers = _nearest_to_grey(sensor, multipliers, target, scale[level])
                 if level == middle:
                     start = multipliers
-                table[level, rows] = _per_nanometre(multipliers)
+                table[level, rows] = MODEL.unscaled(multipliers)
     return table
 
 
@@ -210,13 +210,6 @@ def _linearised(sensor: Sensor, p: Array, target: Array, unit: float) -> tuple[A
 def _targets(data: CubeData, rgb: Array) -> Array:
     """Return linear RGB (n, 3) of the spectra that the cube answers."""
     return around(data, rgb).weighted_sum(data.points.rgb.astype(float), data.atlas.rgb)
-
-
-def _per_nanometre(multipliers: Array) -> Array:
-    """Convert polynomials (n, 3) of [start, end] scaled to [−1, 1] to polynomials of λ in nm."""
-    middle, half = (START + END) / 2, (END - START) / 2
-    square, linear, constant = (multipliers / half ** np.array([2, 1, 0])).T
-    return np.column_stack([square, linear - 2 * middle * square, constant + middle * (middle * square - linear)])
 
 
 def _largest_error(data: CubeData, sensor: Sensor, scale: Array, table: NDArray[np.float32]) -> float:

@@ -16,16 +16,16 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.observer import on_range, sensor
+from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import decode
-from uplift.common.arrays import Array, StrPath, Values, blocks
+from uplift.common.arrays import Array, StrPath, Values
 from uplift.common.errors import OptionError
 from uplift.common.files import write_text
 from uplift.lookup import Cube
+from uplift.lookup.blocks import blockwise
 
 SIZE, MIN_SIZE, MAX_SIZE = 33, 2, 129
-BLOCK = 1 << 14
 SAMPLES, SEED = 4096, 7
 """Random colours, even in codes, on which the table is compared with the cube."""
 CLF = "Academy/ASC Common LUT Format"
@@ -83,19 +83,14 @@ def write_lut(
 def _screen(cube: Cube, light: str, adapt: bool) -> Sensor:
     """Return the sensor of the cube's RGB space for reflectances under the light."""
     own = cube.data.sensor
-    lit = on_range(sensor(own.space, light, own.observer), *own.range)
+    (lit,) = display_sensors([light], own.observer, *own.range, space=own.space)
     # RGB = M XYZ: M adapted to the white of the light, or that of the cube's own illuminant.
     return lit if adapt else replace(lit, xyz_to_rgb=own.xyz_to_rgb)
 
 
 def _relit(cube: Cube, codes: Array, screen: Sensor) -> Array:
     """Return linear RGB (n, 3) under the light of colours in encoded RGB (n, 3)."""
-    return np.concatenate(
-        [
-            np.asarray(cube.reflectance(decode(codes[rows]), screen.wavelengths) @ screen.matrix.T)
-            for rows in blocks(len(codes), BLOCK)
-        ]
-    )
+    return blockwise(lambda rows: cube.reflectance(decode(rows), screen.wavelengths) @ screen.matrix.T, codes, 3)
 
 
 def _encode(linear: Array) -> Array:
