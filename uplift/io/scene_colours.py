@@ -48,8 +48,7 @@ class Images:
         check_method(self.out_of_gamut)
         if not self.paths:
             raise OptionError(
-                "a scene must have at least one image, got none",
-                hint="name an image, or build without a scene",
+                "a scene must have at least one image, got none", hint="name one, or build without a scene"
             )
 
     def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:

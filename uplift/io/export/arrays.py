@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.csv import CsvWriter
-from uplift.common.files import atomic_write
+from uplift.common.arrays import blocks
+from uplift.common.csv import csv_text
+from uplift.common.files import atomic_write, write_text
 from uplift.cube import CubeData, contents
 from uplift.lattice import Status
 
@@ -57,14 +58,10 @@ def write_csv(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
     }
     arrays = {name: column for name, column in columns.items() if column is not None}
     nodes = np.flatnonzero(points.present)
-    with (
-        atomic_write(path, force=force) as temporary,
-        temporary.open("w", encoding="utf-8", newline="") as file,
-    ):
-        writer = CsvWriter(file)
-        writer.write(list(arrays))
-        for first in range(0, len(nodes), BLOCK):
-            block = nodes[first : first + BLOCK]
-            for row in zip(*(column[block].tolist() for column in arrays.values()), strict=True):
-                writer.write(list(row))
+    rows = (
+        row
+        for block in blocks(len(nodes), BLOCK)
+        for row in zip(*(column[nodes[block]].tolist() for column in arrays.values()), strict=True)
+    )
+    write_text(csv_text(list(arrays), rows), path, force=force)
     return len(nodes)

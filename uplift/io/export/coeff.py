@@ -19,6 +19,7 @@ W. Jakob and J. Hanika, "A Low-Dimensional Function Space for Efficient Spectral
 reference implementation ``rgb2spec``.
 """
 
+import struct
 from string import Template
 from typing import Any
 
@@ -103,7 +104,11 @@ def write_coeff(data: CubeData, path: StrPath, *, layout: str = "coeff", res: in
 
 def _binary(sensor: Sensor, scale: Array, table: NDArray[np.float32]) -> bytes:
     """Return the bytes of the layout ``coeff``."""
-    return MAGIC + np.array(len(scale), "<u4").tobytes() + _f32(scale, table) + _sensor_bytes(sensor)
+    at = (sensor.wavelengths - START) / (END - START)
+    forward = (at, sensor.matrix, sensor.rgb_to_xyz, sensor.xyz(np.ones(3)))
+    sizes = (struct.pack("<I", len(each)) for each in (scale, at))
+    numbers = (b"".join(each.astype("<f4").tobytes() for each in part) for part in ((scale, table), forward))
+    return MAGIC + b"".join(map(bytes.__add__, sizes, numbers))
 
 
 def _source(layout: str, name: str, scale: Array, table: NDArray[np.float32]) -> str:
@@ -116,18 +121,6 @@ def _source(layout: str, name: str, scale: Array, table: NDArray[np.float32]) ->
 def _rows(numbers: NDArray[Any]) -> str:
     rows = numbers.reshape(-1, numbers.shape[-1]).tolist()
     return "\n".join(",".join(f"{number:.9g}" for number in row) + "," for row in rows)
-
-
-def _f32(*arrays: Array | NDArray[np.float32]) -> bytes:
-    return b"".join(array.astype("<f4").tobytes() for array in arrays)
-
-
-def _sensor_bytes(sensor: Sensor) -> bytes:
-    """Return the sensor in the layout of Mitsuba."""
-    numbers = _f32(
-        (sensor.wavelengths - START) / (END - START), sensor.matrix, sensor.rgb_to_xyz, sensor.xyz(np.ones(3))
-    )
-    return np.array(len(sensor.wavelengths), "<u4").tobytes() + numbers
 
 
 def _scale(res: int) -> Array:
@@ -220,14 +213,13 @@ def _largest_error(data: CubeData, sensor: Sensor, scale: Array, table: NDArray[
 
 def _interpolated(scale: Array, table: NDArray[np.float32], rgb: Array) -> Array:
     """Return coefficients (n, 3) as rgb2spec interpolates them: linearly between the eight points around a colour."""
-    from scipy.ndimage import map_coordinates
+    from scipy.interpolate import RegularGridInterpolator
 
-    largest, rows = rgb.argmax(axis=1), np.arange(len(rgb))
+    largest, rows, even = rgb.argmax(axis=1), np.arange(len(rgb)), np.linspace(0, 1, len(scale))
     level = rgb[rows, largest]
-    shares = [rgb[rows, (largest + step) % 3] / level * (len(scale) - 1) for step in (2, 1)]
-    places = np.array([np.interp(level, scale, np.arange(len(scale))), *shares])
+    places = np.stack([level, *(rgb[rows, (largest + step) % 3] / level for step in (2, 1))], axis=-1)
     found = np.zeros((len(rgb), 3))
-    for axis, k in np.ndindex(3, 3):
+    for axis in range(3):
         own = largest == axis
-        found[own, k] = map_coordinates(table[axis, ..., k], places[:, own], float, order=1)
+        found[own] = RegularGridInterpolator((scale, even, even), table[axis])(places[own])
     return found

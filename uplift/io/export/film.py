@@ -17,7 +17,6 @@ spektrafilm, `spectral_upsampling.py`: the layout of the table, and how RGB beco
 Li et al. 2002, "CMCCAT2000 and CAT02": the adaptation of spektrafilm's RGB to the light.
 """
 
-import io
 from dataclasses import dataclass
 from pathlib import Path
 from string import Template
@@ -110,11 +109,9 @@ def write_film(
     unit = _chromaticities(res)
     spectra, inside = _spectra(cube, scene, unit, share)
     table = (spectra if light else spectra / scene.power).reshape(res, res, -1).astype("<f2")
-    content = io.BytesIO()
-    np.save(content, table, allow_pickle=False)
     described = _description(Path(path), scene.name, "irradiance" if light else "reflectance", res)
-    with atomic_write(path, force=force) as temporary:
-        temporary.write_bytes(content.getvalue())
+    with atomic_write(path, force=force) as temporary, temporary.open("wb") as file:
+        np.save(file, table, allow_pickle=False)
         write_text(described, Path(path).with_suffix(".toml"), force=force)
     return FilmTable(inside, _stops(cube, scene, spectra.reshape(res, res, -1)))
 

@@ -127,11 +127,10 @@ def _shader(model: Moments, matrix: Array, stem: str) -> str:
 
 def _error(cube: Cube, table: Floats, matrix: Array) -> LutError:
     """Compare colours of the spectra of 8-bit codes with the requested colours, linearly between nodes."""
-    from scipy.ndimage import map_coordinates
+    from scipy.interpolate import RegularGridInterpolator
 
     codes = np.random.default_rng(SEED).integers(0, 256, (SAMPLES, 3)) / 255
-    places = (codes[:, ::-1] * (len(table) - 1)).T
-    found = np.array([map_coordinates(table[..., k], places, order=1) for k in range(3)]).T
+    found = RegularGridInterpolator([np.linspace(0, 1, len(table))] * 3, table)(codes[:, ::-1])
     moments = decode(_codes(found) / 255) @ matrix.T
     spectra = reflectance(cube.data.model, moments, cube.data.sensor.wavelengths)
     errors = delta_e_rgb(cube.data.sensor, cube.data.sensor.rgb(spectra), decode(codes))

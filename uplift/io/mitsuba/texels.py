@@ -103,11 +103,8 @@ class Placement:
     @staticmethod
     def read(props: Any) -> "Placement":
         """Read the properties ``filter_type``, ``wrap_mode`` and ``to_uv``. Raises `UnknownNameError`."""
-        return Placement(
-            _choice(props, "filter_type", FILTERS),
-            _choice(props, "wrap_mode", tuple(WRAPS)),
-            _uv_transform(props),
-        )
+        chosen = _choice(props, "filter_type", FILTERS), _choice(props, "wrap_mode", tuple(WRAPS))
+        return Placement(*chosen, _uv_transform(props))
 
     def pad(self, numbers: NDArray[np.float32]) -> NDArray[np.float32]:
         """Return numbers (h, w, C) with `PADDING` texels around them, so that no lookup needs to wrap."""

@@ -76,9 +76,7 @@ def _numbers(image: Image, names: list[str]) -> Values:
     places = [part.channels.index(name) for name in names]
     numbers = np.concatenate([rows[..., places].astype(np.float32) for _, rows in image.bands(part)])
     if not np.isfinite(numbers).all():
-        raise TextureError(
-            "the numbers of a texture must be finite", hint="write the texture again with 'uplift texture'"
-        )
+        raise TextureError("numbers of a texture must be finite", hint="write it again with 'uplift texture'")
     return numbers
 
 

@@ -93,9 +93,7 @@ def colour_channels(part: Part) -> ColourChannels | None:
         layers = [""]
     if len(layers) > 1:
         found = ", ".join(layer[:-1] for layer in layers)
-        raise TextureError(
-            f"a part must have one layer of colour, got {found}", hint="write each layer as a part or a file"
-        )
+        raise TextureError(f"a part must have one layer of colour, got {found}", hint="write each layer as a part")
     if layers:
         names, alpha = [layers[0] + letter for letter in "RGB"], layers[0] + "A"
     elif "Y" in part.channels and not {"RY", "BY"} & set(part.channels):  # luminance, not luma with chroma

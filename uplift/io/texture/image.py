@@ -46,6 +46,7 @@ ENVIRONMENTS = ("LatLong Environment", "CubeFace Environment")
 MAX_METADATA, MAX_METADATA_LENGTH = 100, 10_000
 """Numbers of attributes, and of their characters or numbers, that textures keep."""
 FORMAT_HINT = "use an EXR, HDR, PNG, JPEG or TIFF image"
+MEMORY_HINT = "write the image with smaller tiles or strips, or without interlacing"
 
 Values = NDArray[Any]
 
@@ -176,7 +177,7 @@ def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
 
     path, config, handle = Path(path), OpenImageIO.ImageSpec(), None
     config["oiio:UnassociatedAlpha"] = 1  # keep colours as stored, not multiplied by alpha
-    OpenImageIO.attribute("limits:imagesize_MB", 0)  # bands are read, which `_check_memory` compares with memory
+    OpenImageIO.attribute("limits:imagesize_MB", 0)  # bands are read, which are compared with memory
     try:
         start = _read_start(path)
         if start.startswith(exr_file.MAGIC):
@@ -191,7 +192,9 @@ def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
                 if not _is_text(name):
                     raise TextureError(f"names of parts and channels must be UTF-8, got {name!a}", hint="rename it")
             is_interlaced = start.startswith(PNG_SIGNATURE) and start[PNG_INTERLACE:] == b"\1"
-            _check_memory(part, part.window.height if is_interlaced else part.rows_per_block)
+            rows = part.window.height if is_interlaced else min(part.rows_per_block, part.window.height)
+            need = rows * part.window.width * len(part.channels) * 4
+            check_memory(need, f"a block of {rows} rows, decoded together,", TextureError, MEMORY_HINT)
         yield Image(path, parts, handle)
     except (TextureError, ColourError) as error:
         error.path = path if error.path is None else error.path
@@ -270,14 +273,6 @@ def _is_kept_value(value: Any) -> bool:
 def _is_text(name: str) -> bool:
     """Return whether a text of OpenImageIO is Unicode. Bytes that are not UTF-8 become lone surrogates."""
     return not any("\ud800" <= letter <= "\udfff" for letter in name)
-
-
-def _check_memory(part: Part, rows: int) -> None:
-    """Raise `TextureError` if rows that must be decoded together do not fit into memory."""
-    rows = min(rows, part.window.height)
-    hint = "write the image with smaller tiles or strips, or without interlacing"
-    need = rows * part.window.width * len(part.channels) * 4
-    check_memory(need, f"a block of {rows} rows, decoded together,", TextureError, hint)
 
 
 def read_error(source: Any) -> str:

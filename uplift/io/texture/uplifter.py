@@ -167,10 +167,7 @@ class Moments(PixelEncoding):
 
         model, entries = cube.data.model, cube.data.atlas.outside
         if not isinstance(model, models.Moments):
-            raise OptionError(
-                f"moments need a moments cube, got a {model.name} cube",
-                hint="write multipliers, or use a moments cube",
-            )
+            raise OptionError(f"moments need a moments cube, got a {model.name} cube", hint="write multipliers")
         outside = None if entries is None else entries.coefficients.astype(np.float32)
         channels = tuple(f"moment.{index:02}" for index in range(model.count))
         return Pixels(channels, bulk.coefficients(cube, threads=threads), outside)
@@ -384,8 +381,5 @@ def channel_name(light: str) -> str:
 def resolve_depth(depth: str | None, depths: tuple[str, ...], name: str) -> str:
     """Return the depth, by default the first of ``depths``. Raises `OptionError` for others."""
     if depth is not None and depth not in depths:
-        raise OptionError(
-            f"depth of {name} must be {' or '.join(depths)}, got '{depth}'",
-            hint="other types are not precise enough",
-        )
+        raise OptionError(f"depth of {name} must be {' or '.join(depths)}, got '{depth}'", hint="others are imprecise")
     return depth or depths[0]
