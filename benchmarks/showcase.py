@@ -21,7 +21,7 @@ from uplift.colorimetry.observer import DEFAULT_OBSERVER, grid, illuminant_spd, 
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
 from uplift.io.export import write_film
-from uplift.io.export.film import CAT02, LAYER_WIDTH, LAYERS
+from uplift.io.export.film import CAT16, LAYER_WIDTH, LAYERS
 from uplift.lab.chart import mitsuba3
 from uplift.report.relight import relight, write_relit_sheet
 from uplift.samples import sample_path
@@ -158,8 +158,8 @@ def expose_film() -> None:
             stated = write_film(cube, Path(folder) / "film.npy", light=FILM_LIGHT).stops
             table = np.load(Path(folder) / "film.npy").astype(float) @ layers
         # As readers do: adapt to the light of the film, look up the chromaticity, scale by X + Y + Z.
-        gain = (CAT02 @ daylight.white) / (CAT02 @ cube.data.sensor.light.white)
-        xyz = np.linalg.solve(CAT02, gain[:, None] * (CAT02 @ cube.data.sensor.xyz(painted.painted).T))
+        gain = (CAT16 @ daylight.white) / (CAT16 @ cube.data.sensor.light.white)
+        xyz = np.linalg.solve(CAT16, gain[:, None] * (CAT16 @ cube.data.sensor.xyz(painted.painted).T))
         (x, y, _), total = xyz / xyz.sum(axis=0), xyz.sum(axis=0)
         places = np.array([(1 - x) ** 2, y / (1 - x)]) * (len(table) - 1)
         found = np.stack([map_coordinates(table[..., each], places, order=1) for each in range(3)], axis=1)

@@ -1,7 +1,6 @@
 """Cubes built for a scene: the answers of the complete cube to its colours, and errors for all others."""
 
 import warnings
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,11 +11,10 @@ from tests.conftest import ATLASES, MACBETH
 from tests.helpers import near_black, raises, with_absent_points
 from tests.io.texture.conftest import PHOTO, WAVELENGTHS, planes, write_exr
 from uplift.common.errors import ColourError, UpliftWarning
-from uplift.cube import AtlasTable, digest
+from uplift.cube import digest
 from uplift.io.scene_colours import Images
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube, bulk
-from uplift.lookup.interpolate import around
 from uplift.pipeline.rebuild import rebuild
 from uplift.report.regression import compare_rebuilt
 
@@ -76,43 +74,6 @@ def test_an_error_quotes_the_first_colour_that_is_not_covered(small_cube):
         with raises(ColourError, "colour-not-in-scene") as caught:
             answer(cube, np.array([[0.001, 0.002, 0.003], first, *more]))
         assert ", ".join(f"{value:.6g}" for value in first) in caught.value.problem
-
-
-def colours_in(data, cell, count=400):
-    """Linear RGB (count, 3) in a cell, some on its faces and corners, some at entries in it."""
-    random = np.random.default_rng(cell)
-    share = random.random((count, 3))
-    share[: count // 2] = np.clip(np.round(share[: count // 2] * 1.5 - 0.25, 1), 0, 1 - 1e-12)
-    low = data.lattice.position(np.array(cell))
-    rgb = data.lattice.nodes[low] + share * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])
-    return rgb[(data.lattice.cell(rgb)[0] == low).all(axis=1)]
-
-
-def missing(data, required):
-    """Count colours that are answered from points other than those that ``required`` returns for their cell."""
-    count = 0
-    for cell in np.unique(data.entry_boxes.cells[0])[::3]:
-        mask = np.zeros(data.lattice.size, dtype=bool)
-        mask[cell] = True
-        nodes = around(data, colours_in(data, cell))
-        count += int((~required(mask)[nodes.points] & (nodes.weights > 0)).any(axis=1).sum())
-    return count
-
-
-@pytest.mark.parametrize("name", ["small_cube", "macbeth_cube"])
-def test_required_points_answer_every_colour_of_a_cell(request, name):
-    data = request.getfixturevalue(name).data
-    assert missing(data, data.entry_boxes.required_points) == 0
-    assert missing(data, data.lattice.corner_points) > 0  # entry boxes need other points than the corners
-
-
-@pytest.mark.parametrize("node", [0, 3, 7])
-def test_required_points_allow_for_rounding_across_faces_on_nodes(plain_cube, node):
-    data = plain_cube.data
-    one = AtlasTable(("one",), np.full((1, 3), data.lattice.nodes[node]), np.zeros((1, 9)), np.ones(1), np.ones(1))
-    data = replace(data, atlas=one)
-    assert data.entry_boxes.cells[0].size
-    assert missing(data, data.entry_boxes.required_points) == 0
 
 
 def test_all_images_of_a_scene_are_read_and_decoded(plain_cube, tmp_path):

@@ -1,7 +1,6 @@
 """OpenEXR slices, read by the OpenEXR package."""
 
 import json
-import time
 from itertools import product
 from pathlib import Path
 
@@ -66,17 +65,6 @@ def test_headers_identify_the_cube(hand_made_slices):
         assert header["uplift.blueValue"] == np.float32(data.lattice.nodes[blue])
         assert json.loads(header["uplift.model"]) == data.model.describe()
         assert (header["uplift.space"], header["uplift.illuminant"]) == ("sRGB", "D65")
-
-
-def test_output_is_reproducible_and_replaced_only_with_force(tmp_path):
-    path = tmp_path / "a.exr"
-    write_slices(hand_made(), path)
-    first = path.read_bytes()
-    time.sleep(1.1)  # a time stamp would differ
-    with raises(OutputError, "file-exists"):
-        write_slices(hand_made(), path)
-    write_slices(hand_made(), path, force=True)
-    assert path.read_bytes() == first
 
 
 @pytest.mark.parametrize(("name", "code"), [("slices.png", "output"), ("no/slices.exr", "output")])

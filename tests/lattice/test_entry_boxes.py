@@ -1,5 +1,6 @@
 """Entry boxes against their definition."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -8,9 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from uplift.cube import AtlasTable
 from uplift.fit.seeds import MAX_HALF_WIDTH, half_widths, outside_half_widths
 from uplift.lattice import Lattice
 from uplift.lattice.entry_boxes import MARGIN, EntryBoxes, OutsideBoxes
+from uplift.lookup.interpolate import around
 
 LATTICE = Lattice(np.linspace(0, 1, 7) ** 2)
 unit = st.floats(0, 1)
@@ -111,3 +114,40 @@ def test_the_weight_of_an_entry_outside_is_1_in_its_core_and_0_on_the_faces():
     hits = found.find(found.rgb + 0.1 * shares[:, None] * [0, -1, 0])
     assert hits.rows.tolist() == [0, 1, 2, 3, 4]
     np.testing.assert_allclose(hits.lattice_weight, [0, 0, 0, 0.5, 1], rtol=0, atol=1e-8)
+
+
+def colours_in(data, cell, count=400):
+    """Linear RGB (count, 3) in a cell, some on its faces and corners, some at entries in it."""
+    random = np.random.default_rng(cell)
+    share = random.random((count, 3))
+    share[: count // 2] = np.clip(np.round(share[: count // 2] * 1.5 - 0.25, 1), 0, 1 - 1e-12)
+    low = data.lattice.position(np.array(cell))
+    rgb = data.lattice.nodes[low] + share * (data.lattice.nodes[low + 1] - data.lattice.nodes[low])
+    return rgb[(data.lattice.cell(rgb)[0] == low).all(axis=1)]
+
+
+def missing(data, required):
+    """Count colours that are answered from points other than those that ``required`` returns for their cell."""
+    count = 0
+    for cell in np.unique(data.entry_boxes.cells[0])[::3]:
+        mask = np.zeros(data.lattice.size, dtype=bool)
+        mask[cell] = True
+        nodes = around(data, colours_in(data, cell))
+        count += int((~required(mask)[nodes.points] & (nodes.weights > 0)).any(axis=1).sum())
+    return count
+
+
+@pytest.mark.parametrize("name", ["small_cube", "macbeth_cube"])
+def test_required_points_answer_every_colour_of_a_cell(request, name):
+    data = request.getfixturevalue(name).data
+    assert missing(data, data.entry_boxes.required_points) == 0
+    assert missing(data, data.lattice.corner_points) > 0  # entry boxes need other points than the corners
+
+
+@pytest.mark.parametrize("node", [0, 3, 7])
+def test_required_points_allow_for_rounding_across_faces_on_nodes(plain_cube, node):
+    data = plain_cube.data
+    one = AtlasTable(("one",), np.full((1, 3), data.lattice.nodes[node]), np.zeros((1, 9)), np.ones(1), np.ones(1))
+    data = replace(data, atlas=one)
+    assert data.entry_boxes.cells[0].size
+    assert missing(data, data.entry_boxes.required_points) == 0

@@ -148,3 +148,14 @@ def test_the_criterion_is_needed(sensor):
     boxes = np.random.default_rng(4).normal(size=(200, 9)) * 1e5
     assert not Moments(9).is_float32_safe(boxes).any()
     assert change_by_rounding(Moments(9), boxes, sensor).max() > LIMIT
+
+
+def test_moments_that_rounding_moved_outside_return():
+    """A box-shaped spectrum, rounded to half precision."""
+    model = Moments(9)
+    moments = model.to_storage([[0, 3e4, 0, -1e4, 0, 0, 0, 0, 0]])
+    rounded = moments.astype(np.float16).astype(float)
+    assert not model.try_from_storage(rounded)[1].all()
+    multipliers, valid = model.from_rounded(rounded)
+    assert valid.all()
+    np.testing.assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=0.01)

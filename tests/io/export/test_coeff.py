@@ -11,11 +11,9 @@ import colour
 import numpy as np
 import pytest
 
-from tests.helpers import raises
 from tests.parts import CXX, MITSUBA, need
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, illuminant_spd, matching_functions, on_range
 from uplift.colorimetry.observer import sensor as make_sensor
-from uplift.common.errors import OptionError
 from uplift.io.export import coeff, write_coeff
 from uplift.models.sigmoid import evaluate_unscaled
 
@@ -128,13 +126,6 @@ def test_the_largest_reflectance_is_at_an_end_or_where_the_polynomial_turns(tabl
     np.testing.assert_allclose(samples, largest, rtol=0, atol=5e-3)
 
 
-@pytest.mark.parametrize("res", [1, 257])
-def test_res_out_of_range_raises(small_cube, tmp_path, res):
-    with raises(OptionError, "option"):
-        write_coeff(small_cube.data, tmp_path / "table.coeff", res=res)
-    assert not list(tmp_path.iterdir())
-
-
 WAVELENGTHS = np.arange(360.0, 831.0)
 
 
@@ -220,13 +211,3 @@ def test_sources_compile_to_the_numbers_of_the_table(
     expected = np.frombuffer((tmp_path / "table.coeff").read_bytes(), "<f4", 9 * res**3, 8 + 4 * res).reshape(-1, 3)
     np.testing.assert_array_equal(found[:, :3], expected)
     assert not found[:, 3:].any()
-
-
-def test_programs_without_a_table_of_the_space_are_named(small_cube, tmp_path):
-    wide = replace(small_cube.data, sensor=make_sensor("ACEScg", "D60"))
-    for layout in ("pbrt", "luisa"):
-        with raises(OptionError, "option"):
-            write_coeff(wide, tmp_path / "table.cpp", layout=layout, res=2)
-    assert not list(tmp_path.iterdir())
-    write_coeff(wide, tmp_path / "acescg.coeff", res=2)
-    assert colour.recovery.LUT3D_Jakob2019().read(tmp_path / "acescg.coeff") is not None

@@ -3,12 +3,9 @@
 import tomllib
 
 import numpy as np
-import pytest
 from scipy.ndimage import map_coordinates
 
-from tests.helpers import raises
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, grid, illuminant_spd, matching_functions
-from uplift.common.errors import OptionError, OutputError, UnknownNameError
 from uplift.io.export import write_film
 from uplift.io.export.film import SHARE
 
@@ -62,16 +59,3 @@ def test_a_table_of_lights_has_unit_sums_and_no_gaps(small_cube, tmp_path):
     # Neighbours resemble each other, also across the edge of the gamut: the XYZ of steps, where light exists.
     steps = np.abs(np.diff(lights @ WEIGHTS, axis=1)).max(axis=-1)
     assert steps[5:].max() < 0.08
-
-
-def test_bad_input_writes_nothing(small_cube, tmp_path):
-    path = tmp_path / "film.npy"
-    for options in ({"res": 1}, {"share": 1.0}, {"share": float("nan")}):
-        with pytest.raises(OptionError):
-            write_film(small_cube, path, **options)
-    with pytest.raises(UnknownNameError):
-        write_film(small_cube, path, light="moonlight")
-    (tmp_path / "film.toml").touch()
-    with raises(OutputError, "file-exists"):
-        write_film(small_cube, path, res=4)
-    assert not path.exists()

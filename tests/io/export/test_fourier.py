@@ -1,21 +1,16 @@
 """Fourier sRGB: tables from sRGB, and the shader of its spectra."""
 
 import subprocess
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pytest
 
 import uplift
-from tests.helpers import raises
 from tests.parts import CXX, GLSLANG, need
 from uplift.colorimetry.delta_e import delta_e_rgb
-from uplift.colorimetry.observer import sensor as make_sensor
 from uplift.colorimetry.srgb import decode
-from uplift.common.errors import OptionError, OutputError
 from uplift.io.export import fourier, write_fourier
-from uplift.lookup import Cube
 from uplift.models import reflectance
 
 WAVELENGTHS = np.arange(370.0, 800.0, 10)
@@ -116,16 +111,3 @@ def test_the_shader_compiles(folder):
     call = "hald_reflectance(hald_multipliers(vec3(0.5)), 500.0)"
     (folder / "a.frag").write_text(f"#version 430\n{text}out vec4 o; void main() {{ o = vec4({call}); }}\n")
     subprocess.run(["glslangValidator", "a.frag"], cwd=folder, check=True, capture_output=True)
-
-
-def test_bad_input_writes_nothing(three, small_cube, tmp_path):
-    wide = Cube(replace(three.data, sensor=make_sensor("ProPhoto RGB")))
-    for cube, res in ((small_cube, 2), (wide, 2), (three, 1)):
-        with raises(OptionError, "option"):
-            write_fourier(cube, tmp_path / "a.cube", res=res)
-    with raises(OptionError, "option"):
-        write_fourier(three, tmp_path / "a.png", res=33)
-    (tmp_path / "a.glsl").touch()
-    with raises(OutputError, "file-exists"):
-        write_fourier(three, tmp_path / "a.cube", res=2)
-    assert not (tmp_path / "a.cube").exists()

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from tests.io.export import run_program
-from uplift.common.errors import OptionError
-from uplift.io.export import write_light_program
+from uplift.io.export import LANGUAGES, write_light_program
 from uplift.lights.discs import MIN_RADIUS
 from uplift.lights.lookup import load_emission
 
@@ -13,8 +12,6 @@ WAVELENGTHS = [300.0, 455.0, 551.5, 790.0]
 WITHIN = 3e-4  # tolerance of single precision as a share of the largest power
 # The function that programs of cubes have.
 ALIAS = "\n#define cube_reflectances cube_power\n"
-RUN = {"c": run_program.c, "glsl": run_program.glsl}
-SUFFIX = {"c": ".h", "glsl": ".glsl"}
 
 
 @pytest.fixture(scope="module")
@@ -41,10 +38,10 @@ def worst(tmp_path, table):
     """Function that returns the largest difference of power from Python, as a share of the largest of a colour."""
 
     def measure(style, rgb, form):
-        path = tmp_path / f"cube{SUFFIX[style]}"
+        path = tmp_path / f"cube{LANGUAGES[style].suffix}"
         write_light_program(table.data, path, style=style, form=form)
         path.write_text(path.read_text() + ALIAS)
-        found = RUN[style](path, rgb, WAVELENGTHS, form)
+        found = getattr(run_program, style)(path, rgb, WAVELENGTHS, form)
         size = table.spectrum(rgb, outside="clip").max(axis=1, keepdims=True)
         expected = table.spectrum(rgb, np.clip(WAVELENGTHS, 380, 780), outside="clip")
         return (np.abs(found - expected) / np.maximum(size, 1e-6)).max()
@@ -65,10 +62,3 @@ def test_nan_and_infinity_are_0(table, tmp_path):
     found = run_program.c(path, odd, WAVELENGTHS)
     expected = table.spectrum([[0, 1, 0.5], [1, 0, 0]], np.clip(WAVELENGTHS, 380, 780))
     np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-6)
-
-
-@pytest.mark.parametrize("options", [{"style": "hlsl"}, {"style": "glsl", "form": "header"}])
-def test_unknown_options_are_refused(table, tmp_path, options):
-    with pytest.raises(OptionError):
-        write_light_program(table.data, tmp_path / "cube.h", **options)
-    assert list(tmp_path.iterdir()) == []

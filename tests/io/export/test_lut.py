@@ -2,13 +2,10 @@
 
 import numpy as np
 import PyOpenColorIO
-import pytest
 
-from tests.helpers import raises
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import sensor
 from uplift.colorimetry.srgb import decode, encode
-from uplift.common.errors import OptionError, OutputError, UnknownNameError
 from uplift.io.export import write_lut
 
 LIGHT = "HP1"
@@ -55,15 +52,3 @@ def test_greys_stay_grey_only_if_the_light_is_adapted(small_cube, tmp_path):
     own = small_cube.data.sensor
     tint = own.xyz_to_rgb @ sensor("sRGB", LIGHT).light.white
     np.testing.assert_allclose(apply(tmp_path / "tinted.clf", white)[0], tint, rtol=1e-4, atol=1e-6)
-
-
-def test_bad_input_writes_nothing(small_cube, tmp_path):
-    path = tmp_path / "relight.cube"
-    with raises(OptionError, "option"):
-        write_lut(small_cube, LIGHT, path, res=1)
-    with pytest.raises(UnknownNameError):
-        write_lut(small_cube, "moonlight", path)
-    assert not path.exists()
-    path.touch()
-    with pytest.raises(OutputError):
-        write_lut(small_cube, LIGHT, path, res=2)

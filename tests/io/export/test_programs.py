@@ -9,18 +9,11 @@ import pytest
 import uplift
 from tests.io.export import run_program
 from tests.parts import CC, SANITIZED, SANITIZERS, need
-from uplift.common.errors import OptionError, UnknownNameError, UpliftWarning
+from uplift.common.errors import UpliftWarning
 from uplift.io.export import LANGUAGES, write_program
 
 WAVELENGTHS = [300.0, 455.0, 551.5, 700.0]
 WITHIN = 1e-4  # tolerance of reflectance in single precision: multipliers of spectra near a box reach 4e6
-RUN = {
-    "c": run_program.c,
-    "cpp": run_program.cpp,
-    "cuda": run_program.cuda,
-    "glsl": run_program.glsl,
-    "hlsl": run_program.hlsl,
-}
 LANGUAGE = {"cpp": "c"}
 
 
@@ -45,12 +38,13 @@ def colours(data):
 def check(tmp_path):
     """Function that compares reflectances of a program with those of Python."""
 
-    def check(cube, style, mode, rgb, form=None, expected=None, within=WITHIN):
+    def check(cube, style, mode, rgb, form=None, within=WITHIN):
         language = LANGUAGE.get(style, style)
         path, form = tmp_path / f"cube{LANGUAGES[language].suffix}", form or LANGUAGES[language].forms[0]
         write_program(cube.data, path, style=language, mode=mode, form=form, force=True)
-        found = RUN[style](path, rgb, WAVELENGTHS, form)
-        expected = cube.reflectance(rgb, np.clip(WAVELENGTHS, 380, 780), mode=mode) if expected is None else expected
+        found = getattr(run_program, style)(path, rgb, WAVELENGTHS, form)
+        clipped = np.clip(np.nan_to_num(rgb, posinf=1), 0, 1)
+        expected = cube.reflectance(clipped, np.clip(WAVELENGTHS, 380, 780), mode=mode)
         np.testing.assert_allclose(found, expected, rtol=0, atol=within)
 
     return check
@@ -94,14 +88,7 @@ def test_cuda_compiles_for_graphics_processors(small_cube, tmp_path, mode):
 
 @pytest.mark.parametrize("style", ["c", "cpp", "cuda"])
 def test_colours_outside_are_clipped_and_nan_is_0(small_cube, check, style):
-    odd = np.array([[2, -1, 0.5], [np.nan, 0.2, np.inf]])
-    check(
-        small_cube,
-        style,
-        "spectra",
-        odd,
-        expected=small_cube.reflectance([[1, 0, 0.5], [0, 0.2, 1]], np.clip(WAVELENGTHS, 380, 780)),
-    )
+    check(small_cube, style, "spectra", np.array([[2, -1, 0.5], [np.nan, 0.2, np.inf]]))
 
 
 def test_what_single_precision_changes_is_stated(plain_cube, tmp_path):
@@ -162,14 +149,7 @@ def test_many_colours_at_any_number_of_wavelengths_and_stored_multipliers(small_
 
 def test_names_in_a_cube_cannot_end_a_comment(small_cube, check):
     sensor = replace(small_cube.data.sensor, space="*/ #error äöü\n /*", illuminant="*//* ${table}")
-    odd = replace(small_cube, data=replace(small_cube.data, sensor=sensor))
-    check(
-        odd,
-        "c",
-        "spectra",
-        np.full((1, 3), 0.5),
-        expected=small_cube.reflectance([[0.5] * 3], np.clip(WAVELENGTHS, 380, 780)),
-    )
+    check(replace(small_cube, data=replace(small_cube.data, sensor=sensor)), "c", "spectra", np.full((1, 3), 0.5))
 
 
 LOADING = r"""
@@ -197,12 +177,3 @@ def test_a_header_loads_only_the_table_of_its_cube(small_cube, tmp_path, damage)
     if damage == "missing":
         table.unlink()
     assert bool(run_c(LOADING, tmp_path)) == (damage is not None)
-
-
-@pytest.mark.parametrize(
-    "options", [{"style": "pascal"}, {"mode": "refined"}, {"form": "textures"}, {"style": "glsl", "form": "header"}]
-)
-def test_invalid_options_are_errors(tmp_path, plain_cube, options):
-    with pytest.raises((OptionError, UnknownNameError)):
-        write_program(plain_cube.data, tmp_path / "cube.h", **options)
-    assert not list(tmp_path.iterdir())

@@ -51,15 +51,6 @@ def test_filtering_agrees_with_mitsuba_s_bitmap(mi, texture, spectrum, sensor, o
         np.testing.assert_allclose(found, np.array(reference.eval_3(si)), rtol=0, atol=WITHIN)
 
 
-def test_filtering_blends_spectra_not_multipliers(texture, spectrum, small_cube):
-    """Halfway between a dark and a light texel."""
-    image = np.array([[[0.01, 0.01, 0.2], [0.9, 0.9, 0.1]]], dtype=np.float32)
-    assert not small_cube.data.entry_boxes.find(image[0].astype(float)).rows.size
-    ends = small_cube.reflectance(image[0], [500, 600], mode="refined")
-    found = spectrum(texture(image, wrap_mode="clamp"), (0.5, 0.5), [500, 600])
-    np.testing.assert_allclose(found, ends.mean(axis=0), atol=1e-5)
-
-
 def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(texture, spectrum, small_cube):
     """The other texels of the image keep theirs, though they have more multipliers than without the entry."""
     atlas = small_cube.data.atlas
@@ -239,17 +230,6 @@ def test_invalid_textures_raise(tmp_path, channels, header):
         path.write_bytes(path.read_bytes()[:-20])
     with raises(TextureError):
         read_texels(path)
-
-
-def test_moments_that_rounding_moved_outside_return():
-    """A box-shaped spectrum, rounded to half precision."""
-    model = Moments(9)
-    moments = model.to_storage([[0, 3e4, 0, -1e4, 0, 0, 0, 0, 0]])
-    rounded = moments.astype(np.float16).astype(float)
-    assert not model.try_from_storage(rounded)[1].all()
-    multipliers, valid = model.from_rounded(rounded)
-    assert valid.all()
-    np.testing.assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=0.01)
 
 
 SAMPLED = [340.0, 401.5, 555.0, 820.0]

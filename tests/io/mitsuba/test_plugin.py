@@ -44,6 +44,9 @@ def test_scenes_can_be_xml_and_cubes_are_found_by_the_file_resolver(mi, reposito
         ({"rgb": COLOUR, "cube": "missing.uplift"}, "missing.uplift: "),
         ({"rgb": COLOUR, "wrap": "clamp"}, "unreferenced"),
         ({"filename": "missing.png"}, "No such file"),
+        ({"type": "uplift_envmap"}, "must have one of filename, bitmap"),
+        ({"emission": True, "rgb": "-3, 1, -2"}, "no light has the colour"),
+        ({"emission": True, "rgb": "1, 1, 1", "cube": "missing.uplift"}, "missing.uplift"),
     ],
 )
 def test_invalid_properties_raise(mi, properties, message):
@@ -185,16 +188,3 @@ def test_a_white_wall_has_the_colour_of_the_sky(mi, table):
     )  # fmt: skip
     xyz = np.array(mi.render(scene, spp=256)).reshape(-1, 3).mean(axis=0)
     np.testing.assert_allclose(xyz, 0.5 * table.xyz(SUNSET), rtol=0.03)
-
-
-@pytest.mark.parametrize(
-    ("properties", "message"),
-    [
-        ({"type": "uplift_envmap"}, "must have one of filename, bitmap"),
-        ({"type": "uplift", "emission": True, "rgb": "-3, 1, -2"}, "no light has the colour"),
-        ({"type": "uplift", "emission": True, "rgb": "1, 1, 1", "cube": "missing.uplift"}, "missing.uplift"),
-    ],
-)
-def test_invalid_properties_of_lights_raise(mi, properties, message):
-    with pytest.raises(RuntimeError, match=message):
-        mi.load_dict(properties)

@@ -37,14 +37,3 @@ def test_colours_stay_in_the_space_of_the_image(small_cube, colours, tmp_path):
     grey = write_exr(tmp_path / "grey.exr", planes(np.full((2, 2, 3), 0.5, np.float32)), chromaticities=AP1)
     texture.convert(texture.prepare_relighter(small_cube, ("HP1",), threads=1), grey, target, force=True)
     np.testing.assert_allclose(read_channels(target, "RGB"), 0.5, atol=0.02)
-
-
-def test_alpha_multiplies_colours_under_every_light(relighter, colours, tmp_path):
-    alpha = np.full(colours.shape[:2], 0.5, np.float32)
-    source = write_exr(tmp_path / "in.exr", {**planes(colours * 0.5), "A": alpha})
-    texture.convert(relighter, source, tmp_path / "out.exr")
-    texture.convert(relighter, write_exr(tmp_path / "straight.exr", planes(colours)), tmp_path / "plain.exr")
-    found, expected = (channels(tmp_path / name) for name in ("out.exr", "plain.exr"))
-    for name in expected:
-        np.testing.assert_allclose(found[name], expected[name] / 2, rtol=2e-3, atol=1e-4)
-    np.testing.assert_array_equal(found["A"], alpha)

@@ -14,7 +14,8 @@ band alone.
 References
 ----------
 spektrafilm, `spectral_upsampling.py`: the layout of the table, and how RGB become a chromaticity and a factor.
-Li et al. 2002, "CMCCAT2000 and CAT02": the adaptation of spektrafilm's RGB to the light.
+Li et al. 2017, "Comprehensive color solutions: CAM16, CAT16, and CAM16-UCS": the adaptation of RGB to the light, as in
+spektrafilm.
 """
 
 from dataclasses import dataclass
@@ -52,7 +53,7 @@ BAND = 10.0
 """Standard deviation of the narrow bands in nm."""
 WEAKEST = 0.05
 """Bands at the ends of the spectrum are left out where the eye has less than this fraction of its largest response."""
-CAT02 = np.array([[0.7328, 0.4296, -0.1624], [-0.7036, 1.6975, 0.0061], [0.0030, 0.0136, 0.9834]])
+CAT16 = np.array([[0.401288, 0.650173, -0.051461], [-0.250268, 1.204414, 0.045854], [-0.002079, 0.048952, 0.953127]])
 
 
 @dataclass(frozen=True)
@@ -135,9 +136,9 @@ def _scene(sensor: Sensor, light: str | None) -> Scene:
     name, cmfs = light or sensor.illuminant, matching_functions(DEFAULT_OBSERVER)
     xyz, power = cmfs / cmfs[:, 1].sum(), illuminant_spd(name)
     power = power / (power @ xyz[:, 1])
-    # The reader's RGB are adapted to the light by CAT02; the cube's have the white of its illuminant.
-    cones = CAT02 @ np.stack([power @ xyz, sensor.light.white], axis=1)
-    adapt = np.linalg.solve(CAT02, (cones[:, 1] / cones[:, 0])[:, None] * CAT02)
+    # The reader's RGB are adapted to the light by CAT16; the cube's have the white of its illuminant.
+    cones = CAT16 @ np.stack([power @ xyz, sensor.light.white], axis=1)
+    adapt = np.linalg.solve(CAT16, (cones[:, 1] / cones[:, 0])[:, None] * CAT16)
     return Scene(name, xyz, power, power @ xyz, sensor.xyz_to_rgb @ adapt)
 
 
