@@ -43,7 +43,8 @@ def cubes(small_cube, plain_cube):
         (export.write_light_program, "lights", "a.h", {"style": "glsl", "form": "header"}, OptionError),
         (export.write_lut, "cube", "a.cube", {"light": "HP1", "res": 1}, OptionError),
         (export.write_lut, "cube", "a.cube", {"light": "moonlight"}, UnknownNameError),
-        *((export.write_program, "data", "a.h", {key: "x"}, OptionError) for key in ("style", "mode", "form")),
+        *((export.write_program, "data", "a.h", {key: "x"}, UnknownNameError) for key in ("style", "mode")),
+        (export.write_program, "data", "a.h", {"form": "textures"}, OptionError),
         (export.write_program, "data", "a.h", {"style": "glsl", "form": "header"}, OptionError),
     ],
 )
