@@ -14,11 +14,10 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.gamut import SRGB, Primaries
-from uplift.colorimetry.spaces import ImageSpace, LinearGamut, OcioSpace, find_ocio_space
+from uplift.colorimetry.spaces import ImageSpace, OcioSpace, find_ocio_space
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.io import exr
 
 Curve = Callable[[Array], Array]
 """From codes in [0, 1] to linear values."""
@@ -120,7 +119,8 @@ def _icc_space(name: str, data: bytes) -> ImageSpace | None:
         except ocio.Exception:
             return None
     to_xyz = OcioSpace(name, False, processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS))
-    gamut = _primaries(exr.chromaticities(LinearGamut(to_xyz.matrix)))
+    corners = to_xyz.convert(np.vstack([np.eye(3), np.ones(3)]))
+    gamut = _primaries((corners / corners.sum(axis=1, keepdims=True))[:, :2].ravel())
     if gamut is None:
         return None
     to_linear = np.linalg.inv(to_xyz.matrix).T
