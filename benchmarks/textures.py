@@ -20,6 +20,7 @@ from uplift.io.texture.uplifter import PixelEncoding
 from uplift.lab.timing import time_process
 from uplift.lookup import Cube
 from uplift.models import Moments, evaluate
+from uplift.models.moments import multipliers_of_rounded
 
 FORMS: tuple[tuple[str, PixelEncoding, str], ...] = (
     ("spectrum_half", texture.Spectrum(), "half"),
@@ -65,7 +66,7 @@ def _rgb(cube: Cube, form: PixelEncoding, names: tuple[str, ...], path: Path) ->
     for block in np.array_split(values, max(len(values) // 50_000, 1)):
         numbers = block.astype(float)
         if isinstance(model, Moments) and isinstance(form, texture.Moments):
-            numbers, valid = model.from_rounded(numbers)
+            numbers, valid = multipliers_of_rounded(model, numbers)
             if not valid.all():
                 raise ValueError(f"{path}: {(~valid).sum()} pixels hold no moments of a reflectance")
         if not isinstance(form, texture.Spectrum):

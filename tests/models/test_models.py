@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 from tests.helpers import raises
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.models import Moments, Sigmoid, evaluate, from_description
-from uplift.models.moments import WARPS
+from uplift.models.moments import WARPS, multipliers_of_rounded
 from uplift.models.sigmoid import evaluate_unscaled
 
 GRID = np.arange(380.0, 781.0, 5.0)
@@ -156,6 +156,6 @@ def test_moments_that_rounding_moved_outside_return():
     moments = model.to_storage([[0, 3e4, 0, -1e4, 0, 0, 0, 0, 0]])
     rounded = moments.astype(np.float16).astype(float)
     assert not model.try_from_storage(rounded)[1].all()
-    multipliers, valid = model.from_rounded(rounded)
+    multipliers, valid = multipliers_of_rounded(model, rounded)
     assert valid.all()
     np.testing.assert_allclose(model.to_storage(multipliers), moments, rtol=0, atol=0.01)

@@ -159,20 +159,6 @@ class Moments(Model):
     def try_from_storage(self, coefficients: Array) -> tuple[Array, Mask]:
         return duality.try_multipliers(coefficients)
 
-    def from_rounded(self, moments: Array) -> tuple[Array, Mask]:
-        """Return multipliers (n, C) of moments (n, C) that were rounded or filtered, and their validity (n,).
-
-        Rounding can move moments of saturated colours out of the moment space. They are mixed with the least of
-        `GREY_SHARES` of grey that returns them.
-        """
-        multipliers, valid = self.try_from_storage(moments)
-        for share in GREY_SHARES:
-            if valid.all():
-                break
-            mixed = (1 - share) * moments[~valid] + share * np.eye(self.count)[0] / 2
-            multipliers[~valid], valid[~valid] = self.try_from_storage(mixed)
-        return multipliers, valid
-
     def is_float32_safe(self, multipliers: Array) -> Mask:
         # The linear part is at most |p₀| + 2 Σ |p_l|.
         largest = np.abs(multipliers[:, 0]) + 2 * np.abs(multipliers[:, 1:]).sum(axis=1)
@@ -181,3 +167,18 @@ class Moments(Model):
     def describe(self) -> dict[str, Any]:
         phase = {"start": self.start, "end": self.end, "warp": self.warp}
         return {"name": self.name, "count": self.count, "phase": phase}
+
+
+def multipliers_of_rounded(model: Moments, moments: Array) -> tuple[Array, Mask]:
+    """Return multipliers (n, C) of moments (n, C) that were rounded or filtered, and their validity (n,).
+
+    Rounding can move moments of saturated colours out of the moment space. They are mixed with the least of
+    `GREY_SHARES` of grey that returns them.
+    """
+    multipliers, valid = model.try_from_storage(moments)
+    for share in GREY_SHARES:
+        if valid.all():
+            break
+        mixed = (1 - share) * moments[~valid] + share * np.eye(model.count)[0] / 2
+        multipliers[~valid], valid[~valid] = model.try_from_storage(mixed)
+    return multipliers, valid

@@ -65,12 +65,6 @@ class Sigmoid(Model):
     def metric_diagonal(self) -> Array:
         return np.ones(self.count)
 
-    def unscaled(self, multipliers: Array) -> Array:
-        """Convert multipliers (n, 3) to the coefficients of `evaluate_unscaled`."""
-        middle, half = (self.start + self.end) / 2, (self.end - self.start) / 2
-        square, linear, constant = (multipliers / half ** np.array([2, 1, 0])).T
-        return np.column_stack([square, linear - 2 * middle * square, constant + middle * (middle * square - linear)])
-
     def is_float32_safe(self, multipliers: Array) -> Mask:
         return np.asarray(np.abs(multipliers).sum(axis=1) <= MAX_SAFE_LINEAR)
 
@@ -79,3 +73,10 @@ def evaluate_unscaled(coefficients: Array, wavelengths: Array) -> Array:
     """Evaluate eq. 5 of Jakob & Hanika 2019 for coefficients (n, 3) of wavelengths (N,) in nm, not scaled."""
     x = coefficients @ np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
     return 0.5 + x / (2 * np.sqrt(1 + x * x))
+
+
+def unscaled(model: Sigmoid, multipliers: Array) -> Array:
+    """Convert multipliers (n, 3) to the coefficients of `evaluate_unscaled`."""
+    middle, half = (model.start + model.end) / 2, (model.end - model.start) / 2
+    square, linear, constant = (multipliers / half ** np.array([2, 1, 0])).T
+    return np.column_stack([square, linear - 2 * middle * square, constant + middle * (middle * square - linear)])

@@ -37,7 +37,7 @@ from uplift.lookup.interpolate import around
 from uplift.models import Sigmoid
 from uplift.models.arithmetic import blocked_matmul_columns
 from uplift.models.minimum_norm import solve_damped
-from uplift.models.sigmoid import evaluate_unscaled
+from uplift.models.sigmoid import evaluate_unscaled, unscaled
 
 MAGIC = b"SPEC"
 RES = 64
@@ -156,7 +156,7 @@ def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> NDA
                 multipliers = _nearest_to_grey(sensor, multipliers, target, scale[level])
                 if level == middle:
                     start = multipliers
-                table[level, rows] = MODEL.unscaled(multipliers)
+                table[level, rows] = unscaled(MODEL, multipliers)
     return table
 
 

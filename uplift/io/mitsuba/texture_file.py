@@ -18,6 +18,7 @@ from uplift.io.texture.uplifter import Converter
 from uplift.lookup.blocks import blockwise
 from uplift.models import Moments, from_description
 from uplift.models.model import Model
+from uplift.models.moments import multipliers_of_rounded
 
 QUANTITIES = ("T", "S0")
 """Beginnings of the names of channels of reflectance and of power in the layout of Fichet et al. 2021."""
@@ -102,7 +103,7 @@ def _model(description: str, count: int) -> Model:
 
 
 def _multipliers(model: Moments, moments: Array) -> Array:
-    multipliers, valid = model.from_rounded(moments.astype(float))
+    multipliers, valid = multipliers_of_rounded(model, moments.astype(float))
     if not valid.all():
         raise TextureError(
             "the moments of a texel belong to no reflectance in [0, 1]",
