@@ -60,9 +60,9 @@ def test_lights_replace_the_default_sets(run, macbeth):
     words = ["compare", "--quick", "--atlas", macbeth, "--light", "LED-B3", "--light", "HP1", "--format"]
     fields = json.loads(run(*words, "json").stdout)
     rows = list(csv.DictReader(run(*words, "csv").stdout.splitlines()))
-    assert {row["lights"] for row in fields["representations"]} == {"given"}
-    assert {row["representation"] for row in rows} == {row["representation"] for row in fields["representations"]}
-    assert len(rows) == 46
+    names = {row["representation"] for row in fields["representations"] if row["lights"] == "given"}
+    assert {row["representation"] for row in rows} == names
+    assert len(rows) == len(fields["representations"]) == 46
     assert fields["facts"]["products"] == "24 surfaces under each light"
     assert fields["filters"] == []
 
