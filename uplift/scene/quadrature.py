@@ -51,9 +51,8 @@ def gauss_rule(points: ArrayLike, masses: ArrayLike, order: int) -> QuadratureRu
     points, masses = _checked(points, masses)
     used = masses != 0
     if not 1 <= order <= used.sum():
-        raise OptionError(
-            f"order must be in [1, {used.sum()}], got {order}", hint="an order needs as many masses that are not 0"
-        )
+        hint = "an order needs as many masses that are not 0"
+        raise OptionError(f"order must be in [1, {used.sum()}], got {order}", hint=hint)
     x, masses = _to_unit(points, points)[used], masses[used]
     basis = _orthonormal_basis(x, np.abs(masses), order)
     signed = basis * np.sign(masses)[:, None]
@@ -99,10 +98,8 @@ def _solve(gram: Array, position: Array, total: float, points: Array) -> Quadrat
 def _checked(points: ArrayLike, masses: ArrayLike) -> tuple[Array, Array]:
     points, masses = (np.array(values, dtype=float) for values in (points, masses))
     if points.ndim != 1 or points.shape != masses.shape or not np.all(np.diff(points) > 0):
-        raise OptionError(
-            f"points must ascend and have a mass each, got shapes {points.shape} and {masses.shape}",
-            hint="sort the points",
-        )
+        problem = f"points must ascend and have a mass each, got shapes {points.shape} and {masses.shape}"
+        raise OptionError(problem, hint="sort the points")
     if not (np.isfinite(points).all() and np.isfinite(masses).all() and masses.any()):
         raise OptionError("points and masses must be finite, and not all masses 0", hint="remove NaN and infinity")
     return points, masses

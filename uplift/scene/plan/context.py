@@ -16,9 +16,11 @@ from uplift.common.progress import ProgressCallback
 from uplift.fit.problem import Problem
 from uplift.io.scene_colours import ColourSet, Images, PixelSample, SampledColours, sample_colours
 from uplift.lookup import Cube
+from uplift.models import Moments
 from uplift.models.model import Model
 from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
 from uplift.pipeline.options import Options
+from uplift.scene.plan.candidates import CubeChoice
 from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, EvaluationSet
 from uplift.scene.plan.scene_file import SceneFile
 
@@ -89,13 +91,12 @@ class PlanContext:
         }
 
     @property
-    def reference_options(self) -> dict[str, Any]:
+    def reference(self) -> CubeChoice:
         """Options of the reference cube."""
-        return {"dim": self.grid.reference, "coefficients": self.grid.models["none"][-1]}
+        return CubeChoice(Moments.name, self.grid.models["none"][-1], "none", self.grid.reference, "srgb")
 
-    def cube(self, rgb: Array, **options: Any) -> Cube:
+    def cube(self, rgb: Array, choice: CubeChoice) -> Cube:
         """Build a sparse cube for linear RGB (n, 3)."""
-        choice = Options(**{**self.options, **options})
 
         def shared(problem: Problem, entry_model: Model, *rest: Any) -> Learnt:
             models = problem.model, entry_model
@@ -105,13 +106,14 @@ class PlanContext:
 
         # The final build repeats the warnings of trial builds.
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-            choice, problem = problem_of(choice, choice.observer, choice.solver)
-            return build_stages(self.atlas, choice, problem, scene=ColourSet(rgb), learn=shared)
+            options = Options(**self.options, **choice.options)
+            options, problem = problem_of(options, options.observer, options.solver)
+            return build_stages(self.atlas, options, problem, scene=ColourSet(rgb), learn=shared)
 
     def evaluation_set(self, sample: PixelSample) -> tuple[EvaluationSet, Cube]:
         """Test colours, with the spectra of the reference cube or of the measurement, and this cube."""
         rgb = np.concatenate([sample.rgb, self.materials])
-        reference = self.cube(rgb, **self.reference_options)
+        reference = self.cube(rgb, self.reference)
         spectra = np.concatenate([reference.reflectance(sample.rgb), self.reflectances])
         pixels, count = len(sample.rgb), len(self.materials)
         weights = np.concatenate([sample.share, np.full(count, 1 / max(count, 1))])

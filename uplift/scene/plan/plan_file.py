@@ -9,7 +9,6 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
-from uplift.colorimetry import observer
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PlanFileError, unknown_name
 from uplift.common.files import file_digest
@@ -21,7 +20,7 @@ from uplift.io.scene_colours import Images
 from uplift.io.texture import Spectrum
 from uplift.io.texture.colours import check_encoding
 from uplift.lookup import Cube
-from uplift.pipeline.build import build
+from uplift.pipeline.build import build, problem_of
 from uplift.pipeline.options import Options, recorded_options
 from uplift.scene.plan.planning import Plan
 from uplift.scene.plan.scene_file import SceneFile
@@ -162,9 +161,7 @@ def _check_options(values: dict[str, Any]) -> None:
         if name not in known:
             raise unknown_name(name, known, "option")
     options = Options(**recorded_options(values))
-    observer.sensor(options.space, options.illuminant, options.observer)
-    for name in options.lights:
-        observer.light(name, options.observer)
+    problem_of(options, options.observer, options.solver)
 
 
 class _PlanTable(SpecModel):

@@ -2,7 +2,7 @@
 
 import tempfile
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -154,7 +154,7 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     spectra = None
     if candidate.pixel.form == INDEX and rendering is not None and context.colours.few is not None:
         colours = context.colours.few
-        cube = context.cube(colours, **context.reference_options)
+        cube = context.cube(colours, context.reference)
         spectra = colours, cube.reflectance(colours, rendering.wavelengths)
     options = {} if candidate.cube is None else {**context.options, **candidate.cube.options}
     progress(Progress("final build", 0, 1))
@@ -185,7 +185,7 @@ def _confirm(
         if tried and each.error.quantile > CLEARLY_SMALLER * tried[-1][0].error.quantile:
             continue
         choice = each.candidate.cube
-        cube = None if choice is None else context.cube(other.tests.rgb, **choice.options)
+        cube = None if choice is None else context.cube(other.tests.rgb, choice)
         tried.append((each, other.errors(cube, [each.candidate], space.matrices)[0]))
         if tried[-1][1].quantile <= context.scene.tolerance or len(tried) == FINALISTS:
             break
@@ -229,14 +229,14 @@ def cost_text(cost: Cost, key: str) -> str:
 def _expected_error(reference: Cube, scene: SceneFile, rgb: Array, weights: Array) -> float | None:
     """Mean standard error of colours under the worst light; None if the cube has no estimates."""
 
-    def errors() -> Iterator[Array | None]:
-        for light in scene.lights:
-            try:
-                yield reference.standard_error(rgb, light)
-            except OptionError:  # without left-out entries under one light only
-                yield reference.standard_error(rgb)
-
-    return max((float(each @ weights) for each in errors() if each is not None), default=None)
+    found = []
+    for light in scene.lights:
+        try:
+            errors = reference.standard_error(rgb, light)
+        except OptionError:  # without left-out entries under one light only
+            errors = reference.standard_error(rgb)
+        found += [] if errors is None else [float(errors @ weights)]
+    return max(found, default=None)
 
 
 def _build(context: PlanContext, options: Mapping[str, Any], *, sparse: bool) -> FinalBuild:

@@ -81,6 +81,7 @@ class CandidateSpace:
             return reference.reflectance(tests.rgb, nm)
 
         found = renderings(context, tests, spectra, self.floor)
+        self.cubes = {context.reference: reference}
         self.evaluator = Evaluator(tests, reference, {each.name: each for each in found})
         self.matrices = fit_matrices(tests)
         self.base = tests.xyz(reference.reflectance(tests.rgb))
@@ -114,7 +115,7 @@ class CandidateSpace:
         if choice is not None:
             self.built += 1
             self.context.progress(Progress(f"cube {self.built}: {choice.name}", 0, 1))
-            cube = self.context.cube(self.evaluator.tests.rgb, **choice.options)
+            cube = self._cube(choice)
         errors = self.evaluator.errors(cube, candidates, self.matrices)
         return [Measured(each.candidate, each.cost, error) for each, error in zip(estimates, errors, strict=True)]
 
@@ -183,8 +184,13 @@ class CandidateSpace:
 
     def _xyz(self, dim: int, model: str, count: int, warp: str, axis: str = "srgb") -> Array:
         tests = self.evaluator.tests
-        cube = self.context.cube(tests.rgb, **CubeChoice(model, count, warp, dim, axis).options)
-        return tests.xyz(cube.reflectance(tests.rgb))
+        return tests.xyz(self._cube(CubeChoice(model, count, warp, dim, axis)).reflectance(tests.rgb))
+
+    def _cube(self, choice: CubeChoice) -> Cube:
+        """Cube for the test colours, built once."""
+        if choice not in self.cubes:
+            self.cubes[choice] = self.context.cube(self.evaluator.tests.rgb, choice)
+        return self.cubes[choice]
 
     def _points(self, dim: int, axis: str) -> tuple[int, int]:
         """Points of a lattice, and those around one colour of every bin of the textures."""

@@ -120,10 +120,8 @@ def fourier_coefficients(count: int) -> Representation:
     Raises `OptionError` unless the number is odd and positive.
     """
     if count < 1 or count % 2 == 0:
-        raise OptionError(
-            f"number of Fourier coefficients must be odd and positive, got {count}",
-            hint="a mean and pairs of cosine and sine are an odd number",
-        )
+        hint = "a mean and pairs of cosine and sine are an odd number"
+        raise OptionError(f"number of Fourier coefficients must be odd and positive, got {count}", hint=hint)
     dense, product = waves(count), _waves(np.pi * np.arange(2 * count) / count, count)
 
     def encode(power: Array) -> Array:

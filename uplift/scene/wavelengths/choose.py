@@ -102,20 +102,17 @@ def choose(
         raise OptionError(f"target must be positive, got {target:g}", hint="give a tolerated ΔE00, such as 1")
     for number in range(1, MAX_COUNT + 1) if count is None else (count,):
         try:
-            sampling = ordered(METHODS[method](setup, number))
+            choice = _judged(method, setup, METHODS[method](setup, number))
         except OptionError as problem:
             if count is not None or problem.code != "undefined-rule":
                 raise
             continue
-        choice = Choice(method, sampling, evaluate(setup, sampling))
         error = getattr(choice.errors, measure)
         if target is None or error <= target:
             return choice
-    raise OptionError(
-        f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method '{method}'; "
-        f"{len(choice.sampling)} wavelengths reach {error:.3g}",
-        hint="raise the target or choose another method",
-    )
+    missed = f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method '{method}'"
+    reached = f"{len(choice.sampling)} wavelengths reach {error:.3g}"
+    raise OptionError(f"{missed}; {reached}", hint="raise the target or choose another method")
 
 
 def fit_weights(setup: RenderSetup, wavelengths: ArrayLike) -> Choice:
@@ -138,8 +135,7 @@ def fit_weights(setup: RenderSetup, wavelengths: ArrayLike) -> Choice:
     OptionError
         No wavelengths, one that lies outside the grid, or one given twice.
     """
-    sampling = ordered(fit_at(setup, wavelengths))
-    return Choice(GIVEN, sampling, evaluate(setup, sampling))
+    return _judged(GIVEN, setup, fit_at(setup, wavelengths))
 
 
 def choose_orders(setup: RenderSetup, orders: tuple[int, int, int], channels: str = "opponent") -> Choice:
@@ -170,6 +166,9 @@ def choose_orders(setup: RenderSetup, orders: tuple[int, int, int], channels: st
     """
     if channels not in CHANNELS:
         raise unknown_name(channels, CHANNELS, "channels")
-    space = CHANNELS[channels](setup.wavelengths, setup.cmfs)
-    sampling = ordered(meyer_orders(setup, orders, space))
-    return Choice("meyer", sampling, evaluate(setup, sampling))
+    return _judged("meyer", setup, meyer_orders(setup, orders, CHANNELS[channels](setup.wavelengths, setup.cmfs)))
+
+
+def _judged(method: str, setup: RenderSetup, sampling: Sampling) -> Choice:
+    sampling = ordered(sampling)
+    return Choice(method, sampling, evaluate(setup, sampling))

@@ -173,8 +173,7 @@ def meyer(setup: RenderSetup, count: int) -> Sampling:
     if count == 4:
         candidates.append(four_wavelength_rule(rules, channel_functions(space, nm, cmfs)))
     if not candidates:
-        raise OptionError(
-            f"method 'meyer' has no rule of {count} wavelengths", code="undefined-rule", hint="give a count in [4, 30]"
-        )
+        problem = f"method 'meyer' has no rule of {count} wavelengths"
+        raise OptionError(problem, code="undefined-rule", hint="give a count in [4, 30]")
     samplings = (balanced(combine_rules(setup, space, allocation)) for allocation in candidates)
     return min(samplings, key=lambda sampling: evaluate(setup, sampling).mean)

@@ -141,10 +141,8 @@ def fit_at(setup: RenderSetup, wavelengths: ArrayLike) -> Sampling:
     nm = np.sort(np.asarray(wavelengths, dtype=float))
     first, last = setup.wavelengths[[0, -1]]
     if nm.ndim != 1 or not len(nm) or np.any(np.diff(nm) <= 0) or not first <= nm[0] <= nm[-1] <= last:
-        raise OptionError(
-            f"wavelengths must be distinct and within [{first:g}, {last:g}] nm",
-            hint="give each wavelength once",
-        )
+        text = f"wavelengths must be distinct and within [{first:g}, {last:g}] nm"
+        raise OptionError(text, hint="give each wavelength once")
     problem = FitProblem(_thinned(setup))
     fit = local_fit(problem, prefiltered(problem.setup, nm), fix_wavelengths=True)
     return _with_nearby_powers(problem.setup, fit)

@@ -136,15 +136,11 @@ def interp_curves(wavelengths: Array, known: Array, curves: Array) -> Array:
 def _check(nm: Array, materials: Array) -> None:
     steps = np.diff(nm)
     if nm.ndim != 1 or len(nm) < MIN_SAMPLES or not np.allclose(steps, steps[0], rtol=1e-6) or steps[0] <= 0:
-        raise OptionError(
-            f"wavelengths must be at least {MIN_SAMPLES}, ascending and evenly spaced",
-            hint="give a grid such as 380, 381, …, 770 nm",
-        )
+        problem = f"wavelengths must be at least {MIN_SAMPLES}, ascending and evenly spaced"
+        raise OptionError(problem, hint="give a grid such as 380, 381, …, 770 nm")
     if materials.ndim != 2 or not len(materials) or materials.shape[1] != len(nm):
-        raise OptionError(
-            f"reflectances must have shape (M, {len(nm)}) with M > 0, got {materials.shape}",
-            hint="give one row per material",
-        )
+        problem = f"reflectances must have shape (M, {len(nm)}) with M > 0, got {materials.shape}"
+        raise OptionError(problem, hint="give one row per material")
     if not np.isfinite(materials).all() or materials.min() < 0:
         raise OptionError("reflectances must be finite and at least 0", hint="give values from 0 to 1")
 
