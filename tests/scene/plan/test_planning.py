@@ -179,7 +179,7 @@ def test_changed_and_missing_sources_are_refused(plan_file):
         (lambda values: values.update(format="uplift plan 2"), "invalid-file", "format"),
         (lambda values: values["build"].update(dims=3), "unknown-name", "build: unknown option 'dims'"),
         (lambda values: values["build"].update(dim="x"), "option", "build: dim "),
-        (lambda values: values["build"].update(lights="D65"), "option", "build: lights "),
+        (lambda values: values["build"].update(lights=3), "option", "build: lights "),
         (lambda values: values["scene"].update(textures=[3]), "invalid-file", "scene.textures[0]"),
         (lambda values: values["scene"]["textures"][0].pop("digest"), "invalid-file", "scene.textures[0].digest"),
     ],
