@@ -60,7 +60,7 @@ class Command(click.Command):
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options of every day, the last two of help, or all options."""
-        *own, help_all, help_option = self.get_params(ctx)
+        *own, help_all, help_option = (each for each in self.get_params(ctx) if isinstance(each, click.Option))
         shown = [each for each in own if HELP_ALL in ctx.meta or each.name in self.everyday]
         records = (each.get_help_record(ctx) for each in (*shown, help_all, help_option))
         with formatter.section("Options"):
@@ -159,13 +159,15 @@ def light(help: str, default: str) -> Decorator:
     return _repeatable("--light", "lights", help, default, metavar="NAME", shell_complete=complete_light)
 
 
-PACKAGED = ". [default: the packaged sRGB cube]"
+OF_PACKAGE = ", or ACEScg for the packaged ACEScg cube{}. [default: the packaged sRGB cube]"
+"""Help of ``--cube`` where a packaged cube will do."""
 
 
-def cube(help: str = PACKAGED, name: str = "cube_path", **settings: Any) -> Decorator:
+def cube(help: str = OF_PACKAGE.format(""), name: str = "cube_path", **settings: Any) -> Decorator:
     """``--cube``, as ``cube_path``."""
-    text = f"Cube file, or ACEScg for the packaged ACEScg cube{help}"
-    return click.option("--cube", name, metavar="FILE", help=text, shell_complete=complete_cube, **settings)
+    return click.option(
+        "--cube", name, metavar="FILE", help=f"Cube file{help}", shell_complete=complete_cube, **settings
+    )
 
 
 def choice(

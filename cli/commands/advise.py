@@ -17,7 +17,7 @@ SHOWN = 4
 
 @click.command("advise")
 @click.argument("images", metavar="IMAGE...", nargs=-1, required=True)
-@options.cube(", with an atlas of at least 8 entries.", required=True)
+@options.cube(" with an atlas of at least 8 entries.", required=True)
 @options.light("Illuminant of the scene", "A FL11 HP1")
 @click.option("--count", metavar="N", type=options.Whole(), default=6, help="Number of swatches, up to 100.")
 @options.pixels()

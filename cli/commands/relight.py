@@ -29,7 +29,7 @@ DIM = 32
 @click.command("relight")
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
 @options.light("Illuminant", "A FL11 HP1")
-@options.cube(", whose spectra are shown as well.")
+@options.cube(" whose spectra are shown as well.")
 @options.atlas("Measured spectra; a cube is built from them and shown as well")
 @options.pixels()
 @options.output(

@@ -55,7 +55,7 @@ image_options = options.stacked(
 
 @click.command("texture", cls=options.Command, everyday=("target", "cube_paths", "mask", "kind", "depth", "force"))
 @image_options
-@options.cube(f"; repeatable with --mask{options.PACKAGED}", name="cube_paths", multiple=True)
+@options.cube(options.OF_PACKAGE.format("; repeatable with --mask"), name="cube_paths", multiple=True)
 @click.option(
     "--mask",
     metavar="FILE",
