@@ -6,8 +6,6 @@ from types import SimpleNamespace
 import colour
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy.interpolate import PchipInterpolator
 
 from tests.helpers import raises, warns
@@ -92,18 +90,6 @@ def test_invalid_distributions_raise(distributions, entry):
 
 def spectra(*rows):
     return Atlas(tuple(Entry(f"e{i}", np.linspace(400, 700, len(row)), np.array(row)) for i, row in enumerate(rows)))
-
-
-@settings(max_examples=50)
-@given(st.lists(st.floats(0.0, 1.0), min_size=7, max_size=7))
-def test_resampling_keeps_samples_and_does_not_overshoot(row):
-    found = on_grid(spectra(row), GRID)[0]
-    assert (found[GRID <= 400] == row[0]).all()
-    assert (found[GRID >= 700] == found[GRID == 700]).all()
-    for i in range(6):
-        between = found[(400 + 50 * i <= GRID) & (450 + 50 * i >= GRID)]
-        np.testing.assert_allclose(between[[0, -1]], row[i : i + 2], rtol=0, atol=1e-15)
-        assert min(row[i : i + 2]) - 1e-12 <= between.min() <= between.max() <= max(row[i : i + 2]) + 1e-12
 
 
 def test_one_warning_for_all_clipped_entries():

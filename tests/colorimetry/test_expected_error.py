@@ -9,7 +9,6 @@ from uplift.colorimetry.expected_error import (
     LENGTH,
     PRIOR_COUNT,
     expected_error,
-    expected_products,
     familiar_distance,
     mahalanobis,
     nearest_distances,
@@ -49,17 +48,6 @@ def test_errors_are_weighted_sums(monkeypatch):
     np.fill_diagonal(others, 0)
     variance, spread = plain(others)
     np.testing.assert_allclose(learnt.left_out[:, 0], np.maximum(variance, 0.02) * spread, rtol=1e-12)
-
-
-def test_products_of_components_are_averaged_like_squares():
-    rng = np.random.default_rng(7)
-    components = rng.normal(size=(12, 2))
-    left_out = np.linalg.norm(components, axis=1)
-    products = (components[:, :, None] * components[:, None, :]).reshape(12, 4)
-    learnt = expected_products(PLACES, left_out, np.zeros(12), products, np.zeros((12, 4)))(PLACES + 1.0)
-    assert (np.linalg.eigvalsh(learnt.reshape(-1, 2, 2)) > -1e-12).all()
-    squares = expected_error(PLACES, left_out, np.zeros(12))(PLACES + 1.0)
-    np.testing.assert_allclose(learnt[:, 0] + learnt[:, 3], squares[:, 0], rtol=1e-12)
 
 
 def test_radii_of_few_entries_are_nearly_those_of_normal_errors():

@@ -108,14 +108,6 @@ def test_realisable_colours_outside_have_their_colour():
     assert all(result.delta_e_2000 < 1e-3 and result.standard_error is None for result in results)
 
 
-def test_colours_in_the_space_are_those_of_the_cube():
-    cube = uplift.load()
-    rgb = np.array([[0.2, 0.4, 0.6], [1, 1, 1]])
-    by_xyz = list(query_xyz(cube, cube.data.sensor.xyz(rgb), [450, 650]))
-    for one, other in zip(by_xyz, query(cube, rgb, [450, 650]), strict=True):
-        np.testing.assert_allclose(one.reflectance, other.reflectance, rtol=0, atol=1e-9)
-
-
 def without_outside(cube):
     return Cube(replace(cube.data, atlas=replace(cube.data.atlas, outside=None)))
 

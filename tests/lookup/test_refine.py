@@ -25,18 +25,6 @@ def test_the_step_is_that_of_the_fit(setting):
     np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-12)
 
 
-def test_accumulated_distances_equal_a_direct_evaluation(setting, monkeypatch):
-    """The distance is a sum of changes; it does not depend on the size of blocks."""
-    forward, multipliers = setting
-    goal = forward.rgb(0.7 * multipliers).T
-    monkeypatch.setattr(refine, "BLOCK_COLUMNS", 7)
-    moved = multipliers.T.copy()
-    distance = refine._descend(forward, moved, goal)
-    evaluated = np.abs(forward.residual(moved.T, goal.T)).max(axis=1)
-    np.testing.assert_allclose(distance, evaluated, rtol=0, atol=1e-10)
-    assert distance.max() <= refine.TOLERANCE
-
-
 def test_steps_that_increase_the_distance_are_rejected(setting):
     """The colour is unrealisable; no distance increases."""
     forward, multipliers = setting
