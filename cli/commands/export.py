@@ -151,4 +151,6 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     written = export.write_program(data, path, style=style, form=form, **settings)
     size = sum(each.stat().st_size for each in written) / 1e6
     tables = "".join(f", table in {each}" for each in written[1:])
-    return f"{data.lattice.size} nodes, {len(data.atlas.names)} atlas entries, {size:.1f} MB{tables}"
+    rounding = export.rounding_error(data, settings.get("mode", "spectra"))
+    shown = f"single precision changes reflectances by up to {rounding:.1g}{tables}"
+    return f"{data.lattice.size} nodes, {len(data.atlas.names)} atlas entries, {size:.1f} MB, {shown}"

@@ -177,5 +177,10 @@ class CubeData:
         Corners are unrealisable in wide gamuts, or were not fitted.
         """
         # Mixtures Σ w g_i have the colour x = Σ w x_i only if every corner has r_i = x_i.
-        exact = self.points.distance <= self.threshold
-        return None if exact.all() else ~self.lattice.complete_cells(exact)
+        inexact = self.points.present & ~(self.points.distance <= self.threshold)
+        return self.lattice.cells_around(inexact) if inexact.any() else None
+
+    @cached_property
+    def inexact_corners(self) -> Mask | None:
+        """(n,) True for the corners of `inexact_cells`. None without any."""
+        return None if self.inexact_cells is None else self.lattice.corner_points(self.inexact_cells)

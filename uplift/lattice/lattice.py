@@ -121,6 +121,10 @@ class Lattice:
             cells[: self.dim - r, : self.dim - g, : self.dim - b] &= points.reshape(self.shape)[r:, g:, b:]
         return cells.ravel()
 
+    def cells_around(self, points: Mask) -> Mask:
+        """Cells with a corner in a set of nodes."""
+        return self.complete_cells(np.ones(self.size, dtype=bool)) & ~self.complete_cells(~points)
+
     def thinned(self, stride: int) -> tuple["Lattice", Indices]:
         """Return the coarser lattice of every ``stride``-th node and the last, and its nodes (m,) in this lattice."""
         kept = np.append(np.arange(0, self.dim - 1, stride), self.dim - 1)

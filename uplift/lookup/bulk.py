@@ -25,10 +25,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from uplift.colorimetry.sensor import Sensor, as_rgb
 from uplift.common.arrays import Array, Indices
-from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes, Lattice
 from uplift.lookup.blocks import (
-    Function,
     as_coefficient_count,
     as_colours,
     as_thread_count,
@@ -36,8 +34,8 @@ from uplift.lookup.blocks import (
     blockwise,
 )
 from uplift.lookup.cube import Cube
-from uplift.lookup.interpolate import inexact_rows, require_covered
-from uplift.lookup.node_table import NodeTable, tabulate, tabulate_coefficients
+from uplift.lookup.interpolate import require_covered
+from uplift.lookup.node_table import Exact, NodeTable, tabulate, tabulate_coefficients
 
 __all__ = ["Sampler", "coefficients", "spectra"]
 
@@ -198,14 +196,14 @@ class Sampler:
         Arrays of the cube, on the device of JAX.
     threads : int
         Number of threads; each processes a chunk at a time.
-    exact : tuple of CubeData and function, optional
-        The cube and its values by numpy, if some nodes have not their own colours: of the colours around them.
+    exact : function, optional
+        If some nodes have not their own colours: finds the colours around them and their values by numpy.
     """
 
     sensor: Sensor
     grid: Grid
     threads: int
-    exact: tuple[CubeData, Function] | None = None
+    exact: Exact | None = None
 
     def __repr__(self) -> str:
         return f"Sampler({self.grid.lattice.shape[1]} values per colour, {self.nbytes / 1e6:.1f} MB)"
@@ -233,10 +231,10 @@ class Sampler:
             values = np.asarray(_interpolate(self.grid, padded))[: len(colours)]
         require_covered(~np.isnan(values[:, 0]), colours)  # absent points make NaN
         if self.exact is not None:
-            rows = inexact_rows(self.exact[0], colours)
+            rows, moved = self.exact(colours)
             if rows.size:
                 values = values.copy()
-                values[rows] = self.exact[1](colours[rows])
+                values[rows] = moved
         return values
 
 
@@ -285,10 +283,9 @@ def coefficients(cube: Cube, count: int | None = None, *, threads: int = 2) -> S
 
 
 def _sampler(table: NodeTable, threads: int) -> Sampler:
-    exact = None if table.data.inexact_cells is None else (table.data, table.exact)
-    return _on_device(table.data.sensor, _make_grid(table), threads, exact)
+    return _on_device(table.data.sensor, _make_grid(table), threads, table.exact)
 
 
-def _on_device(sensor: Sensor, grid: Grid, threads: int, exact: tuple[CubeData, Function] | None) -> Sampler:
+def _on_device(sensor: Sensor, grid: Grid, threads: int, exact: Exact | None) -> Sampler:
     with jax.enable_x64(True):
         return Sampler(sensor, jax.device_put(grid), threads, exact)

@@ -111,10 +111,11 @@ def require_covered(covered: Mask, rgb: Array) -> None:
 def exact(mix: Mode, data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of a mixture, moved to exact colours where nodes have not their own."""
     mixed = mix(data, rgb, wavelengths)
-    rows = inexact_rows(data, rgb)
+    rows, share = fading_rows(data, rgb) if mix is mixed_moments else (inexact_rows(data, rgb), 1)
     if rows.size:
         at_sensor = mix(data, rgb[rows], data.sensor.wavelengths)
-        mixed[rows] = with_colours(data, mixed[rows], at_sensor, rgb[rows], wavelengths)
+        moved = with_colours(data, mixed[rows], at_sensor, rgb[rows], wavelengths)
+        mixed[rows] = (1 - share) * mixed[rows] + share * moved
     return mixed
 
 
@@ -149,6 +150,20 @@ def inexact_rows(data: CubeData, rgb: Array) -> Indices:
     if data.inexact_cells is None:
         return np.zeros(0, dtype=np.int64)
     return np.flatnonzero(data.inexact_cells[cells(data, rgb)])
+
+
+def fading_rows(data: CubeData, rgb: Array) -> tuple[Indices, Array]:
+    """Return the rows (k,) of linear RGB (n, 3) whose weighted coefficients are moved, and by which share (k, 1).
+
+    Weighted coefficients miss their colour in all cells. The share is 1 in cells with a node that has not its own
+    colour, and falls to 0 across the cells around them, so that answers are continuous.
+    """
+    if data.inexact_corners is None:
+        return np.zeros(0, dtype=np.int64), np.zeros((0, 1))
+    nodes = around(data, rgb)
+    share = np.minimum((data.inexact_corners[nodes.points] * nodes.weights).sum(axis=1), 1)
+    rows = np.flatnonzero(share)
+    return rows, share[rows, None]
 
 
 def mixed_moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
@@ -206,10 +221,10 @@ def extended_coefficients(data: CubeData, rgb: Array) -> Array:
 def exact_coefficients(
     data: CubeData, model: Model, rgb: Array, weighted: Array, multipliers: Callable[[CubeData, Array], Array]
 ) -> Array:
-    """Replace coefficients (n, K), where nodes have not their own colours, by those of exact ``multipliers``."""
-    rows = inexact_rows(data, rgb)
+    """Move coefficients (n, K), where nodes have not their own colours, to those of exact ``multipliers``."""
+    rows, share = fading_rows(data, rgb)
     if rows.size:
-        weighted[rows] = model.to_storage(multipliers(data, rgb[rows]))
+        weighted[rows] = (1 - share) * weighted[rows] + share * model.to_storage(multipliers(data, rgb[rows]))
     return weighted
 
 

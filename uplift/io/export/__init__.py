@@ -7,9 +7,11 @@ from uplift.io.export.fourier import write_fourier
 from uplift.io.export.lights import write_light_program
 from uplift.io.export.lut import write_lut
 from uplift.io.export.program import LANGUAGES, write_program
+from uplift.io.export.table import rounding_error
 
 __all__ = [
     "LANGUAGES",
+    "rounding_error",
     "write_coeff",
     "write_csv",
     "write_film",

@@ -88,8 +88,8 @@ def write_program(
     path, form, table = Path(path), check_form(style, form), make_table(data, mode)
     text = cube_program(data, table, style, mode, path.stem, form)
     written = write_files(text, table, path, form, per_line=table.constants["STRIDE"], force=force)
-    if (error := rounding_error(data, table)) > VISIBLE:
-        problem = f"single precision changes reflectances of nodes by up to {error:.1g}"
+    if (error := rounding_error(data, mode)) > VISIBLE:
+        problem = f"single precision changes reflectances by up to {error:.1g}"
         warnings.warn(UpliftWarning(problem, path=path, hint="use fewer coefficients"), stacklevel=2)
     size = path.stat().st_size
     if size > LARGE:

@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.arrays import blocks
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
-from uplift.lookup.interpolate import smoothed
+from uplift.lookup.interpolate import smoothed, weighted_coefficients
 from uplift.lookup.refine import LEAST, MOST, SLOPE, pull
 from uplift.models import Moments, Sigmoid, evaluate
 from uplift.models.moments import WARPS, warped
@@ -22,8 +21,8 @@ TEXEL = 4
 COLUMNS = 2048
 """Texels in a row of the table as an image: every graphics card that can run the program has textures of this width."""
 MODES = ("spectra", "moments")
-BLOCK = 4096
-"""Nodes whose spectra are in memory at once."""
+NODES, SAMPLES = 1 << 15, 1 << 10
+"""Nodes and colours of which the largest change by rounding is stated."""
 
 Floats = NDArray[np.float32]
 
@@ -48,7 +47,7 @@ def make_table(data: CubeData, mode: str) -> Table:
     """
     model, size = data.model, data.lattice.size
     stride = -(-(model.count + 1) // TEXEL) * TEXEL
-    lists, tags = _lists(data)
+    lists, tags = _lists(data, mode)
     stored = [data.points.coefficients, data.atlas.coefficients]
     if mode == "spectra":
         stored = [smoothed(data, np.arange(size)), model.from_storage(data.atlas.coefficients)]
@@ -73,7 +72,7 @@ def make_table(data: CubeData, mode: str) -> Table:
         "BIN_COUNT": BIN_COUNT,
         "SPECTRA": int(mode == "spectra"),
         "INEXACT": int(data.inexact_cells is not None),
-        "PLACE": 4 if data.inexact_cells is None else 8,
+        "PLACE": 4 if data.inexact_cells is None else 9,
         **how,
         **offsets,
         **model_constants(model),
@@ -81,21 +80,25 @@ def make_table(data: CubeData, mode: str) -> Table:
     return Table(numbers, constants)
 
 
-def rounding_error(data: CubeData, table: Table) -> float:
-    """Return the largest change of spectra of nodes by the rounding of their numbers: a bound for their mixtures.
+def rounding_error(data: CubeData, mode: str) -> float:
+    """Return by how much single precision changes reflectances: the largest change of sampled spectra.
 
-    Nodes without their own colours do not count: answers around them are moved, and their steps are smoothed.
+    In mode ``spectra`` the samples are nodes that have their own colours, whose mixtures change less. In mode
+    ``moments`` they are realisable colours, many of them dark, and coefficients are rounded as numbers near 1 are: that
+    much is lost in their conversion.
     """
-    model, stride, worst = data.model, table.constants["STRIDE"], 0.0
-    exact = np.flatnonzero(data.points.distance <= data.threshold)
-    rows = table.numbers[: data.lattice.size * stride].reshape(-1, stride)[:, : model.count].astype(float)
-    for block in blocks(len(exact), BLOCK):
-        points = exact[block]
-        expected = model.from_storage(data.points.coefficients[points])
-        found = rows[points] if table.constants["SPECTRA"] else model.from_storage(rows[points])
-        spectra = (evaluate(model, each, data.sensor.wavelengths) for each in (found, expected))
-        worst = max(worst, float(np.abs(np.subtract(*spectra)).max()))
-    return worst
+    model, points, unit = data.model, np.flatnonzero(data.points.distance <= data.threshold), 2.0**24
+    if mode == "spectra":
+        exact = model.from_storage(data.points.coefficients[points[:: len(points) // NODES + 1]])
+        rounded = exact.astype(np.float32).astype(float)
+    else:
+        random = np.random.default_rng(0)
+        rgb = random.uniform(0, 1, (SAMPLES, 3)) ** random.uniform(1, 4, (SAMPLES, 1))
+        stored = weighted_coefficients(data, rgb[data.solid.signed_distance(rgb) < -data.threshold])
+        near_one = np.round(stored * unit) / unit if isinstance(model, Moments) else stored.astype(np.float32)
+        exact, rounded = model.from_storage(stored), model.from_storage(near_one.astype(float))
+    found, expected = (evaluate(model, each, data.sensor.wavelengths) for each in (rounded, exact))
+    return float(np.abs(found - expected).max(initial=0))
 
 
 def concatenate(sections: Mapping[str, NDArray[Any]]) -> tuple[Floats, dict[str, int]]:
@@ -113,10 +116,11 @@ def _bins(nodes: Floats) -> Floats:
     return np.clip(last, 0, len(nodes) - 2).astype(np.float32)
 
 
-def _lists(data: CubeData) -> tuple[Floats, Floats]:
+def _lists(data: CubeData, mode: str) -> tuple[Floats, Floats]:
     """Return lists of entries, each after its length, and the position of each cell's list, 0 for none.
 
-    Positions are negative in cells with a corner that has not its own colour; the list at 1 is then empty.
+    Positions are negative in cells whose answers are moved; the list at 1 is then empty. In mode ``moments`` these are
+    all cells around corners of inexact ones, whose positions have a fraction of 1/2.
     """
     cells, entries = data.entry_boxes.cells
     tags = np.zeros(data.lattice.size, dtype=np.float32)
@@ -125,8 +129,11 @@ def _lists(data: CubeData) -> tuple[Floats, Floats]:
     for cell, start, length in zip(numbers.tolist(), first.tolist(), count.tolist(), strict=True):
         tags[cell] = len(lists)
         lists += [length, *entries[start : start + length].tolist()]
-    if data.inexact_cells is not None:
-        tags = np.where(data.inexact_cells, -np.maximum(tags, 1), tags)
+    if data.inexact_cells is not None and data.inexact_corners is not None:
+        corners = data.inexact_corners & (mode == "moments")
+        moved = data.inexact_cells | data.lattice.cells_around(corners)
+        tags = np.where(moved, -np.maximum(tags, 1), tags)
+        tags += np.where(corners, np.copysign(0.5, tags), 0)
     return np.array(lists, dtype=np.float32), tags
 
 

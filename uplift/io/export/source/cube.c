@@ -19,7 +19,7 @@ void up_load_row(int index, inout float row[UP_STRIDE])
 #endif
 
 /* Position of the list of entries whose boxes touch the cell above a lattice point, 0 for none; it is negative where
-   points around the cell have not their own colours. */
+   answers in the cell are moved. Its fraction is 1/2 at points where coefficients are moved, 0 at others. */
 UP_FUNCTION float up_tag(UP_READS int index)
 {
     return up_number(UP_TABLE index * UP_STRIDE + UP_COUNT);
@@ -305,24 +305,35 @@ UP_FUNCTION void up_blend(
 
 #else
 
-/* Weighted coefficients of the eight lattice points around a colour. */
-UP_FUNCTION void up_sum_nodes(UP_READS UP_IN float place[UP_PLACE], UP_OUT float coefficients[UP_COUNT])
+/* Weighted coefficients of the eight lattice points around a colour. Where answers are moved, place[8] is set to the share
+   that moves: 1 in cells with points that have not their own colours, less in those around them. */
+UP_FUNCTION void up_sum_nodes(UP_READS UP_OUT float place[UP_PLACE], UP_OUT float coefficients[UP_COUNT])
 {
     UP_ARRAY(sides, 6);
     int first = up_weigh(UP_TABLE place, sides);
     for (int k = 0; k < UP_COUNT; ++k) coefficients[k] = 0.0f;
+#if UP_INEXACT
+    place[8] = 0.0f;
+#endif
     for (int red = 0; red < 2; ++red)
         for (int green = 0; green < 2; ++green)
             for (int blue = 0; blue < 2; ++blue) {
                 UP_ROW(values, first + (red * UP_DIM + green) * UP_DIM + blue);
                 float weight = sides[red] * sides[2 + green] * sides[4 + blue];
                 for (int k = 0; k < UP_COUNT; ++k) coefficients[k] += weight * values[k];
+#if UP_INEXACT
+                float tag = UP_ABS(values[UP_COUNT]);
+                place[8] += 2.0f * weight * (tag - UP_REAL(UP_INT(tag)));
+#endif
             }
+#if UP_INEXACT
+    place[8] = up_clip(place[8]);
+#endif
 }
 
 /* Weighted coefficients of the lattice and of an entry, in as many coefficients. */
 UP_FUNCTION void up_sum_coefficients(
-    UP_READS UP_IN float place[UP_PLACE], int entry, UP_OUT float coefficients[UP_COUNT])
+    UP_READS UP_OUT float place[UP_PLACE], int entry, UP_OUT float coefficients[UP_COUNT])
 {
     up_sum_nodes(UP_TABLE place, coefficients);
     if (entry >= 0)
@@ -347,8 +358,8 @@ UP_FUNCTION UP_BOOL up_dual(UP_IN float coefficients[UP_COUNT], UP_OUT float mul
    No branches, so that compilers compute several colours side by side. */
 UP_EXPANDED UP_BOOL up_dual(UP_IN float moments[UP_COUNT], UP_OUT float multipliers[UP_COUNT])
 {
-    float middle = moments[0] - 0.5f;
-    float sine = up_sine_of_turn(0.5f - UP_ABS(middle)), cosine = -up_sine_of_turn(middle);
+    float middle = moments[0] - 0.5f, nearest = middle < 0.0f ? moments[0] : 1.0f - moments[0]; /* the middle rounds */
+    float sine = up_sine_of_turn(nearest), cosine = -up_sine_of_turn(middle);
     UP_ARRAY(slope, UP_COUNT);
     UP_ARRAY(even, UP_COUNT);
     UP_ARRAY(odd, UP_COUNT);
@@ -444,7 +455,7 @@ UP_FUNCTION UP_BOOL up_multipliers_of(UP_IN float coefficients[UP_COUNT], UP_OUT
 
 /* Evaluate a colour that is located: the spectrum of the lattice's weighted coefficients, mixed with that of the entry. */
 UP_FUNCTION void up_blend(
-    UP_READS UP_IN float place[UP_PLACE], int entry, UP_IN float wavelengths[UP_WIDTH],
+    UP_READS UP_OUT float place[UP_PLACE], int entry, UP_IN float wavelengths[UP_WIDTH],
     UP_OUT float total[UP_WIDTH])
 {
     UP_ARRAY(coefficients, UP_COUNT);
@@ -633,13 +644,17 @@ UP_FUNCTION void up_move(
                 x += place[4 + k]
                     * ((1.0f - share) * up_number(UP_TABLE shape) + share * up_number(UP_TABLE shape + 6));
             }
+#if UP_SPECTRA
             total[w] = 0.5f + up_deviation(1.0f, x);
+#else
+            total[w] = (1.0f - place[8]) * total[w] + place[8] * (0.5f + up_deviation(1.0f, x));
+#endif
         }
 }
 
 /* Evaluate a colour that is found: with exactly its colour in mode spectra. */
 UP_FUNCTION void up_answer(
-    UP_READS UP_IN float place[UP_PLACE], int entry, UP_IN float wavelengths[UP_WIDTH],
+    UP_READS UP_OUT float place[UP_PLACE], int entry, UP_IN float wavelengths[UP_WIDTH],
     UP_OUT float total[UP_WIDTH])
 {
     up_blend(UP_TABLE place, entry, wavelengths, total);
