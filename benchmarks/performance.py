@@ -30,7 +30,7 @@ COLOURS = {"coefficients": 1_000_000, "spectra": 1_000_000, "moments": 200_000, 
 """Queries by what is looked up: fewer where lookups are slow."""
 MAX_ERRORS = {"coefficients": 1e-6, "spectra": 1e-5, "moments": 2e-2, "refined": 1e-6}
 """Largest permitted errors, for float32 too."""
-BULK, CHECKED = 1_000_000, 5000
+BULK, CHECKED = 1_000_000, 10_000
 FLAGS = ("-O3", "-march=x86-64-v3", "-fno-math-errno", "-fno-trapping-math")
 MODES = ("spectra", "moments")
 PROGRAM_COLOURS, MAX_DIFFERENCE = 400_000, 1e-3
@@ -209,24 +209,15 @@ def _timing(query: Callable[[], object], rgb: Any, error: float, limit: float) -
 def time_header(cube: Any, mode: str, colours: Any) -> Row:
     """Compile the C header, check its reflectances, and return its rates on one core, in million colours per second."""
     from uplift.colorimetry import delta_e_rgb
-    from uplift.io.export import write_program
 
-    source, data = ROOT / "benchmarks" / "rates.c", cube.data
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        write_program(data, folder / "cube.h", mode=mode)
-        colours.tofile(folder / "rgb")
-        cube.wavelengths.astype(np.float32).tofile(folder / "at")
-        subprocess.run(["cc", *FLAGS, "-I.", str(source), "-o", "rates", "-lm"], cwd=folder, check=True)
-        command = ["./rates", "rgb", "at", str(RUNS), "found"]
-        done = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
-        found = np.fromfile(folder / "found", np.float32).reshape(CHECKED, -1).astype(float)
+    data = cube.data
+    found, rates = run_header(cube, mode, colours, RUNS)
     checked = colours[:CHECKED].astype(float)
     worst = float(np.abs(found - cube.reflectance(checked, cube.wavelengths, mode=mode)).max())
     if not worst <= MAX_DIFFERENCE:
         raise RuntimeError(f"{mode}: reflectances differ by {worst}: nothing to time")
     errors = delta_e_rgb(data.sensor, data.sensor.rgb(found), checked)
-    rates = [len(colours) / float(word) / 1e6 for word in done.stdout.split()[:-1]]
+    rates = [len(colours) / seconds / 1e6 for seconds in rates]
     return {
         "model": data.model.name,
         "coefficients": data.model.count,
@@ -236,3 +227,20 @@ def time_header(cube: Any, mode: str, colours: Any) -> Row:
         "mean_delta_e": float(errors.mean()),
         "max_delta_e": float(errors.max()),
     }
+
+
+def run_header(cube: Any, mode: str, colours: Any, runs: int) -> tuple[Any, list[float]]:
+    """Return reflectances (CHECKED, N) of the first colours by the C header, and the CPU seconds of its functions."""
+    from uplift.io.export import write_program
+
+    source = ROOT / "benchmarks" / "rates.c"
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        write_program(cube.data, folder / "cube.h", mode=mode)
+        colours.tofile(folder / "rgb")
+        cube.wavelengths.astype(np.float32).tofile(folder / "at")
+        subprocess.run(["cc", *FLAGS, "-I.", str(source), "-o", "rates", "-lm"], cwd=folder, check=True)
+        command = ["./rates", "rgb", "at", str(runs), "found"]
+        done = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
+        found = np.fromfile(folder / "found", np.float32).reshape(CHECKED, -1).astype(float)
+    return found, [float(word) for word in done.stdout.split()[:-1]]

@@ -8,7 +8,7 @@
 #include <time.h>
 #include "cube.h"
 
-#define CHECKED 5000
+#define CHECKED 10000
 #define RAY 16
 
 static double seconds(void) { return clock() / (double)CLOCKS_PER_SEC; }

@@ -166,15 +166,6 @@ UP_FUNCTION void up_evaluate_block(
     for (int w = 0; w < UP_WIDTH; ++w) total[w] = 0.5f + up_deviation(1.0f, up_polynomial(values, basis, w));
 }
 
-/* Add `weight` times the deviation from 1/2 of the spectrum of the multipliers in a row. */
-UP_FUNCTION void up_add_spectrum(
-    UP_IN float values[UP_STRIDE], float weight, UP_IN float basis[UP_COUNT * UP_WIDTH],
-    UP_OUT float total[UP_WIDTH])
-{
-    UP_VECTORISE
-    for (int w = 0; w < UP_WIDTH; ++w) total[w] += up_deviation(weight, up_polynomial(values, basis, w));
-}
-
 /* Index of the last node up to x, for x in [0, 1]. */
 UP_FUNCTION int up_cell(UP_READS float x)
 {
@@ -281,13 +272,22 @@ UP_FUNCTION void up_add_nodes(
     UP_READS UP_IN float place[UP_PLACE], UP_IN float basis[UP_COUNT * UP_WIDTH], UP_OUT float total[UP_WIDTH])
 {
     UP_ARRAY(sides, 6);
+    UP_ARRAY(weights, 8);
+    UP_ARRAY(arguments, 8 * UP_WIDTH);
     int first = up_weigh(UP_TABLE place, sides);
-    for (int red = 0; red < 2; ++red)
-        for (int green = 0; green < 2; ++green)
-            for (int blue = 0; blue < 2; ++blue) {
-                UP_ROW(values, first + (red * UP_DIM + green) * UP_DIM + blue);
-                up_add_spectrum(values, sides[red] * sides[2 + green] * sides[4 + blue], basis, total);
-            }
+    for (int corner = 0; corner < 8; ++corner) {
+        UP_ROW(values, first + (corner / 4 * UP_DIM + corner / 2 % 2) * UP_DIM + corner % 2);
+        weights[corner] = sides[corner / 4] * sides[2 + corner / 2 % 2] * sides[4 + corner % 2];
+        UP_VECTORISE
+        for (int w = 0; w < UP_WIDTH; ++w) arguments[corner * UP_WIDTH + w] = up_polynomial(values, basis, w);
+    }
+    UP_VECTORISE
+    for (int w = 0; w < UP_WIDTH; ++w) {
+        float x = total[w];
+        UP_UNROLL
+        for (int corner = 0; corner < 8; ++corner) x += up_deviation(weights[corner], arguments[corner * UP_WIDTH + w]);
+        total[w] = x;
+    }
 }
 
 /* Evaluate a colour that is located: the weighted spectra of lattice points and entry. */
