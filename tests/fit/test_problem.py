@@ -27,8 +27,10 @@ ONLY_AVX = {
 """Environment of a process without AVX2 and the products of FMA, which round differently."""
 
 
-@pytest.mark.parametrize("space", SPACES)
-@pytest.mark.parametrize(("model", "count"), [("moments", 9), ("moments", 17), ("sigmoid", 3)])
+@pytest.mark.parametrize(
+    ("space", "model", "count"),
+    [*((space, "moments", 9) for space in SPACES), ("ACEScg", "moments", 17), ("ProPhoto RGB", "sigmoid", 3)],
+)
 def test_every_realisable_colour_is_fitted(space, model, count):
     data = uplift.build(dim=DIM, space=space, model=model, coefficients=count).data
     possible = solid(data.sensor.matrix).contains(data.lattice.points)

@@ -99,11 +99,6 @@ class Growth:
             self.progress(Progress("fit", done, len(self.nodes.points), step=last, detail=detail))
         return solution
 
-    def is_smooth(self, correction: Array) -> Mask:
-        """Whether corrections (k, C) are small enough to expect similar ones nearby: |R⁻¹ (p − p₀)|∞."""
-        size = np.abs(blocked_matmul(correction, self.problem.forward.inverse_root.T)).max(axis=1)
-        return np.asarray(size <= MAX_CORRECTION)
-
 
 def grow_in_rounds(
     growth: Growth, expected: Expected, seeds: Indices, rounds: Sequence[Indices], predict: Prediction
@@ -123,7 +118,9 @@ def grow_in_rounds(
             prior = expected(points)
             solution = growth.attempt(points, prior + predict(number, points, corrections, known), number, prior, 1)
             found = solution.multipliers - prior
-            corrections[points], known[points] = found, growth.is_smooth(found) & ~seeded[points]
+            # |R⁻¹ (p − p₀)|∞ of corrections that are small enough to expect similar ones nearby
+            size = np.abs(blocked_matmul(found, growth.problem.forward.inverse_root.T)).max(axis=1)
+            corrections[points], known[points] = found, (size <= MAX_CORRECTION) & ~seeded[points]
             unsolved = solution.distance > growth.problem.tolerance
             left = points[unsolved]
             rest.append((left, solution.multipliers[unsolved], prior[unsolved], np.full_like(left, number)))
