@@ -77,8 +77,7 @@ def _make(props: Any) -> Any:
         if cube.data.outside_boxes.find(rgb[None]).rows.size:
             (_, multipliers), _ = prepare_texels(cube, method, of_entries=True).convert(rgb[None].astype(np.float32))
             return _constant(evaluate(cube.data.entry_spectra.model, multipliers.astype(float), at)[0])
-        within = np.clip(at, *cube.data.sensor.wavelengths[[0, -1]])  # spectra are constant outside
-        return _constant(cube.reflectance(map_to_gamut(rgb, cube.data.sensor, method).rgb, within))
+        return _constant(cube.reflectance(map_to_gamut(rgb, cube.data.sensor, method).rgb, at))
     texels, placement = _texels(props, is_light=is_light), Placement.read(props)
     _warn_in_scalar_variants("texture")
     return make_texture(props, texels, placement)
