@@ -15,7 +15,7 @@ from benchmarks.choices import ALONE, MARK, OURS, SHIPPED, is_optimistic, mark
 from tests.conftest import ROOT
 from tests.parts import MITSUBA, need
 from tools import render_docs
-from tools.render_docs import read_data, render, table
+from tools.render_docs import read_data, render
 from uplift.lab.chart.table import read_chart
 
 DOCS = ROOT / "docs"
@@ -65,12 +65,6 @@ def test_a_missing_figure_is_an_error():
     del data["queries"]
     with pytest.raises(jinja2.UndefinedError, match="queries"):
         render("accuracy", data=data)
-
-
-def test_table_fills_a_row_pattern():
-    rows = [{"name": "x", "errors": {"FL2": [1.0, 2.0]}}]
-    text = table(rows, lambda: "\nname | mean\n{name} | {errors.FL2.0:.1f}\n")
-    assert text == "| name | mean |\n| --- | --- |\n| x | 1.0 |\n"
 
 
 def test_a_choice_marks_its_methods_on_its_sets(monkeypatch):

@@ -1,6 +1,5 @@
 """Comparison of representations: errors are those of single products, the best filter is found, pictures have all."""
 
-import csv
 import json
 import re
 from dataclasses import replace
@@ -9,8 +8,9 @@ import matplotlib.image
 import numpy as np
 import pytest
 
+from benchmarks import read_reference
 from tests.browsing import check_page
-from tests.conftest import MACBETH, ROOT
+from tests.conftest import MACBETH
 from tests.helpers import raises, warns
 from tests.pages import Page
 from uplift.atlas import Atlas, on_grid, read_atlas, write_atlas
@@ -218,14 +218,9 @@ def test_filters_improve_point_sampling_under_spiky_lights(checker, tuned):
         assert tuned["spiky", kind].statistics.mean < 0.3 * tuned["spiky", NONE].statistics.mean
 
 
-def reference(name):
-    with (ROOT / "tests" / "reference" / name).open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(line for line in file if not line.startswith("#")))
-
-
 def test_stored_tables_of_the_thesis_agree():
-    tables = {(row["lights"], row["representation"]): row for row in reference("representations_kment2011.csv")}
-    filters = reference("filters_kment2011.csv")
+    tables = {(row["lights"], row["representation"]): row for row in read_reference("representations_kment2011.csv")}
+    filters = read_reference("filters_kment2011.csv")
     bare = [row for row in filters if row["filter"] == "none" and row["samples"] != "4"]
     assert len(bare) == 4
     for row in bare:

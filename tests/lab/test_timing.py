@@ -2,8 +2,6 @@
 
 import subprocess
 
-import pytest
-
 from uplift.lab import timing
 
 
@@ -20,17 +18,6 @@ def test_laps_are_long_enough_and_runs_are_limited():
     assert timing.time_laps(lambda: sum(range(3_000_000)), 1e-4, 7).runs == timing.MIN_RUNS
 
 
-@pytest.mark.parametrize("repository", [False, True])
-def test_commit_is_unknown_outside_the_working_tree(tmp_path, monkeypatch, repository):
-    if repository:  # of another project, below which the package is installed
-        subprocess.run(["git", "init", "-q", tmp_path], check=True)
-    copy = tmp_path / "timing.py"
-    copy.write_text("")
-    monkeypatch.setattr(timing, "SOURCES", tmp_path)
-    monkeypatch.setattr(timing, "__file__", str(copy))
-    assert timing.commit() == "unknown"
-
-
 def test_commit_states_changed_code_but_not_the_measurements_of_the_package(tmp_path, monkeypatch):
     def git(*words):
         names = ("-c", "user.name=test", "-c", "user.email=test@example.org")
@@ -40,11 +27,13 @@ def test_commit_states_changed_code_but_not_the_measurements_of_the_package(tmp_
     chart.parent.mkdir(parents=True)
     for file in (code, chart):
         file.write_text("first")
-    git("init", "-q")
-    git("add", ".")
-    git("commit", "-q", "-m", "first")
     monkeypatch.setattr(timing, "SOURCES", tmp_path / "uplift")
     monkeypatch.setattr(timing, "__file__", str(code))
+    assert timing.commit() == "unknown"  # without git, and in a repository that does not track the code
+    git("init", "-q")
+    assert timing.commit() == "unknown"
+    git("add", ".")
+    git("commit", "-q", "-m", "first")
     first = timing.commit()
     assert len(first) == 12
     chart.write_text("measured again")

@@ -74,12 +74,6 @@ def test_entries_are_compared_by_name(small_cube, plain_cube):
     np.testing.assert_allclose(found.entries.delta_e[:-1, 0], delta_e_spectra(light("D65"), spectra, spectra[::-1]))
 
 
-def test_entries_outside_the_space_are_compared(cyan_cube):
-    found = diff_cubes({"a": cyan_cube, "b": cyan_cube}, LIGHTS)
-    assert found.pairs.names == (*cyan_cube.data.atlas.names, "cyan")
-    assert found.is_within(0)
-
-
 def test_lattices_of_other_dims_are_compared_at_the_nodes_of_both(plain_cube):
     found = diff_cubes({"a": plain_cube, "b": uplift.build(dim=3)}, LIGHTS)
     assert len(found.nodes.rgb) == 8**3 + 3**3

@@ -1,6 +1,6 @@
 """Errors of a cube at the colours of atlas entries, next to the answers of other methods; entries close to others."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields, replace
 from typing import Any, TypeVar
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, resample
-from uplift.colorimetry import Sensor, delta_e_spectra, map_to_gamut
+from uplift.colorimetry import Light, Sensor, delta_e_spectra, map_to_gamut
 from uplift.colorimetry.observer import light, on_range
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Indices
@@ -47,6 +47,10 @@ class Answers:
     def worst(self) -> Array:
         """Return the largest ΔE00 under any light, (E,)."""
         return self.delta_e.max(axis=1)
+
+    def means(self) -> Array:
+        """Return the mean rms and the mean ΔE00 under each light, (1 + L,)."""
+        return np.concatenate([[self.rms.mean()], self.delta_e.mean(axis=0)])
 
     @property
     def mean(self) -> Array:
@@ -128,7 +132,7 @@ def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> E
     data, target = cube.data, query.target
     inside = _inside(data, query.rgb)
     spectra = reflectance_anywhere(cube, query.rgb, data.sensor.wavelengths, "spectra", ~in_unit_cube(query.rgb))
-    answers = _compare(spectra, target, lights)
+    answers = compare_spectra(spectra, target, [sensor.light for sensor in lights])
     errors = EntryErrors(
         names=query.names,
         rgb=query.rgb,
@@ -153,8 +157,10 @@ def _with_lattice_errors(cube: Cube, errors: EntryErrors, rows: Indices, lights:
     is_outside = rows >= len(data.atlas.names)
     return replace(
         errors,
-        lattice=_compare(
-            lattice_spectra(data, _inside(data, errors.rgb), data.sensor.wavelengths), errors.target, lights
+        lattice=compare_spectra(
+            lattice_spectra(data, _inside(data, errors.rgb), data.sensor.wavelengths),
+            errors.target,
+            [sensor.light for sensor in lights],
         ),
         predicted=None if errors.predicted is None else np.where(is_outside, table.error[rows], errors.predicted),
         half_width=table.half_width[rows],
@@ -167,8 +173,9 @@ def _inside(data: CubeData, rgb: Array) -> Array:
     return map_to_gamut(rgb, data.sensor, MAPPING).rgb
 
 
-def _compare(spectra: Array, target: Array, lights: tuple[Sensor, ...]) -> Answers:
-    delta_e = delta_e_under([sensor.light for sensor in lights], spectra, target)
+def compare_spectra(spectra: Array, target: Array, lights: Iterable[Light]) -> Answers:
+    """Compare answers with targets, both reflectances (E, N)."""
+    delta_e = delta_e_under(lights, spectra, target)
     return Answers(spectra, delta_e, np.sqrt(((spectra - target) ** 2).mean(axis=1)))
 
 
@@ -177,10 +184,9 @@ WITHOUT_ATLAS, JAKOB_HANIKA = "without atlas", "Jakob & Hanika"
 
 def find_alternatives(data: CubeData, errors: EntryErrors, lights: tuple[Sensor, ...]) -> dict[str, Answers]:
     """Compute the answers of other methods at the colours of entries, by the name of the method."""
-    return {
-        WITHOUT_ATLAS: _compare(_without_atlas(errors.target, data.sensor), errors.target, lights),
-        JAKOB_HANIKA: _compare(_sigmoid(data, errors.rgb), errors.target, lights),
-    }
+    spectra = {WITHOUT_ATLAS: _without_atlas(errors.target, data.sensor), JAKOB_HANIKA: _sigmoid(data, errors.rgb)}
+    under = [sensor.light for sensor in lights]
+    return {name: compare_spectra(each, errors.target, under) for name, each in spectra.items()}
 
 
 def _without_atlas(target: Array, assessed: Sensor) -> Array:

@@ -1,6 +1,6 @@
 """Failures of a build, smoothness, round trips, calibration of errors."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +16,7 @@ from uplift.lookup import MODES, Cube
 from uplift.models import reflectance
 
 
-def delta_e_under(lights: Sequence[Light], first: Array, second: Array) -> Array:
+def delta_e_under(lights: Iterable[Light], first: Array, second: Array) -> Array:
     """Compute ΔE00 (n, L) under lights between reflectances (n, N)."""
     return np.stack([delta_e_spectra(light, first, second) for light in lights], axis=1)
 

@@ -4,14 +4,11 @@ import pytest
 
 from tests.conftest import MACBETH
 from uplift.atlas import read_atlas
-from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.lab.chart.method import Effort, Method, PreparedMethod, make_task
-from uplift.lab.chart.table import FACTS, TEXTS, Chart, MethodResult, State
+from uplift.lab.chart.table import FACTS, REQUIRED, TEXTS, Chart, MethodResult, State
 
 BATCHES = (1, 64)
 HASTE = Effort(seconds_per_error=0.05, runs=3, lap=0.001, batches=BATCHES, longest=0.05, builds=1)
-LIGHTS = (*CHART_LIGHTS, "lights", "rms")
-ERRORS = ("round_trip", "coarse_round_trip", *LIGHTS, *(f"own_{name}" for name in LIGHTS))
 
 
 @pytest.fixture(scope="session")
@@ -28,9 +25,8 @@ def method_of(uplift, prepare=None, **fields):
 
 def row_of(name, time, error, **fields):
     """Make a result in which all errors are equal."""
-    numbers = {f"{key}_{kind}": error for key in ERRORS for kind in ("mean", "p99", "max")}
-    numbers |= {"time_ns": time, "bytes": 1e4, "build_s": 1.0, "load_s": 0.5, "setup_s": 1.5}
-    numbers |= {"round_trip_colours": 16, "unseen_spectra": 12, "own_spectra": 12}
+    numbers = dict.fromkeys(REQUIRED, error) | {"time_ns": time, "bytes": 1e4, "build_s": 1.0, "load_s": 0.5}
+    numbers |= {"setup_s": 1.5, "round_trip_colours": 16, "unseen_spectra": 12, "own_spectra": 12}
     for batch, each in zip(BATCHES, (10 * time, time), strict=True):
         key = f"ns_{batch}"
         numbers |= {key: each, f"{key}_least": each, f"{key}_most": 2 * each, f"{key}_colours": batch}

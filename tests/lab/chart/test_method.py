@@ -7,13 +7,13 @@ import pytest
 from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999
 
 from tests.helpers import raises
-from tests.parts import CC, LLVM, need
+from tests.parts import LLVM, need
 from uplift.atlas import Atlas, Entry, merge, on_grid, read_atlas
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.processes import call_in_child
 from uplift.fit.families import families_with
 from uplift.lab.chart import mitsuba3
-from uplift.lab.chart.cubes import CubeOptions, built_cube, prepare_c
+from uplift.lab.chart.cubes import CubeOptions, built_cube
 from uplift.lab.chart.measure import METHODS, QUICK_METHODS, select_methods
 from uplift.lab.chart.method import RANGE, NotInstalledError, edges, make_task
 from uplift.lab.chart.picture import COLOURS
@@ -33,12 +33,6 @@ def test_every_second_entry_builds_and_the_others_test(repository):
     assert not rows & {tuple(row) for row in found.unseen.round(12)}
     every = on_grid(merge(atlases.values()), found.sensor.wavelengths)
     assert len(found.own) + len(found.unseen) == found.sensor.contains(found.sensor.rgb(every)).sum()
-
-
-def test_task_is_reproducible(small_task, repository):
-    again = make_task(shipped(repository, "macbeth"), 16)
-    for name in ("rgb", "own", "unseen"):
-        np.testing.assert_array_equal(getattr(again, name), getattr(small_task, name))
 
 
 def test_edges_contain_every_corner_and_grey_once():
@@ -73,7 +67,7 @@ def test_names_are_unique_and_every_family_has_a_colour():
     assert len({method.method for method in METHODS}) == len(METHODS)
     assert {method.family for method in METHODS} == set(COLOURS)
     assert len(set(COLOURS.values())) == len(COLOURS)
-    assert len(select_methods(QUICK_METHODS)) == 13
+    assert set(select_methods(QUICK_METHODS)) < set(METHODS)
 
 
 def test_methods_are_selected_by_pattern():
@@ -111,20 +105,6 @@ def test_both_types_give_the_same_spectra(small_task, colours, name):
     found = single.uplift(colours.astype(np.float32), at)
     assert found.dtype == np.float32
     np.testing.assert_allclose(found, double.uplift(colours, at), atol=2e-6)
-
-
-def compiled_and_python(task, colours):
-    """Reflectances by C and by Python."""
-    options, at = CubeOptions("sigmoid", 3, 8, atlas=False), task.sensor.wavelengths
-    found = prepare_c(task, options, "spectra").uplift(colours, at)
-    return found, built_cube(task, options)[0].reflectance(colours, at)
-
-
-def test_compiled_cube_gives_the_reflectances_of_python(small_task, colours):
-    need(CC)
-    found, expected = call_in_child(compiled_and_python, small_task, colours, seconds=120)
-    assert found.dtype == np.float32
-    np.testing.assert_allclose(found, expected, atol=1e-5)
 
 
 def vectorised_and_table(task, colours):

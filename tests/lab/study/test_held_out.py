@@ -15,12 +15,12 @@ from uplift.common.progress import Progress
 from uplift.lab.study import held_out
 from uplift.lab.study.held_out import (
     HoldoutSplit,
-    SpectrumErrors,
     holdout,
     local_linear,
     split_records,
 )
 from uplift.pipeline.build import build
+from uplift.report.fidelity import Answers
 
 GRID = observer.grid()
 
@@ -59,7 +59,7 @@ def test_the_prior_does_not_know_the_atlas(monkeypatch):
 
 
 def test_records_pool_splits_with_standard_errors():
-    errors = {"": SpectrumErrors(np.ones(2), np.zeros((2, 7)))}
+    errors = {"": Answers(np.zeros((2, 81)), np.zeros((2, 7)), np.ones(2))}
     known = HoldoutSplit(errors, np.array([1.0, 3.0]), np.array([2.0, 2.0]), np.array([5.0, 5.0]))
     unknown = HoldoutSplit(errors, np.array([5.0, 9.0]), None, None)
     (record,) = split_records([known, unknown])

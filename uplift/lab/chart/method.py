@@ -1,11 +1,11 @@
-"""Interface of methods of spectral upsampling to the chart, and the judge of their round trips.
+"""Interface of methods of spectral upsampling to the chart, and the sensors by which their round trips are measured.
 
-The judge is the observer and the illuminant at 1 nm, with the white and the matrix that a method states. No method was
-fitted to these functions. Cubes are fitted to 380–780 nm at 5 nm, where other methods would be judged by our
-choice of range, step and matrix."""
+Round trips are measured at 1 nm, with the observer, the illuminant, the white and the matrix that a method states. No
+method was fitted at 1 nm. Cubes are fitted to 380–780 nm at 5 nm: errors there would favour our range, step and matrix.
+"""
 
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, TypeVar
@@ -106,8 +106,11 @@ def make_task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effo
     if colours < MIN_COLOURS:
         raise OptionError(f"colours must be at least {MIN_COLOURS}, got {colours}")
     sensor = observer.sensor()
-    kept, others = (_every_second(atlases.values(), start) for start in (0, 1))
-    own, unseen = (_in_gamut(sensor, part) for part in (kept, others))
+    kept, others = (
+        merge(Atlas(atlas.entries[start::2], (), atlas.sources) for atlas in atlases.values()) for start in (0, 1)
+    )
+    measured = [resample(part, sensor.wavelengths).values for part in (kept, others)]
+    own, unseen = (spectra[sensor.contains(sensor.rgb(spectra))] for spectra in measured)
     if min(len(own), len(unseen)) < MIN_SPECTRA:
         raise AtlasError(
             f"at least {MIN_SPECTRA} entries within sRGB must build and test cubes each, "
@@ -132,15 +135,6 @@ def edges() -> Array:
     grid = np.stack(np.meshgrid(along, along, along, indexing="ij"), axis=-1).reshape(-1, 3)
     at_ends = ((grid == 0) | (grid == 1)).sum(axis=1)
     return grid[(at_ends >= 2) | (np.ptp(grid, axis=1) == 0)]
-
-
-def _every_second(atlases: Iterable[Atlas], start: int) -> Atlas:
-    return merge(Atlas(atlas.entries[start::2], (), atlas.sources) for atlas in atlases)
-
-
-def _in_gamut(sensor: Sensor, atlas: Atlas) -> Array:
-    values = resample(atlas, sensor.wavelengths).values
-    return values[sensor.contains(sensor.rgb(values))]
 
 
 Result = TypeVar("Result")

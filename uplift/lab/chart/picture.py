@@ -8,7 +8,7 @@ import numpy as np
 
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.arrays import StrPath
-from uplift.lab.chart.table import BATCH, REFERENCE, Chart, Criterion, MethodResult, State, criteria
+from uplift.lab.chart.table import REFERENCE, Chart, Criterion, MethodResult, State, criteria
 from uplift.lab.panels import Panel, Point, family_colours, page_panel, pareto_front
 from uplift.viz.figure import ACCENT, GREY, OTHER, PALE, new_figure, styled, write_png
 from uplift.viz.format import format_build_time, format_error, format_size, format_time
@@ -152,7 +152,7 @@ def render_chart(chart: Chart) -> str:
         chart=chart,
         pictures=pictures,
         families=family_colours((result.family for result in chart.measured), COLOURS),
-        tooltips=[_tooltip(result) for result in chart.results],
+        tooltips=[_tooltip(chart, result) for result in chart.results],
         facts=chart.facts,
         sources=list(dict.fromkeys(f"{result.family}: {result.source}" for result in chart.results)),
         chosen=reference_batch(chart),
@@ -161,11 +161,11 @@ def render_chart(chart: Chart) -> str:
     )
 
 
-def _tooltip(result: MethodResult) -> Tooltip:
+def _tooltip(chart: Chart, result: MethodResult) -> Tooltip:
     numbers, lines = result.numbers, []
     if result.state == State.MEASURED:
-        sizes = sorted(int(match[1]) for match in map(BATCH.fullmatch, numbers) if match)
-        lines = [(f"{size:,} per call", f"{format_time(numbers[f'ns_{size}'])} each") for size in sizes]
+        times = {size: numbers[f"ns_{size}"] for size in chart.batches if f"ns_{size}" in numbers}
+        lines = [(f"{size:,} per call", f"{format_time(time)} each") for size, time in times.items()]
         lines += [("set-up", format_build_time(numbers["setup_s"])), ("memory", format_size(numbers["bytes"]))]
         lines.append(("errors", "mean / 99 % / largest"))
         for error, name in ERRORS.items():

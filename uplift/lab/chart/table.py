@@ -21,20 +21,15 @@ FACTS = ("machine", "versions", "commit", "colours", "spectra", "effort")
 MAX_BYTES = 16 << 20
 """Largest file that is read."""
 MAX_NUMBER = 1e30
-REQUIRED = (
-    "bytes",
-    "time_ns",
-    "setup_s",
-    "round_trip_mean",
-    "coarse_round_trip_mean",
-    "round_trip_colours",
-    "unseen_spectra",
-)
+ERRORS = ("round_trip", "coarse_round_trip", *CHART_LIGHTS, "lights", "rms")
+REQUIRED = {"bytes", "time_ns", "setup_s", "round_trip_colours", "unseen_spectra"} | {
+    f"{name}_{kind}" for name in (*ERRORS, *(f"own_{name}" for name in ERRORS[2:])) for kind in ("mean", "p99", "max")
+}
 """Numbers of every method that was measured."""
 BATCH = re.compile(r"ns_([1-9]\d{0,8})")
 """Name of a time by the number of colours per call."""
-TOGETHER = {"mean": ("p99", "max"), "p99": ("mean", "max"), "max": ("mean", "p99")}
-"""Suffixes of the numbers of an error, which come together."""
+SPREAD = ("least", "most", "colours")
+"""Suffixes of the numbers that come with a time."""
 REFERENCE = 65_536
 """Colours per call of the time by which cubes are recommended."""
 MEASURED = "measured.csv"
@@ -133,7 +128,8 @@ def _result(line: dict[str, str]) -> MethodResult:
     texts = {name: line[name] for name in TEXTS if name != "state"}
     numbers = {name: _number(name, line[name]) for name in line if name not in (*TEXTS, *FACTS) and line[name].strip()}
     state = State(line["state"])
-    if state == State.MEASURED and (missing := _required(numbers) - numbers.keys()):
+    required = REQUIRED | {f"{name}_{part}" for name in filter(BATCH.fullmatch, numbers) for part in SPREAD}
+    if state == State.MEASURED and (missing := required - numbers.keys()):
         raise ValueError(f"{format_value(line['method'])} has no {min(missing)}")
     return MethodResult(**texts, state=state, numbers=numbers)
 
@@ -143,17 +139,6 @@ def _number(name: str, text: str) -> float:
     if not 0 <= value <= MAX_NUMBER:
         raise ValueError(f"{shorten(name)} must be in [0, {MAX_NUMBER:g}], got {format_value(text)}")
     return value
-
-
-def _required(numbers: Mapping[str, float]) -> set[str]:
-    """Names of the numbers that a measured method with these has."""
-    required = set(REQUIRED)
-    for name in numbers:
-        stem, _, kind = name.rpartition("_")
-        required |= {f"{stem}_{other}" for other in TOGETHER.get(kind, ())}
-        if BATCH.fullmatch(name):
-            required |= {f"{name}_least", f"{name}_most", f"{name}_colours"}
-    return required
 
 
 MIN_TIME = 1.0

@@ -22,6 +22,7 @@ from uplift.lookup import Cube
 from uplift.lookup.refine import FIRST_DAMPING, MAX_STEPS
 from uplift.models.minimum_norm import forward_map, minimum_norm_step
 from uplift.pipeline.build import build
+from uplift.report.fidelity import Answers, compare_spectra
 from uplift.report.measures import check_calibration
 
 MIN_ENTRIES = 8
@@ -29,22 +30,6 @@ MIN_ENTRIES = 8
 HALF, NO_ATLAS, SIGMOID = "half the atlas", "without an atlas", "sigmoid"
 LOCAL_LINEAR = "local-linear regression"
 """Names of cubes, and of a baseline that knows the same half of the atlas."""
-
-
-@dataclass(frozen=True, eq=False)
-class SpectrumErrors:
-    """Errors of n predicted spectra.
-
-    ``rms`` (n,): root mean square over wavelength.
-    ``delta_e`` (n, L): ΔE00 under L lights.
-    """
-
-    rms: Array
-    delta_e: Array
-
-    def means(self) -> Array:
-        """Average over the spectra (1 + L,)."""
-        return np.concatenate([[self.rms.mean()], self.delta_e.mean(axis=0)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +41,7 @@ class HoldoutSplit:
     ``predicted``, ``bound`` (n,): standard errors and error bounds that this cube predicts, if it has any.
     """
 
-    errors: dict[str, SpectrumErrors]
+    errors: dict[str, Answers]
     actual: Array
     predicted: Array | None
     bound: Array | None
@@ -111,11 +96,9 @@ def _evaluate(cubes: dict[str, Cube], known: Array, measured: Array) -> HoldoutS
     )
 
 
-def spectrum_errors(predicted: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS) -> SpectrumErrors:
+def spectrum_errors(predicted: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS) -> Answers:
     """Compare predicted with measured reflectances (n, N)."""
-    rms = np.sqrt(((predicted - measured) ** 2).mean(axis=1))
-    delta_e = [delta_e_spectra(observer.light(name), predicted, measured) for name in lights]
-    return SpectrumErrors(rms, np.stack(delta_e, axis=1))
+    return compare_spectra(predicted, measured, map(observer.light, lights))
 
 
 def split_records(splits: Sequence[HoldoutSplit]) -> list[dict[str, Any]]:

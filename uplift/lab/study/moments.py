@@ -6,6 +6,7 @@ Every measured spectrum is reduced to its moments, reconstructed, and compared w
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -137,26 +138,19 @@ class MomentsStudy:
 
     def curves(self) -> dict[Technique, Array]:
         """Numbers stored, mean and largest ΔE76 (max_moments + 1, 3) of all entries together, by technique."""
-        found = {}
-        for technique in TECHNIQUES:
-            results = [(technique.floats(n), self.result(technique, n)) for n in range(self.max_moments + 1)]
-            found[technique] = np.array([[floats, one.mean[0], one.max[0]] for floats, one in results])
-        return found
+        floats = [[technique.floats(n) for n in range(self.max_moments + 1)] for technique in TECHNIQUES]
+        errors = self.errors[..., 0]
+        curves = np.stack([floats, errors.mean(axis=2), errors.max(axis=2)], axis=-1)
+        return dict(zip(TECHNIQUES, curves, strict=True))
 
     def records(self) -> list[dict[str, Any]]:
         """Return a flat record for every group, technique and count, with mean and maximum of every measure."""
-        return [
-            self._record(group, technique, moments)
-            for group in self.groups
-            for technique in TECHNIQUES
-            for moments in range(self.max_moments + 1)
-        ]
+        return [self._record(*each) for each in product(self.groups, TECHNIQUES, range(self.max_moments + 1))]
 
     def _record(self, group: str, technique: Technique, moments: int) -> dict[str, Any]:
         result = self.result(technique, moments, group)
-        errors: dict[str, float] = {}
-        for name, mean, largest in zip(MEASURES, result.mean.tolist(), result.max.tolist(), strict=True):
-            errors |= {f"{name}_mean": mean, f"{name}_max": largest}
+        names = [f"{name}_{kind}" for name in MEASURES for kind in ("mean", "max")]
+        errors = np.stack([result.mean, result.max], axis=1).ravel().tolist()
         return {
             "atlas": group,
             "entries": len(self.rows(group)),
@@ -164,7 +158,7 @@ class MomentsStudy:
             "warped": technique.warped,
             "moments": moments,
             "floats": technique.floats(moments),
-            **errors,
+            **dict(zip(names, errors, strict=True)),
             "worst": self.names[result.worst],
         }
 
