@@ -153,7 +153,6 @@ def render_chart(chart: Chart) -> str:
         pictures=pictures,
         families=family_colours((result.family for result in chart.measured), COLOURS),
         tooltips=[_tooltip(chart, result) for result in chart.results],
-        facts=chart.facts,
         sources=list(dict.fromkeys(f"{result.family}: {result.source}" for result in chart.results)),
         chosen=reference_batch(chart),
         errors=ERRORS,

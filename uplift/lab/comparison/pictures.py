@@ -136,7 +136,6 @@ def render_comparison(comparison: Comparison, tuned: Sequence[TunedFilter] = ())
         boxes=page_boxes(comparison),
         families=family_colours((result.family for result in comparison.results), COLOURS),
         tooltips=[_tooltip(name, comparison) for name in names(comparison)],
-        facts=comparison.facts,
         sources=SOURCES,
         statistics=HEADINGS,
         tuned=tuned,
