@@ -18,7 +18,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
-from uplift.fit.base import MARGIN, TABLE, smooth
+from uplift.fit.base import TABLE, smooth
 from uplift.fit.families import STEPS
 from uplift.fit.problem import Problem, nodes_of
 from uplift.models import Moments
@@ -61,7 +61,7 @@ def main(path: Path = FILE) -> None:
 
 def smooth_nodes(problem: Problem) -> Array:
     """Coefficients (17³, 9) of smooth spectra at the nodes of the table."""
-    nodes = nodes_of(TABLE, problem.sensor, MARGIN)
+    nodes = nodes_of(TABLE, problem.sensor)
     return np.asarray(smooth(problem.model, problem.forward, nodes.goal(nodes.points)).nodes)
 
 
