@@ -1,10 +1,10 @@
 """Growth: nodes are fitted in rounds, each from what earlier rounds found (docs/mathematics.md, 7; docs/accuracy.md).
 
-Rounds go outward in shells, or from a coarse lattice to finer ones. The answer at a node is the spectrum of its colour
-that is nearest to its prior. The correction between prior and answer is smooth over the lattice: a node starts from its
-prior plus the correction predicted from earlier rounds, and one step then does what two did. The answer does not depend
-on the start. Nodes that fail are tried again from the mean of their fitted neighbours. The improvement pass (Tódová
-2020, "Constrained spectral uplifting", section 3.1.4) moves nodes over the threshold out of local minima.
+Rounds go from a coarse lattice to finer ones. The answer at a node is the spectrum of its colour that is nearest to its
+prior. The correction between prior and answer is smooth over the lattice: a node starts from its prior plus the
+correction interpolated from earlier rounds, and one step then does what two did. The answer does not depend on the
+start. Nodes that fail are tried again from the mean of their fitted neighbours. The improvement pass (Tódová 2020,
+"Constrained spectral uplifting", section 3.1.4) moves nodes over the threshold out of local minima.
 
 `uplift.fit.growth_thesis` grows outward from seeds instead, as Tódová 2020 does.
 """
@@ -50,8 +50,6 @@ THESIS_STEPS = (
 """The order of Tódová 2020, section 3.1.4."""
 Expected = Callable[[Indices], Array]
 """From nodes (k,) to the multipliers (k, C) expected there."""
-Prediction = Callable[[int, Indices, NDArray[np.float32], Mask], Array]
-"""From a round, its nodes (k,), the corrections (n, C) so far and those known (n,) to corrections (k, C)."""
 
 
 class Growth:
@@ -99,35 +97,10 @@ class Growth:
             self.progress(Progress("fit", done, len(self.nodes.points), step=last, detail=detail))
         return solution
 
-
-def grow_in_rounds(
-    growth: Growth, expected: Expected, seeds: Indices, rounds: Sequence[Indices], predict: Prediction
-) -> Growth:
-    """Fit the nodes of each round from the prior and a predicted correction by one step, and the rest at the end.
-
-    Seeds (S,) start from entries, not from the prior, and give no correction.
-    """
-    size, count = growth.multipliers.shape
-    # δ = p − p₀ of the nodes, in single precision as it is only a start, and whether it is known and smooth
-    corrections, known = np.zeros((size, count), dtype=np.float32), np.zeros(size, dtype=bool)
-    seeded = growth.nodes.lattice.mask(seeds)
-    rest = [(seeds[:0], growth.multipliers[:0], growth.multipliers[:0], seeds[:0])]
-    for number, nodes in enumerate(rounds):
-        for block in blocks(len(nodes), BLOCK_POINTS):
-            points = nodes[block]
-            prior = expected(points)
-            solution = growth.attempt(points, prior + predict(number, points, corrections, known), number, prior, 1)
-            found = solution.multipliers - prior
-            # |R⁻¹ (p − p₀)|∞ of corrections that are small enough to expect similar ones nearby
-            size = np.abs(blocked_matmul(found, growth.problem.forward.inverse_root.T)).max(axis=1)
-            corrections[points], known[points] = found, (size <= MAX_CORRECTION) & ~seeded[points]
-            unsolved = solution.distance > growth.problem.tolerance
-            left = points[unsolved]
-            rest.append((left, solution.multipliers[unsolved], prior[unsolved], np.full_like(left, number)))
-    points, start, prior, numbers = (np.concatenate(parts) for parts in zip(*rest, strict=True))
-    growth.attempt(points, start, numbers, prior)
-    retry(growth, len(rounds))
-    return growth
+    def is_smooth(self, correction: Array) -> Mask:
+        """Whether corrections (k, C) are small enough to expect similar ones nearby: |R⁻¹ (p − p₀)|∞."""
+        size = np.abs(blocked_matmul(correction, self.problem.forward.inverse_root.T)).max(axis=1)
+        return np.asarray(size <= MAX_CORRECTION)
 
 
 def retry(growth: Growth, number: int) -> None:

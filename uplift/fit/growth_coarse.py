@@ -1,15 +1,17 @@
 """Growth from a coarse lattice to finer ones: corrections are interpolated between nodes of earlier rounds."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.progress import ProgressCallback
-from uplift.fit.growth import Expected, Growth, grow_in_rounds
+from uplift.fit.growth import BLOCK_POINTS, MAX_PASSES, Expected, Growth, retry
 from uplift.fit.problem import Nodes, Problem
+from uplift.lattice import weighted_sum
 
 MIN_CELLS = 4
 """Cells along each axis of the coarsest lattice, at least."""
+ALL = 1 - 1e-9
+"""Sum of the weights of known corners above which all corners are known."""
 
 
 def strides(dim: int) -> list[int]:
@@ -20,21 +22,44 @@ def strides(dim: int) -> list[int]:
 def grow_coarse_to_fine(
     problem: Problem, nodes: Nodes, expected: Expected, seeds: Indices, progress: ProgressCallback
 ) -> Growth:
-    """Fit nodes from the prior, every stride-th one of those that no coarser round has had. Seeds (S,) come first."""
-    lattice, waiting = nodes.lattice, nodes.lattice.mask(nodes.points)
-    levels = [lattice.thinned(stride) for stride in strides(lattice.dim)]
-    rounds: list[Indices] = []
-    for _, numbers in levels:
-        points = numbers if rounds else np.union1d(numbers, seeds)
-        rounds.append(points[waiting[points]])
+    """Fit nodes from the prior. Seeds (S,) are fitted in the first round, and give and take no correction."""
+    growth, lattice = Growth(problem, nodes, progress), nodes.lattice
+    waiting, seeded = lattice.mask(nodes.points), lattice.mask(seeds)
+    # Corrections p − p₀ at every second node, whose last column is the weight of a known one, and the rows of nodes.
+    half, numbers = lattice.thinned(2)
+    corrections, row = np.zeros((half.size, problem.model.count + 1)), np.full(lattice.size, -1, dtype=np.int32)
+    row[numbers] = np.arange(half.size)
+    row[seeds] = -1
+
+    def fit(points: Indices, start: Array, prior: Array, number: int, max_passes: int) -> tuple[Indices, Array, Array]:
+        """Fit nodes, store their corrections, and return those that are not solved."""
+        solution = growth.attempt(points, start, number, prior, max_passes)
+        correction = solution.multipliers - prior
+        stored = row[points] >= 0
+        rows = row[points[stored]]
+        corrections[rows, :-1], corrections[rows, -1] = correction[stored], growth.is_smooth(correction[stored])
+        unsolved = solution.distance > problem.tolerance
+        return points[unsolved], solution.multipliers[unsolved], prior[unsolved]
+
+    rounds = strides(lattice.dim)
+    for number, stride in enumerate(rounds):
+        # Of every stride-th node, those that no coarser round has had; the seeds come first.
+        _, points = lattice.thinned(stride)
+        points = np.union1d(points, seeds) if number == 0 else points
+        points = points[waiting[points]]
         waiting[points] = False
-
-    def predict(number: int, points: Indices, corrections: NDArray[np.float32], known: Mask) -> Array:
-        """Interpolate in the cells of the last round, where all their corners are known."""
-        level, numbers = levels[max(number - 1, 0)]
-        corners, weights = level.corners(lattice.target(points))
-        corners = numbers[corners]
-        smooth = (known[corners] | (weights == 0)).all(axis=1, keepdims=True)
-        return np.where(smooth, (weights[:, None, :] @ corrections[corners])[:, 0], 0)
-
-    return grow_in_rounds(Growth(problem, nodes, progress), expected, seeds, rounds, predict)
+        level, numbers = lattice.thinned(rounds[max(number - 1, 0)])
+        known = np.where((row[numbers] >= 0)[:, None], corrections[row[numbers]], 0)
+        rest = [(points[:0], growth.multipliers[:0], growth.multipliers[:0])]
+        for block in blocks(len(points), BLOCK_POINTS):
+            # From p₀ + R δ, with the correction δ of the nodes around, to the spectrum of the colour nearest to p₀.
+            some = points[block]
+            prior = expected(some)
+            sums = weighted_sum(known, *level.corners(lattice.target(some)))
+            smooth = (sums[:, -1:] > ALL) & ~seeded[some, None]
+            rest.append(fit(some, prior + np.where(smooth, sums[:, :-1], 0), prior, number, max_passes=1))
+        # What the first pass leaves is fitted at the end of the round, all at once.
+        points, start, prior = (np.concatenate(parts) for parts in zip(*rest, strict=True))
+        fit(points, start, prior, number, MAX_PASSES)
+    retry(growth, len(rounds))
+    return growth

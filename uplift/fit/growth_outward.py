@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.arrays import Indices, blocks
 from uplift.common.progress import ProgressCallback
-from uplift.fit.growth import Expected, Growth, grow_in_rounds
+from uplift.fit.growth import BLOCK_POINTS, Expected, Growth, retry
 from uplift.fit.problem import Nodes, Problem
 from uplift.lattice import Lattice
 
@@ -13,21 +13,39 @@ from uplift.lattice import Lattice
 def grow_outward(
     problem: Problem, nodes: Nodes, expected: Expected, seeds: Indices, progress: ProgressCallback
 ) -> Growth:
-    """Fit nodes from the prior, in the order of their distance from the seeds (S,), or from the middle without any."""
-    lattice = nodes.lattice
+    """Fit nodes from the prior, in the order of their distance from the seeds (S,), or from the middle without any.
+
+    Seeds start from entries, not from the prior, and give no correction.
+    """
+    growth, lattice = Growth(problem, nodes, progress), nodes.lattice
     middle = lattice.index(np.full((1, 3), lattice.dim // 2))
     distance, toward = shells(lattice, seeds if seeds.size else middle)
+    # δ = p − p₀ of the nodes, in single precision as it is only a start, and whether it is known and smooth
+    corrections = np.zeros((lattice.size, problem.model.count), dtype=np.float32)
+    known, seeded = np.zeros(lattice.size, dtype=bool), lattice.mask(seeds)
     order = nodes.points[np.argsort(distance[nodes.points], kind="stable")]
-    ends = np.searchsorted(distance[order], np.arange(1, distance.max() + 1))
+    ends = np.searchsorted(distance[order], np.arange(1, distance.max() + 2))
 
-    def predict(number: int, points: Indices, corrections: NDArray[np.float32], known: Mask) -> Array:
-        """Where both are known, δ ≈ 2 δ₁ − δ₂ with the corrections one and two steps towards a seed, else δ₁."""
-        near, far = toward[points], toward[toward[points]]
-        one = (known[near] & (distance[near] < number))[:, None]
-        two = one & (known[far] & (distance[far] < distance[near]))[:, None]
-        return np.where(two, 2 * corrections[near] - corrections[far], np.where(one, corrections[near], 0))
-
-    return grow_in_rounds(Growth(problem, nodes, progress), expected, seeds, np.split(order, ends), predict)
+    rest = [(order[:0], growth.multipliers[:0], growth.multipliers[:0])]
+    for number, shell in enumerate(np.split(order, ends[:-1])):
+        for block in blocks(len(shell), BLOCK_POINTS):
+            points = shell[block]
+            prior = expected(points)
+            # Where both are known, δ ≈ 2 δ₁ − δ₂ with the corrections one and two steps towards a seed, else δ₁.
+            near, far = toward[points], toward[toward[points]]
+            one = (known[near] & (distance[near] < number))[:, None]
+            two = one & (known[far] & (distance[far] < distance[near]))[:, None]
+            change = np.where(two, 2 * corrections[near] - corrections[far], np.where(one, corrections[near], 0))
+            solution = growth.attempt(points, prior + change, number, prior, max_passes=1)
+            found = solution.multipliers - prior
+            corrections[points], known[points] = found, growth.is_smooth(found) & ~seeded[points]
+            unsolved = solution.distance > problem.tolerance
+            rest.append((points[unsolved], solution.multipliers[unsolved], prior[unsolved]))
+    # What one step leaves is fitted at the end, all at once.
+    points, start, prior = (np.concatenate(parts) for parts in zip(*rest, strict=True))
+    growth.attempt(points, start, distance[points], prior)
+    retry(growth, len(ends))
+    return growth
 
 
 def shells(lattice: Lattice, seeds: Indices) -> tuple[NDArray[np.int16], NDArray[np.int32]]:
