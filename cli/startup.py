@@ -19,8 +19,6 @@ ENDING = ("SIGTERM", "SIGHUP", "SIGBREAK")
 """Signals that end a command and its worker processes, as well as Ctrl-C."""
 GRACE = 5.0
 """Seconds between Ctrl-C and the end of a command that does not react."""
-OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
-"""Permissions that a private folder must not have."""
 _CACHES: set[Path] = set()
 """The folder of compiled code that is checked and in use."""
 
@@ -91,7 +89,7 @@ def hide_drawing_notes() -> None:
 def enable_jit_cache() -> None:
     """Keep compiled JAX code in the user's cache folder, so that later commands do not compile it again.
 
-    JAX runs the code that it finds there. A folder that other users can write to is not used, with a warning.
+    JAX runs the code that it finds there. A folder that other users can change or replace is not used, with a warning.
     """
     if "JAX_COMPILATION_CACHE_DIR" in os.environ:
         return
@@ -104,9 +102,7 @@ def enable_jit_cache() -> None:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         folder = folder.resolve(strict=True)  # the folder that is checked, not a link to it
         str(folder).encode()  # JAX takes UTF-8 only
-        status = folder.stat()
-        is_exposed = os.name == "posix" and (status.st_uid != os.getuid() or status.st_mode & OTHERS_WRITE)
-        problem = "other users can write to it" if is_exposed else None
+        problem = _exposure(folder) if os.name == "posix" else None
     except (OSError, RuntimeError, UnicodeError) as error:
         problem = getattr(error, "strerror", None) or (
             "not UTF-8" if isinstance(error, UnicodeError) else "loop of links"
@@ -120,6 +116,30 @@ def enable_jit_cache() -> None:
     os.environ["JAX_COMPILATION_CACHE_DIR"] = str(folder)
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0")
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "-1")
+
+
+def _exposure(folder: Path) -> str | None:
+    """Return how other users could change the files of a folder, or put another folder in its place; None if not."""
+    user, status = os.getuid(), folder.stat()
+    if status.st_uid != user or status.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        return "other users can write to it"
+    for place in folder.parents:
+        status = place.stat()
+        shared = status.st_mode & stat.S_IWOTH or (status.st_mode & stat.S_IWGRP and not _is_private(status.st_gid))
+        if status.st_uid not in (user, 0) or (shared and not status.st_mode & stat.S_ISVTX):  # as /tmp has
+            return f"other users can write to {place}"
+    return None
+
+
+def _is_private(group: int) -> bool:
+    """Whether a group is the user's own, as on systems whose umask is 0002."""
+    import grp
+    import pwd
+
+    with contextlib.suppress(KeyError):  # a user without a name
+        name, found = pwd.getpwuid(os.getuid()).pw_name, grp.getgrgid(group)
+        return found.gr_name == name and set(found.gr_mem) <= {name}
+    return False
 
 
 def remove_compiled_code() -> None:

@@ -138,7 +138,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     is_flag=True,
     help="Start all eight nodes around an entry from it: closer near entries, less so for other materials.",
 )
-@click.option("--debug", is_flag=True, help="Store the round of every node, for 'uplift slices'.")
+@click.option("--debug", is_flag=True, help="Store the round of every node, and write slices as .exr next to the cube.")
 @options.force
 @options.quiet
 @options.verbose
@@ -223,12 +223,21 @@ def command(
         stated = {name: value for name, value in settings.items() if value not in (None, ())}
         make = partial(build, read_atlas(*files, measured=scale) if files else None, **stated)
     path = check_output(name if output is None else output, inputs=inputs, force=force)
+    slices = path.with_suffix(".exr") if settings["debug"] else None
+    if slices is not None:
+        check_output(slices, inputs=inputs, force=force)
     begin = time.perf_counter()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
         cube = make(progress=progress)
     cube.save(path, force=force)
+    if slices is not None:
+        from uplift.io.exr import write_slices
+
+        write_slices(cube.data, slices, force=force)
     if not quiet:
         _print_summary(cube, path, time.perf_counter() - begin)
+        if slices is not None:
+            say(f"{slices}: {cube.data.lattice.dim} blue slices")
 
 
 def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]) -> str:
@@ -264,8 +273,8 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
     entries = f"{measured} atlas entries, " if data.provenance["atlases"] else ""
     entries += f"{looks} look{'s' * (looks != 1)}, " if looks else ""
     steps = data.provenance["improvements"]
-    improved = f"{sum(step['mended'] for step in steps)} of {steps[0]['tried']} improved, " if steps else ""
+    improved = f"{sum(step['mended'] for step in steps)} of {steps[0]['tried']} improved" if steps else "0 improved"
     say(
         f"{path}: {nodes}, {entries}{accuracy} (worst {worst:.1e}), "
-        f"{improved}{path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
+        f"{improved}, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
     )

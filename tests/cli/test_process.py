@@ -216,6 +216,16 @@ def test_compiled_code_is_kept_in_a_private_folder_only(cache, mode):
 
 
 @needs_modes
+def test_compiled_code_is_not_kept_where_another_folder_can_take_its_place(cache):
+    cache.mkdir(0o700, parents=True)
+    cache.parent.chmod(0o777)
+    with warns("warning"):
+        assert used_cache() is None
+    cache.parent.chmod(0o1777)  # as /tmp, where users can replace their own folders only
+    assert used_cache() == str(cache)
+
+
+@needs_modes
 def test_jax_uses_the_folder_that_was_checked_not_a_link_to_it(cache, tmp_path):
     (tmp_path / "kept").mkdir(0o700)
     cache.parent.mkdir()

@@ -26,6 +26,15 @@ def test_slices_have_the_name_of_the_cube(run, cube, home):
     assert len(OpenEXR.File(str(home / "small.exr")).parts) == 4
 
 
+def test_builds_for_debugging_write_their_slices(run, refuse, home):
+    words = ("build", "--dim", "2", "--prior", "smooth", "--debug")
+    summary, slices = run(*words, "-o", "two.uplift").stdout.splitlines()
+    assert "0 improved" in summary
+    assert slices == "two.exr: 2 blue slices"
+    assert len(OpenEXR.File(str(home / "two.exr")).parts) == 2
+    assert refuse(*words, "-o", "two.cube").where == "two.exr"
+
+
 def test_bad_input_is_refused(run, refuse, cube, home):
     assert refuse("slices", "missing.uplift", "-o", "out.exr").code == "file-not-found"
     for exists, other in (("out.exr", "sheet.png"), ("sheet.png", "out.exr")):
