@@ -47,7 +47,7 @@ def test_nothing_else_is_in_it(wheel, repository):
     library = {name for name in tracked if name.startswith("uplift/")}
     atlases = {f"uplift_{name}" for name in tracked if name.startswith("atlases/")}
     assert data == library | atlases
-    suffixes = ".c .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .npz .png .ti3 .toml .typed .uplift .xlsx"
+    suffixes = ".c .cpp .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .npz .png .ti3 .toml .typed .uplift .xlsx"
     assert {Path(name).suffix for name in library} == set(suffixes.split())
     assert {Path(name).suffix for name in atlases} == {".md", ".txt"}
 

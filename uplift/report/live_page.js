@@ -32,7 +32,7 @@ void main() {
     for (int w = 0; w < 4; ++w) { lanes[w] = at[k][w]; total[w] = 0.5; }
     if (number < CUBE_LATTICE) {
       cube_tabulate(lanes, basis);
-      cube_add_spectrum(values, 1.0, basis, total);
+      for (int w = 0; w < 4; ++w) total[w] = 0.5 + cube_deviation(1.0, cube_polynomial(values, basis, w));
     } else {
       cube_add_entry(0.0, number - CUBE_LATTICE, lanes, total);
     }
