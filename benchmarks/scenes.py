@@ -1,4 +1,4 @@
-"""Size and time of sparse cubes for real images, for docs/scenes.md."""
+"""Size and time of sparse cubes for real images, for docs/plan.md."""
 
 import tempfile
 from pathlib import Path
