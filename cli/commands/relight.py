@@ -128,7 +128,7 @@ def command(
         for rendering in image.renderings:
             for spectra in image.methods[1:]:
                 key = {"image": image.name, "light": rendering.light, "spectra": spectra}
-                rows.append(key | mean_p95_max(rendering.difference(RGB_PRODUCT, spectra)))
+                rows.append(key | mean_p95_max(rendering.differences[RGB_PRODUCT, spectra]))
     if style == "json":
         print_json({"output": output, "differences": rows})
         return

@@ -83,7 +83,7 @@ def _summary(assessment: Assessment) -> str:
     """Return the main numbers on one line."""
     from uplift.viz.format import pluralise
 
-    parts = [f"{pluralise(assessment.failures.over_threshold, 'node')} over the threshold"]
+    parts = [f"{pluralise(assessment.failures['over_threshold'], 'node')} over the threshold"]
     if assessment.entries is not None:
         names, answers = assessment.entries.names, assessment.entries.answers
         parts.append(pluralise(len(names), "entry", "entries"))

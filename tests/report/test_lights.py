@@ -45,13 +45,13 @@ def test_page_is_complete_and_loads_nothing(html):
 def test_the_table_has_all_lamps(html, found):
     rows = Page(html).table("lamp", "colour")
     assert [row[0].parts[0] for row in rows] == list(TABLE.lamp_names)
-    assert [row[-1].value for row in rows] == pytest.approx(found.lamp_errors, rel=1e-6)
+    assert [row[-1].value for row in rows] == pytest.approx(found["lamp_errors"], rel=1e-6)
 
 
 def test_colours_are_exact_and_powers_are_not_negative(found):
-    assert found.round_trip.max < 1e-6
-    assert found.smallest_power >= 0
-    assert 0 < found.expected_error.median < 10
+    assert found["round_trip"].max < 1e-6
+    assert found["smallest_power"] >= 0
+    assert 0 < found["expected_error"].median < 10
 
 
 def test_negative_powers_are_stated_and_names_are_escaped():

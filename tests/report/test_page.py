@@ -122,7 +122,7 @@ def test_json_holds_the_numbers_of_the_assessment(judged):
 
 def test_entries_outside_the_space_are_among_the_entries(cyan_cube, macbeth):
     found = assess(cyan_cube, "cube.uplift", 1, macbeth, ("D65", "A"))
-    assert (len(found.entries.names), found.out_of_gamut, found.failures.left_out) == (24, (), ())
+    assert (len(found.entries.names), found.out_of_gamut, found.failures["left_out"]) == (24, (), ())
     (facts,) = [entry for entry in to_json(found)["entries"] if entry["name"] == "cyan"]
     assert facts["delta_e_2000"]["D65"] < 1e-6
     assert facts["delta_e_2000"]["A"] == pytest.approx(cyan_cube.data.atlas.outside.error[0], abs=1e-4)

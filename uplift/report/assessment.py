@@ -16,7 +16,7 @@ from uplift.lookup import Cube
 from uplift.report import fidelity, measures
 from uplift.report.charts import Histogram, linear_edges, log_edges, make_histogram
 from uplift.report.fidelity import Answers, Crowding, EntryErrors
-from uplift.report.measures import Calibration, Failures, check_calibration
+from uplift.report.measures import Calibration, check_calibration
 
 MIN_ERROR = 1e-9  # smaller distances and ΔE00 are rounding errors and are counted in the lowest bin
 MIN_STEP = 1e-4  # smaller rms differences of reflectance are counted in the lowest bin
@@ -30,7 +30,7 @@ class Assessment:
     size: int  # Bytes of the file
     data: CubeData  # The cube
     facts: dict[str, Any]  # The result of `summarise`
-    failures: Failures  # Points over the threshold and missing entries
+    failures: dict[str, Any]  # Points over the threshold and missing entries: `collect_failures`
     distance: Histogram  # Fitting distance of the lattice points, max |linear RGB|
     round_trips: dict[str, Histogram]  # ΔE00 of random colours under the cube's illuminant, by mode of lookup
     # Standard errors of the lattice points, ΔE00 under ``data.error_illuminant``; None if the cube has none
@@ -72,7 +72,7 @@ def assess(cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequen
     calibration = None
     if unseen is not None:
         calibration = check_calibration(unseen.actual, unseen.predicted, cube.error_bound(unseen.rgb))
-    points, steps = data.points, measures.compute_smoothness(data)
+    points, (differences, steepest) = data.points, measures.compute_smoothness(data)
     distances = points.distance[points.present]
     standard_errors = None if points.standard_error is None else points.standard_error[points.present]
     return Assessment(
@@ -86,8 +86,8 @@ def assess(cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequen
         standard_error=None
         if standard_errors is None
         else make_histogram(standard_errors, linear_edges(standard_errors)),
-        smoothness=make_histogram(steps.differences, log_edges(steps.differences, MIN_STEP)),
-        steepest=steps.steepest,
+        smoothness=make_histogram(differences, log_edges(differences, MIN_STEP)),
+        steepest=steepest,
         lights=sensors,
         sources=() if atlas is None else tuple(source.name for source in atlas.sources),
         own=own,

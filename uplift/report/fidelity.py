@@ -1,6 +1,6 @@
 """Errors of a cube at the colours of atlas entries, next to the answers of other methods; entries close to others."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
 from typing import Any, TypeVar
 
@@ -53,18 +53,10 @@ class Answers:
         return np.concatenate([[self.rms.mean()], self.delta_e.mean(axis=0)])
 
     @property
-    def mean(self) -> Array:
-        """Return the mean ΔE00 of the colours that are answered under each light, (L,); NaN without any."""
-        return self._of_answered(np.mean)
-
-    @property
-    def largest(self) -> Array:
-        """Return the largest ΔE00 of the colours that are answered under each light, (L,); NaN without any."""
-        return self._of_answered(np.max)
-
-    def _of_answered(self, function: Callable[..., Array]) -> Array:
+    def answered(self) -> Array:
+        """Return the ΔE00 (k, L) of the colours that are answered; a row of NaN without any."""
         known = self.delta_e[~np.isnan(self.delta_e).any(axis=1)]
-        return function(known, axis=0) if len(known) else np.full(self.delta_e.shape[1], np.nan)
+        return known if len(known) else np.full((1, self.delta_e.shape[1]), np.nan)
 
 
 @dataclass(frozen=True, eq=False)

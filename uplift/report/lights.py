@@ -1,17 +1,16 @@
 """Quality of an emission table as a self-contained HTML page: exact colours, powers, and expected errors."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
 
 from uplift.colorimetry.srgb import hex_codes
-from uplift.common.arrays import Array
 from uplift.lights.lattice import chromaticity
 from uplift.lights.lookup import EmissionTable
 from uplift.lights.table import summarise
-from uplift.report.charts import Histogram, histogram_chart, linear_edges, log_edges, make_histogram
+from uplift.report.charts import histogram_chart, linear_edges, log_edges, make_histogram
 from uplift.report.measures import COLOURS, SEED
 from uplift.viz.chromaticity import draw_colours, draw_errors, draw_lamps
 from uplift.viz.figure import styled, to_page_svg
@@ -30,24 +29,13 @@ DIAGRAMS = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class LightAssessment:
-    """Answers of a table to random lights, and errors expected at its exact lamps."""
+def assess_lights(table: EmissionTable) -> dict[str, Any]:
+    """Assess an emission table by random lights and by its lamps.
 
-    round_trip: Histogram
-    """Distance in u′v′ of random lights from the answers."""
-    smallest_power: float
-    """Smallest power of these answers."""
-    expected_error: Histogram
-    """Expected ΔE00 of the ColorChecker lit by these answers instead of a measured lamp."""
-    lamp_errors: Array
-    """(E,) expected ΔE00 at the exact lamps, of another lamp of the same chromaticity."""
-    lamp_rgb: Array
-    """(E, 3) linear RGB of the exact lamps at luminance 1."""
-
-
-def assess_lights(table: EmissionTable) -> LightAssessment:
-    """Assess an emission table by random lights and by its lamps."""
+    ``round_trip`` is the distance in u′v′ of random lights from the answers, ``smallest_power`` that of these,
+    ``expected_error`` the ΔE00 of the ColorChecker lit by them instead of a measured lamp. ``lamp_errors`` (E,) are
+    those expected of another lamp of the chromaticity of an exact one, which has ``lamp_rgb`` (E, 3) at luminance 1.
+    """
     radiometry = table.data.radiometry
     xyz = np.random.default_rng(SEED).random((COLOURS, len(radiometry))) ** PEAKS @ radiometry
     power = table.spectrum_of_xyz(xyz)
@@ -55,19 +43,20 @@ def assess_lights(table: EmissionTable) -> LightAssessment:
     expected = table.expected_error(table.rgb_of_xyz(xyz))
     lamps = table.data.entries.spectra @ radiometry
     lamp_rgb = table.rgb_of_xyz(lamps / lamps[:, 1:2])
-    return LightAssessment(
-        round_trip=make_histogram(distance, log_edges(distance, MIN_DISTANCE)),
-        smallest_power=float(power.min()),
-        expected_error=make_histogram(expected, linear_edges(expected)),
-        lamp_errors=table.expected_error(lamp_rgb),
-        lamp_rgb=lamp_rgb,
-    )
+    return {
+        "round_trip": make_histogram(distance, log_edges(distance, MIN_DISTANCE)),
+        "smallest_power": float(power.min()),
+        "expected_error": make_histogram(expected, linear_edges(expected)),
+        "lamp_errors": table.expected_error(lamp_rgb),
+        "lamp_rgb": lamp_rgb,
+    }
 
 
 def render_light_report(table: EmissionTable, name: str, size: int) -> str:
     """Render the page of a table in a file of a name and a size in bytes. The same table gives the same text."""
     entries, assessment = table.data.entries, assess_lights(table)
-    brightest = np.clip(assessment.lamp_rgb / assessment.lamp_rgb.max(axis=1, keepdims=True), 0, 1)
+    lamp_rgb = assessment["lamp_rgb"]
+    brightest = np.clip(lamp_rgb / lamp_rgb.max(axis=1, keepdims=True), 0, 1)
     codes = hex_codes(brightest, table) if len(entries.names) else []
     return render(
         "report/templates/lights.html.j2",
@@ -78,7 +67,7 @@ def render_light_report(table: EmissionTable, name: str, size: int) -> str:
         provenance=table.data.provenance,
         count=COLOURS,
         diagrams=[(title, _diagram(draw, label, table)) for title, (draw, label) in DIAGRAMS.items()],
-        lamps=list(zip(entries.names, codes, entries.uv, entries.radius, assessment.lamp_errors, strict=True)),
+        lamps=list(zip(entries.names, codes, entries.uv, entries.radius, assessment["lamp_errors"], strict=True)),
         histogram_chart=histogram_chart,
     )
 

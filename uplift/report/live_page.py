@@ -27,10 +27,8 @@ def page(data: CubeData) -> str:
             hint="pass cube.fill_missing().data",
         )
     if data.sensor.space != SPACE:
-        raise OptionError(
-            f"a page shows images in sRGB, got a cube of {data.sensor.space}",
-            hint="build the cube without another RGB space",
-        )
+        problem = f"a page shows images in sRGB, got a cube of {data.sensor.space}"
+        raise OptionError(problem, hint="build the cube without another RGB space")
     table = make_table(data, "spectra")
     program = cube_program(data, table, "glsl", "spectra", "cube", "file")
     image = table.image()

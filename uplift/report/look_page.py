@@ -31,8 +31,7 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
     if not found or len(found[0].xyz) != 1:
         count = len(found[0].xyz) if found else 0
         raise OptionError(
-            f"a page shows one colour under one light or more, got {count} colours",
-            hint="give a single colour",
+            f"a page shows one colour under some lights, got {count} colours", hint="give a single colour"
         )
     sensor, rgb = cube.data.sensor, found[0].volumes.rgb[0]
     written = _written(cube, rgb)

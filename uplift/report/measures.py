@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from uplift.colorimetry import Light, delta_e_rgb, delta_e_spectra
 from uplift.colorimetry.expected_error import COVERAGE
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube
@@ -29,41 +29,27 @@ def mean_p95_max(delta_e: Array) -> dict[str, float]:
 MAX_LISTED = 24  # points over the threshold that a report lists
 
 
-@dataclass(frozen=True, eq=False)
-class Failures:
-    """Failures that a cube records."""
+def collect_failures(data: CubeData) -> dict[str, Any]:
+    """Failures that a cube records, as the report's JSON has them: the worst points over the threshold first.
 
-    over_threshold: int  # Number of lattice points over the threshold
-    worst_points: Indices  # (k,) Indices of the worst of these, worst first
-    improvements: tuple[dict[str, Any], ...]  # Steps of the improvement pass
-    left_out: tuple[str, ...]  # Entries outside the RGB space that a cube of an earlier version does not have
-    skipped: tuple[str, ...]  # Entries that the atlas reader could not use
-
-
-def collect_failures(data: CubeData) -> Failures:
-    """Collect the failures that a cube records."""
+    Entries are ``left_out`` by earlier versions only, and ``skipped`` where the atlas reader could not use them.
+    """
     points, recorded = data.points, data.provenance
     failed = np.isin(points.status, (Status.UNFITTED, Status.UNREALISABLE))
     rows = np.flatnonzero(failed | ~(points.distance <= data.threshold))
-    return Failures(
-        over_threshold=len(rows),
-        worst_points=rows[np.argsort(-points.distance[rows], kind="stable")][:MAX_LISTED],
-        improvements=tuple(recorded.get("improvements", ())),
-        left_out=tuple(recorded.get("left_out", ())) if data.atlas.outside is None else (),
-        skipped=tuple(recorded.get("skipped", ())),
-    )
+    worst = rows[np.argsort(-points.distance[rows], kind="stable")][:MAX_LISTED]
+    columns = zip(data.lattice.points[worst], points.rgb[worst], points.distance[worst], strict=True)
+    return {
+        "over_threshold": len(rows),
+        "worst": [dict(zip(("rgb", "lattice_rgb", "distance"), row, strict=True)) for row in columns],
+        "improvements": tuple(recorded.get("improvements", ())),
+        "left_out": tuple(recorded.get("left_out", ())) if data.atlas.outside is None else (),
+        "skipped": tuple(recorded.get("skipped", ())),
+    }
 
 
-@dataclass(frozen=True, eq=False)
-class Smoothness:
-    """rms differences over wavelength between the spectra of neighbours along an axis."""
-
-    differences: NDArray[np.float32]  # (k,) Difference of every pair of neighbours, in units of reflectance
-    steepest: Array  # (2, 3) Linear RGB of the pair that differs most
-
-
-def compute_smoothness(data: CubeData) -> Smoothness:
-    """Compare the spectra of all neighbours, each pair once.
+def compute_smoothness(data: CubeData) -> tuple[NDArray[np.float32], Array]:
+    """rms differences (k,) over wavelength between neighbours, each pair once, and RGB (2, 3) of the largest's pair.
 
     The lattice is processed by planes of equal red: spectra of two planes are in memory at a time.
     """
@@ -82,7 +68,7 @@ def compute_smoothness(data: CubeData) -> Smoothness:
             parts.append((rms[known], high[known], high[known] - step))
     rms, high, low = map(np.concatenate, zip(*parts, strict=True))
     steepest = [each[rms.argmax()] for each in (low, high)]
-    return Smoothness(rms.astype(np.float32), data.lattice.target(np.array(steepest)))
+    return rms.astype(np.float32), data.lattice.target(np.array(steepest))
 
 
 COLOURS = 4096
@@ -116,10 +102,8 @@ class Calibration:
     count: int  # Number of entries
     actual: float  # Mean that they should have had, so that 68 % of the entries were within
     predicted: float  # Mean of the standard errors
-    # Shares in [0, 1] of the entries whose error is at most its standard error, and its error bound
-    within_error: float
-    # Shares in [0, 1] of the entries whose error is at most its standard error, and its error bound
-    within_bound: float
+    within_error: float  # Fraction of the entries whose error is at most its standard error
+    within_bound: float  # The same of its error bound
 
     @property
     def verdict(self) -> int:

@@ -23,7 +23,7 @@ def to_json(assessment: Assessment) -> dict[str, Any]:
             "cube": assessment.name,
             "bytes": assessment.size,
             "build": assessment.facts,
-            "failures": _failures(assessment),
+            "failures": {"status": assessment.facts["status"], **assessment.failures},
             "fitting_distance": assessment.distance,
             "round_trip": {
                 "colours": assessment.round_trips["spectra"].counts.sum(),
@@ -64,25 +64,6 @@ def swatches(errors: EntryErrors, sensor: Sensor) -> list[tuple[str, ...]]:
     """``#rrggbb`` of every entry under a light: target, answer and, for the cube's own entries, the lattice."""
     spectra = [errors.target, errors.answers.spectra, *([errors.lattice.spectra] if errors.lattice else [])]
     return list(zip(*(hex_codes(sensor.rgb(each)) for each in spectra), strict=True))
-
-
-def _failures(assessment: Assessment) -> dict[str, Any]:
-    failures, data = assessment.failures, assessment.data
-    return {
-        "status": assessment.facts["status"],
-        "over_threshold": failures.over_threshold,
-        "worst": [
-            {
-                "rgb": data.lattice.points[point],
-                "lattice_rgb": data.points.rgb[point],
-                "distance": data.points.distance[point],
-            }
-            for point in failures.worst_points
-        ],
-        "improvements": failures.improvements,
-        "left_out": failures.left_out,
-        "skipped": failures.skipped,
-    }
 
 
 def _crowding(assessment: Assessment) -> dict[str, Any] | None:
@@ -131,7 +112,7 @@ def _entries(errors: EntryErrors, lights: tuple[Sensor, ...]) -> list[dict[str, 
 
 def _by_light(other: Answers, lights: tuple[Sensor, ...]) -> dict[str, Any]:
     """Errors of another method, in the order of the entries."""
-    columns = zip(lights, other.mean, other.largest, other.delta_e.T, strict=True)
+    columns = zip(lights, other.answered.mean(axis=0), other.answered.max(axis=0), other.delta_e.T, strict=True)
     return {sensor.illuminant: {"mean": mean, "max": most, "entries": each} for sensor, mean, most, each in columns}
 
 
@@ -180,12 +161,10 @@ def _looks(assessment: Assessment) -> Iterator[dict[str, Any]]:
 
 
 def _failed_points(assessment: Assessment) -> Iterator[dict[str, Any]]:
-    data, points = assessment.data, assessment.failures.worst_points
-    target, actual = data.lattice.points[points], data.points.rgb[points].astype(float)
-    codes = zip(hex_codes(target, data.sensor), hex_codes(actual, data.sensor), strict=True)
-    for row, pair in enumerate(codes):
-        distance = float(data.points.distance[points[row]])
-        yield {"codes": pair, "target": target[row], "actual": actual[row], "distance": distance}
+    for each in assessment.failures["worst"]:
+        target, actual = each["rgb"], each["lattice_rgb"].astype(float)
+        codes = hex_codes(np.array([target, actual]), assessment.data.sensor)
+        yield {"codes": codes, "target": target, "actual": actual, "distance": float(each["distance"])}
 
 
 def _compared(assessment: Assessment, count: int) -> Iterator[dict[str, list[Swatch]]]:

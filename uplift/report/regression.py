@@ -64,11 +64,7 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
     """Compare a stored cube with a rebuilt one."""
     nodes, other = stored.lattice.nodes, rebuilt.lattice.nodes
     if nodes.shape != other.shape or (np.abs(nodes - other) > NODE_TOLERANCE).any():
-        raise CubeFileError(
-            "its lattice is not the one that its options give",
-            path=path,
-            hint="build the cube again",
-        )
+        raise CubeFileError("its lattice is not the one of its options", path=path, hint="build the cube again")
     compared = _well_determined(stored) & (stored.points.present | rebuilt.points.present)
     pairs = pair_entries(stored, rebuilt)
     first, second = (

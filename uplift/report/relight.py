@@ -58,13 +58,9 @@ class Rendering:
         description = DESCRIPTIONS.get(self.light)
         return f"{self.light}, {description}" if description else self.light
 
-    def difference(self, first: str, second: str) -> Array:
-        """Return ΔE00 (height, width) between two methods, relative to the white of the light."""
-        return self._differences[first, second]
-
     @cached_property
-    def _differences(self) -> dict[tuple[str, str], Array]:
-        """All pairs, as a page, a figure and a table need them several times."""
+    def differences(self) -> dict[tuple[str, str], Array]:
+        """ΔE00 (height, width) between two methods, relative to the white of the light, for all pairs of them."""
         lab = {method: rgb_to_lab(self.sensor, colours) for method, colours in self.colours.items()}
         return {pair: delta_e_2000(*map(lab.__getitem__, pair)) for pair in combinations(lab, 2)}
 
@@ -75,7 +71,7 @@ class Rendering:
     @property
     def map_limit(self) -> float:
         """ΔE00 at the dark end of maps: nearly all differences from `RGB_PRODUCT` are below."""
-        differences = [self.difference(RGB_PRODUCT, method) for method in self.colours if method != RGB_PRODUCT]
+        differences = [self.differences[RGB_PRODUCT, method] for method in self.colours if method != RGB_PRODUCT]
         return max(MIN_MAP_LIMIT, math.ceil(max(np.quantile(each, 0.95) for each in differences)))
 
 
@@ -165,10 +161,10 @@ def _draw_row(figure: Any, axes: Sequence[Any], image: Relit, rendering: Renderi
     for each, method in zip(axes, image.methods, strict=False):
         show_image(each, rendering.screen_codes(method), interpolation="antialiased")
         if method != RGB_PRODUCT:
-            found = mean_p95_max(rendering.difference(RGB_PRODUCT, method))
+            found = mean_p95_max(rendering.differences[RGB_PRODUCT, method])
             text = f"ΔE00 from RGB × light: mean {found['mean']:.1f}, 95 % {found['p95']:.1f}"
             each.set_xlabel(text, fontsize=9, color=GREY)
-    difference = rendering.difference(RGB_PRODUCT, image.methods[-1])
+    difference = rendering.differences[RGB_PRODUCT, image.methods[-1]]
     drawn = show_image(axes[-1], difference, cmap=colour_map(), vmin=0, vmax=rendering.map_limit)
     bar = figure.colorbar(drawn, ax=axes[-1], fraction=0.04, pad=0.02, extend="max")
     bar.outline.set_visible(False)
@@ -183,7 +179,7 @@ def relit_page(relit: Sequence[Relit]) -> str:
     lights = [rendering.light_label for rendering in first.renderings]
     last = methods[-1]
     changes = [
-        np.mean([image.renderings[number].difference(RGB_PRODUCT, last).mean() for image in relit])
+        np.mean([image.renderings[number].differences[RGB_PRODUCT, last].mean() for image in relit])
         for number in range(len(lights))
     ]
     limits = [max(image.renderings[number].map_limit for image in relit) for number in range(len(lights))]
@@ -207,25 +203,22 @@ def _section(image: Relit, limits: Sequence[float]) -> dict[str, Any]:
     A layer has the number of its ``light``, and ``shows`` the number of a method or 'first-second' of a map. The
     original, whose number follows those of the methods, has no light.
     """
-    own: dict[str, Any] = {
-        "light": "",
-        "shows": str(len(image.methods)),
-        "label": image.name,
-        "source": _encoded(image.original),
-    }
-    layers, rows = [own], []
+
+    def layer(light: int | str, shows: str, label: str, codes: NDArray[np.uint8], kind: str = "jpeg") -> dict[str, Any]:
+        return {"light": light, "shows": shows, "label": label, "source": _encoded(codes, kind)}
+
+    layers, rows = [layer("", str(len(image.methods)), image.name, image.original)], []
     for number, (rendering, limit) in enumerate(zip(image.renderings, limits, strict=True)):
         for method, name in enumerate(image.methods):
-            label, source = f"{image.name} under {rendering.light}, {name}", _encoded(rendering.screen_codes(name))
-            layers.append({"light": number, "shows": str(method), "label": label, "source": source})
+            label = f"{image.name} under {rendering.light}, {name}"
+            layers.append(layer(number, str(method), label, rendering.screen_codes(name)))
         for (one, first), (other, second) in combinations(enumerate(image.methods), 2):
-            difference = rendering.difference(first, second)
+            difference = rendering.differences[first, second]
             label = f"ΔE00 map of {image.name} under {rendering.light}: {first}, {second}"
-            source = _encoded(ramp_codes(np.rint(255 * np.clip(difference / limit, 0, 1)) / 255), "png")
-            layers.append({"light": number, "shows": f"{one}-{other}", "label": label, "source": source})
-            rows.append(
-                (rendering.light, first, second, *(f"{each:.2f}" for each in mean_p95_max(difference).values()))
-            )
+            codes = ramp_codes(np.rint(255 * np.clip(difference / limit, 0, 1)) / 255)
+            layers.append(layer(number, f"{one}-{other}", label, codes, "png"))
+            errors = (f"{each:.2f}" for each in mean_p95_max(difference).values())
+            rows.append((rendering.light, first, second, *errors))
     height, width, _ = image.original.shape
     size = {"width": width, "height": height, "reduction": image.reduction}
     return {"name": image.name, **size, "layers": layers, "rows": rows}
