@@ -12,9 +12,10 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, lab
 from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.common.arrays import Array
-from uplift.lab.study.moments import ALL_ATLASES, STEP, TECHNIQUES, MomentsStudy, Technique, fine_grid, study_moments
+from uplift.lab.study.moments import ALL_ATLASES, TECHNIQUES, MomentsStudy, Technique, study_moments
 from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
 from uplift.models.moments import WARPS
+from uplift.scene.representations import samples
 
 PICTURES = DOCS / "moments"
 FLOATS = (3, 5, 9, 13, 16)
@@ -95,8 +96,8 @@ def under_lights(study: MomentsStudy, floats: int, technique: Technique) -> dict
 def warp_errors(measured: Array, warp: str, floats: int) -> dict[str, Any]:
     """Return ΔE76 under D65 and the rms difference of reflectances (E, 401) from those of their mirrored moments."""
     technique, light = Technique(mirrored=True, warped=warp != "none", warp=warp), observer.light("D65")
-    original = measured[:, :: round(observer.STEP / STEP)]
-    spectra = technique.reconstruct(technique.moments(measured, fine_grid(), floats - 1), observer.grid())
+    original = measured[:, :: samples.TABLE_STRIDE]
+    spectra = technique.reconstruct(technique.moments(measured, samples.wavelengths(), floats - 1), observer.grid())
     delta_e = delta_e_1976(*(lab(each @ light.xyz.T, light.white) for each in (spectra, original)))
     rms = np.sqrt(((spectra - original) ** 2).mean(axis=1))
     return {"warp": warp, "floats": floats, "mean": delta_e.mean(), "max": delta_e.max(), "rms": rms.mean()}

@@ -12,9 +12,9 @@ from tests.helpers import raises
 from uplift.atlas import Atlas, read_atlas
 from uplift.colorimetry import observer
 from uplift.common.errors import AtlasError, OptionError
-from uplift.lab.study import complex_moments
-from uplift.lab.study.moments import ALL_ATLASES, MAX_MOMENTS, TECHNIQUES, fine_grid, study_moments
+from uplift.lab.study.moments import ALL_ATLASES, MAX_MOMENTS, TECHNIQUES, study_moments
 from uplift.models import Moments, duality, evaluate
+from uplift.scene.representations.samples import wavelengths
 
 MIRRORED = [technique for technique in TECHNIQUES if technique.mirrored]
 UNMIRRORED = [technique for technique in TECHNIQUES if not technique.mirrored]
@@ -55,10 +55,10 @@ def test_moments_equal_the_integrals(technique):
 @pytest.mark.parametrize("count", [0, 1, 4, 15])
 def test_reconstruction_has_its_complex_moments(technique, count):
     """Computed by the trapezoid rule on the circle, which converges exponentially."""
-    moments = technique.moments(bumps(20, fine_grid()), fine_grid(), count)
+    moments = technique.moments(bumps(20, wavelengths()), wavelengths(), count)
     circle = -np.pi + 2 * np.pi * np.arange(1 << 14) / (1 << 14)
-    waves = complex_moments.fourier_basis(circle, count + 1)
-    multipliers = duality.multipliers_from_moments(moments, complex_moments.try_multipliers)
+    waves = duality.fourier_basis(circle, count + 1)
+    multipliers = duality.multipliers_from_moments(moments, duality.try_complex_multipliers)
     reflectance = 0.5 + np.arctan((multipliers @ waves.T).real) / np.pi
     again = reflectance @ np.exp(-1j * circle[:, None] * np.arange(count + 1)) / len(circle)
     np.testing.assert_allclose(again, moments, rtol=0, atol=1e-10)
@@ -69,7 +69,7 @@ def test_reconstruction_has_its_complex_moments(technique, count):
 def test_mirrored_moments_are_those_of_cubes(technique, count):
     """The model of cubes gives the same spectra and the same moments."""
     model = Moments(count, warp="vision" if technique.warped else "none")
-    moments = technique.moments(bumps(20, fine_grid()), fine_grid(), count - 1)
+    moments = technique.moments(bumps(20, wavelengths()), wavelengths(), count - 1)
     multipliers = model.from_storage(moments)
     np.testing.assert_allclose(
         technique.reconstruct(moments, observer.grid()),
@@ -82,8 +82,8 @@ def test_mirrored_moments_are_those_of_cubes(technique, count):
 
 @by_label(TECHNIQUES)
 def test_black_white_and_a_step_are_reconstructed(technique):
-    extremes = np.stack([np.zeros(401), np.ones(401), (fine_grid() > 580).astype(float)])
-    actual = technique.reconstruct(technique.moments(extremes, fine_grid(), 15), observer.grid())
+    extremes = np.stack([np.zeros(401), np.ones(401), (wavelengths() > 580).astype(float)])
+    actual = technique.reconstruct(technique.moments(extremes, wavelengths(), 15), observer.grid())
     assert ((actual >= 0) & (actual <= 1)).all()
     np.testing.assert_allclose(actual[:2], [[0] * 81, [1] * 81], atol=1e-4)
 

@@ -10,11 +10,10 @@ from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.solid import solid
-from uplift.common.errors import OptionError, UnknownNameError
+from uplift.common.errors import UnknownNameError
 from uplift.common.progress import Progress
 from uplift.lab.study import stability
 from uplift.lab.study.stability import (
-    NO_ATLAS,
     QUICK_DESIGN,
     SPACES,
     SYNTHETIC_ATLASES,
@@ -60,14 +59,6 @@ def test_design_contains_grids_and_sample_once():
             assert replace(variant, **{"dim": 17} | fixed | {axis: value}) in configs
     five = {(config.space, config.model) for config in configs if config.dim == 17}
     assert five >= {(space, model) for space in SPACES for model in ("moments", "sigmoid")}
-
-
-def test_design_uses_only_the_given_values():
-    axes = DesignSpace(dims=(6,), spaces=("ACEScg",), models=("sigmoid",), thresholds=(1e-3,), atlases=(NO_ATLAS,))
-    assert axes.configs() == (RunConfig("sigmoid", 3, 6, "ACEScg", 1e-3),)
-    assert DesignSpace(samples=0).sample() == ()
-    with raises(OptionError, "option"):
-        DesignSpace(spaces=())
 
 
 def test_sample_covers_every_value_of_every_axis():

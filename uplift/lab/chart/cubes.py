@@ -201,20 +201,9 @@ def _method(options: CubeOptions, lookup: str) -> Method:
         label += " f32" if of_dtype else ""
         prepare = partial(prepare_lookup, mode=mode, dtype=fields["dtype"])
         call = f'cube.reflectance(rgb, mode="{mode}"{of_dtype})'
-    return Method(
-        method=name,
-        title=title,
-        label=label,
-        family=family,
-        source="this package",
-        mode=mode,
-        build=options.command,
-        call=call,
-        prepare=partial(prepare, options=options),
-        judge=ours,
-        claimed_error=0.01 if exact else None,
-        **fields,
-    )
+    fields |= {"method": name, "title": title, "label": label, "family": family, "mode": mode, "call": call}
+    fields |= {"build": options.command, "judge": ours, "claimed_error": 0.01 if exact else None}
+    return Method(source="this package", prepare=partial(prepare, options=options), **fields)
 
 
 METHODS = tuple(_method(options, lookup) for options, lookups in JOBS.items() for lookup in lookups.split())

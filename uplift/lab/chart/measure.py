@@ -85,14 +85,8 @@ def call_times(uplift: UpliftRgb, dtype: str, effort: Effort) -> dict[str, float
             count = affordable(uplift, dtype, size, effort.longest)
             ns = _time_batch(uplift, dtype, count, effort)
         last = size
-        key = f"ns_{size}"
-        numbers |= {
-            key: ns.median,
-            f"{key}_least": ns.min,
-            f"{key}_most": ns.max,
-            f"{key}_runs": ns.runs,
-            f"{key}_colours": count,
-        }
+        values = {"": ns.median, "_least": ns.min, "_most": ns.max, "_runs": ns.runs, "_colours": count}
+        numbers |= {f"ns_{size}{suffix}": value for suffix, value in values.items()}
     reference = max((size for size in effort.batches if size <= REFERENCE), default=effort.batches[0])
     return numbers | {"time_ns": numbers[f"ns_{reference}"]}
 
@@ -241,9 +235,8 @@ def _spectra(method: Method, uplift: UpliftRgb, task: Task, rgb: Array) -> tuple
     if not finite.all():
         raise BrokenError(f"{(~finite).sum()} of {len(spectra)} spectra are not finite")
     if spectra.min() < low or spectra.max() > high:
-        raise BrokenError(
-            f"reflectances from {spectra.min():.4g} to {spectra.max():.4g}, {low:g} to {high:g} are claimed"
-        )
+        found = f"reflectances from {spectra.min():.4g} to {spectra.max():.4g}"
+        raise BrokenError(f"{found}, {low:g} to {high:g} are claimed")
     return rgb[: len(spectra)], spectra.astype(float)
 
 
@@ -258,8 +251,5 @@ def _check_batch(uplift: UpliftRgb, dtype: str, effort: Effort) -> None:
 
 
 def _summary(name: str, values: Array) -> dict[str, float]:
-    return {
-        f"{name}_mean": float(values.mean()),
-        f"{name}_p99": float(np.quantile(values, 0.99)),
-        f"{name}_max": float(values.max()),
-    }
+    statistics = {"mean": values.mean(), "p99": np.quantile(values, 0.99), "max": values.max()}
+    return {f"{name}_{key}": float(value) for key, value in statistics.items()}

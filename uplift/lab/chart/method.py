@@ -112,12 +112,9 @@ def make_task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effo
     measured = [resample(part, sensor.wavelengths).values for part in (kept, others)]
     own, unseen = (spectra[sensor.contains(sensor.rgb(spectra))] for spectra in measured)
     if min(len(own), len(unseen)) < MIN_SPECTRA:
-        raise AtlasError(
-            f"at least {MIN_SPECTRA} entries within sRGB must build and test cubes each, "
-            f"got {len(own)} and {len(unseen)}",
-            code="too-few-entries",
-            hint="give an atlas of 8 or more entries",
-        )
+        problem = f"at least {MIN_SPECTRA} entries within sRGB must build and test cubes each"
+        hint = "give an atlas of 8 or more entries"
+        raise AtlasError(f"{problem}, got {len(own)} and {len(unseen)}", code="too-few-entries", hint=hint)
     rng = np.random.default_rng(SEED)
     rgb = np.concatenate([rng.random((colours, 3)), edges()])
     facts = {

@@ -27,7 +27,7 @@ from uplift.models.sigmoid import evaluate_unscaled
 VARIANT, COMPILED = "scalar_spectral", "llvm_ad_spectral"
 """The spectral variant that does not need LLVM, and the vectorised one."""
 XYZ_TO_RGB = np.array(
-    [[3.240479, -1.537150, -0.498535], [-0.969256, 1.875991, 0.041556], [0.055648, -0.204043, 1.057311]]
+    [[3.240479, -1.53715, -0.498535], [-0.969256, 1.875991, 0.041556], [0.055648, -0.204043, 1.057311]]
 )
 """From XYZ to linear sRGB, in rgb2spec, the program that fitted the table."""
 AT_ONCE = 4

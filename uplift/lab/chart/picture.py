@@ -73,19 +73,11 @@ def panel(criterion: Criterion, chart: Chart) -> Panel:
     """Return the panel of a criterion."""
     points = []
     for result in drawn_results(criterion, chart):
-        time, error = criterion.point(result) or (1.0, 1.0)
-        points.append(
-            Point(
-                chart.results.index(result),
-                result.label,
-                time,
-                error,
-                COLOURS.get(result.family, OTHER),
-                MODES.get(result.mode, "*"),
-                hollow=result.numbers[f"ns_{criterion.batch}_colours"] < criterion.batch,
-                named=not result.build and not result.method.endswith("-float32"),
-            )
-        )
+        place, row = criterion.point(result) or (1.0, 1.0), chart.results.index(result)
+        style = COLOURS.get(result.family, OTHER), MODES.get(result.mode, "*")
+        is_part = result.numbers[f"ns_{criterion.batch}_colours"] < criterion.batch
+        is_named = not result.build and not result.method.endswith("-float32")
+        points.append(Point(row, result.label, *place, *style, hollow=is_part, named=is_named))
     title = f"{criterion.title}\n{criterion.unit}, {criterion.colours}"
     return Panel(title, criterion.axis, format_time, points)
 
@@ -117,9 +109,8 @@ def draw_picture(chart: Chart) -> Any:
     axes.spines[["top", "right"]].set_visible(False)
     axes.xaxis.set_major_formatter(lambda value, _: format_time(value))
     axes.axhspan(0, 1, color=PALE, alpha=0.45, linewidth=0)
-    axes.annotate(
-        "just visible: 1", (0.99, 1), xycoords=("axes fraction", "data"), color=GREY, ha="right", va="top", size=11
-    )
+    pinned: dict[str, Any] = {"xycoords": ("axes fraction", "data"), "ha": "right", "va": "top"}
+    axes.annotate("just visible: 1", (0.99, 1), color=GREY, size=11, **pinned)
     labels = []
     for name, place, what in drawn:
         colour, face = (ACCENT if name == OURS else GREY), ("white" if what else None)

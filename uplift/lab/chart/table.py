@@ -193,8 +193,7 @@ class Criterion:
     def front(self, chart: Chart) -> tuple[MethodResult, ...]:
         """Return the Pareto front, fastest first: each is clearly more accurate than all faster methods."""
         points = {result: point for result in chart.measured if (point := self.point(result)) is not None}
-        results = tuple(points)
-        return tuple(results[row] for row in pareto_front(list(points.values())))
+        return tuple(list(points)[row] for row in pareto_front(list(points.values())))
 
 
 UNSEEN = "Unseen materials, mean of five lights"
@@ -252,8 +251,8 @@ class Requirement:
         """Return the conditions of the error as text."""
         if self.light == DEFAULT_ILLUMINANT:
             return "of the round trip"
-        lights = f"under {self.light}" if self.light else f"under {', '.join(CHART_LIGHTS)}"
-        return f"{lights}, for {'materials of the atlas' if self.own else 'unseen materials'}"
+        materials = "materials of the atlas" if self.own else "unseen materials"
+        return f"under {self.light or ', '.join(CHART_LIGHTS)}, for {materials}"
 
 
 SITUATIONS = {
@@ -282,14 +281,11 @@ def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
         raise _unmet(f"no cube takes at most {longest:g} ns per RGB", f"the fastest, {fastest.method}, takes {took}")
     best = min(times, key=lambda cube: cube.numbers[name])
     smallest = best.numbers[name]
-    sufficient = [
-        cube for cube in times if cube.numbers[name] <= (smallest / CLEAR_RATIO if largest is None else largest)
-    ]
+    limit = smallest / CLEAR_RATIO if largest is None else largest
+    sufficient = [cube for cube in times if cube.numbers[name] <= limit]
     if not sufficient:
-        raise _unmet(
-            f"no cube has at most ΔE00 {largest:g} {requirement.description}",
-            f"the most accurate, {best.method}, has {format_error(smallest)}",
-        )
+        problem = f"no cube has at most ΔE00 {largest:g} {requirement.description}"
+        raise _unmet(problem, f"the most accurate, {best.method}, has {format_error(smallest)}")
     return min(sufficient, key=lambda cube: (cube.numbers["bytes"] * requirement.smallest, times[cube]))
 
 

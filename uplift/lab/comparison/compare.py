@@ -181,18 +181,13 @@ def compare(
     for done, representation in enumerate(representations, 1):
         floats = float(representation.storage(representation.encode_surface(scene.surfaces)).mean())
         for light_set in scene.sets:
-            light_floats = representation.storage(representation.encode_light(light_set.powers)).mean()
-            results.append(
-                RepresentationResult(
-                    representation.name,
-                    representation.family,
-                    light_set.name,
-                    error_statistics(representation, scene, light_set),
-                    floats,
-                    float(light_floats),
-                    _time(representation, scene, light_set, quick=quick),
-                )
+            light_floats = float(representation.storage(representation.encode_light(light_set.powers)).mean())
+            errors, ns = (
+                error_statistics(representation, scene, light_set),
+                _time(representation, scene, light_set, quick),
             )
+            names = representation.name, representation.family, light_set.name
+            results.append(RepresentationResult(*names, errors, floats, light_floats, ns))
         progress(Progress("representations", done, len(representations)))
     results.sort(key=lambda result: (list(sets).index(result.lights), result.statistics.mean))
     facts = {**environment(), "products": f"{len(scene.surfaces)} surfaces under each light"}
@@ -214,9 +209,8 @@ def represent(representation: Representation, scene: Scene, names: Sequence[str]
         if outside:
             problem = f"{outside} of {len(names)} spectra leave [0, 1] as {representation.name} and are clipped"
             warnings.warn(UpliftWarning(problem, code="entry-clipped"), stacklevel=3)
-        return Atlas(
-            tuple(Entry(name, samples.wavelengths(), values) for name, values in zip(names, clipped, strict=True))
-        )
+        pairs = zip(names, clipped, strict=True)
+        return Atlas(tuple(Entry(name, samples.wavelengths(), values) for name, values in pairs))
 
     return atlas(names, surfaces), atlas(lights, powers / powers.max(axis=1, keepdims=True))
 
@@ -228,13 +222,11 @@ def error_statistics(representation: Representation, scene: Scene, light_set: Li
     xyz = np.stack([representation.xyz(representation.multiply(light, surfaces)) for light in lights])
     errors = delta_e_2000(light_set.lab(xyz), scene.reference(light_set))
     if not np.isfinite(errors).all():
-        raise UpliftError(
-            f"{representation.name} returns values that are not finite under {light_set.title}",
-        )
+        raise UpliftError(f"{representation.name} returns values that are not finite under {light_set.title}")
     return compute_statistics(errors)
 
 
-def _time(representation: Representation, scene: Scene, light_set: LightSet, *, quick: bool) -> Spread:
+def _time(representation: Representation, scene: Scene, light_set: LightSet, quick: bool) -> Spread:
     """CPU time of a product, in ns: each light of a set in turn, with many surfaces per call."""
     rows, lap, runs = QUICK_TIMING if quick else TIMING
     surfaces = representation.encode_surface(np.resize(scene.surfaces, (rows, scene.surfaces.shape[1])))
@@ -284,17 +276,10 @@ def pareto(comparison: Comparison, lights: str) -> list[RepresentationResult]:
 def records(comparison: Comparison) -> list[dict[str, Any]]:
     """Convert the results of a comparison to records."""
     return [
-        {
-            "lights": result.lights,
-            "representation": result.name,
-            "family": result.family,
-            **result.statistics._asdict(),
-            "floats": result.floats,
-            "light_floats": result.light_floats,
-            "ns": result.ns.median,
-            "ns_least": result.ns.min,
-            "ns_most": result.ns.max,
-        }
+        {"lights": result.lights, "representation": result.name, "family": result.family}
+        | result.statistics._asdict()
+        | {"floats": result.floats, "light_floats": result.light_floats}
+        | {"ns": result.ns.median, "ns_least": result.ns.min, "ns_most": result.ns.max}
         for result in comparison.results
     ]
 
@@ -338,11 +323,10 @@ def tune_filters(
     progress: ProgressCallback = ignore_progress,
 ) -> tuple[TunedFilter, ...]:
     """Search the best filter of each kind, for each number of samples and each set of lights."""
-    results = [
-        TunedFilter(NONE, count, light_set.name, None, error_statistics(samples.point_samples(count), scene, light_set))
-        for count in counts
-        for light_set in scene.sets
-    ]
+    results = []
+    for count, light_set in product(counts, scene.sets):
+        errors = error_statistics(samples.point_samples(count), scene, light_set)
+        results.append(TunedFilter(NONE, count, light_set.name, None, errors))
     tasks = list(product(kinds, counts))
     for done, (kind, count) in enumerate(tasks, 1):
         tried = list(filters.candidates(kind, stride))

@@ -7,7 +7,7 @@ from itertools import chain
 import numpy as np
 
 from uplift.colorimetry import observer
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array
 from uplift.design.palette.factor import factor_model
 from uplift.fit.entries import fit_entries
 from uplift.fit.problem import Problem
@@ -22,10 +22,10 @@ STRIDE = 40
 """Dense samples between those by which a spectrum is recognised."""
 
 
-def nearest_rows(spectra: Array, known: Array) -> Indices:
-    """Rows (n,) of the known spectra (k, 401) that spectra (n, 401) are."""
+def _known_rows(known: Array, codes: Array, spectra: Array) -> Array:
+    """Codes (n, C) of spectra (n, 401), from those (k, C) of the known spectra (k, 401) that they are."""
     difference = spectra[:, None, ::STRIDE] - known[:, ::STRIDE]
-    return np.asarray((difference**2).sum(axis=-1).argmin(axis=1))
+    return np.asarray(codes[(difference**2).sum(axis=-1).argmin(axis=1)])
 
 
 def scene_representations(scene: Scene) -> tuple[Representation, ...]:
@@ -48,7 +48,7 @@ def fitted_wavelengths(sampling: Sampling, lights: Array) -> Representation:
     return Representation(
         f"FW{len(sampling)}",
         "fitted wavelengths",
-        lambda power: sampling.powers[nearest_rows(power, lights)],
+        partial(_known_rows, lights, sampling.powers),
         lambda light: light @ sampling.to_xyz,
         surface_encoder=lambda reflectance: reflectance @ points,
     )
@@ -80,10 +80,5 @@ def _moments(scene: Scene) -> Iterator[Representation]:
     for count in MOMENTS:
         model = Moments(count)
         fitted = fit_entries(Problem(sensor, model, lights), measured, sensor.rgb(measured))
-        stored = model.to_storage(fitted.multipliers)
-        encode = partial(_stored_rows, stored, scene.surfaces)
+        encode = partial(_known_rows, scene.surfaces, model.to_storage(fitted.multipliers))
         yield tabulated(f"CM{count}", "moments of cubes", model, encode)
-
-
-def _stored_rows(stored: Array, surfaces: Array, reflectance: Array) -> Array:
-    return stored[nearest_rows(reflectance, surfaces)]

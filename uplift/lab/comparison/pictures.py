@@ -1,6 +1,7 @@
 """Figures of a comparison, and its page: box plots as in Kment 2011, figures 6.1 and 6.2, and error over cost."""
 
 from collections.abc import Callable, Sequence
+from itertools import product
 from typing import Any
 
 from markupsafe import Markup
@@ -57,26 +58,17 @@ def names(comparison: Comparison) -> list[str]:
 def cost_panels(comparison: Comparison) -> list[Panel]:
     """Return the panels of error over each cost, for each set of lights."""
     rows = names(comparison)
-    return [
-        Panel(
-            f"{capitalise(title)}, ΔE00 of 97.5 %",
-            axis,
-            text,
-            [
-                Point(
-                    rows.index(result.name),
-                    result.name,
-                    cost(result),
-                    max(result.statistics.q97_5, MIN_ERROR),
-                    COLOURS.get(result.family, OTHER),
-                    group=result.family,
-                )
-                for result in sorted(comparison.of(name), key=lambda result: result.floats)
-            ],
-        )
-        for name, title in comparison.sets.items()
-        for axis, (cost, text) in COSTS.items()
-    ]
+
+    def point(result: RepresentationResult, cost: float) -> Point:
+        error, colour = max(result.statistics.q97_5, MIN_ERROR), COLOURS.get(result.family, OTHER)
+        return Point(rows.index(result.name), result.name, cost, error, colour, group=result.family)
+
+    panels = []
+    for (name, title), (axis, (cost, text)) in product(comparison.sets.items(), COSTS.items()):
+        results = sorted(comparison.of(name), key=lambda result: result.floats)
+        points = [point(result, cost(result)) for result in results]
+        panels.append(Panel(f"{capitalise(title)}, ΔE00 of 97.5 %", axis, text, points))
+    return panels
 
 
 def write_costs(comparison: Comparison, path: StrPath, *, force: bool = False) -> None:

@@ -88,12 +88,9 @@ def _evaluate(cubes: dict[str, Cube], known: Array, measured: Array) -> HoldoutS
     predicted = {name: other.reflectance(rgb) for name, other in cubes.items()}
     errors = {name: spectrum_errors(spectra, measured) for name, spectra in predicted.items()}
     light = observer.light(cube.data.error_illuminant, sensor.observer)
-    return HoldoutSplit(
-        errors | {LOCAL_LINEAR: spectrum_errors(local_linear(cube.data, known, rgb), measured)},
-        delta_e_spectra(light, predicted[HALF], measured),
-        cube.standard_error(rgb),
-        cube.error_bound(rgb),
-    )
+    errors[LOCAL_LINEAR] = spectrum_errors(local_linear(cube.data, known, rgb), measured)
+    actual = delta_e_spectra(light, predicted[HALF], measured)
+    return HoldoutSplit(errors, actual, cube.standard_error(rgb), cube.error_bound(rgb))
 
 
 def spectrum_errors(predicted: Array, measured: Array, lights: Sequence[str] = HELD_OUT_LIGHTS) -> Answers:
@@ -105,9 +102,9 @@ def split_records(splits: Sequence[HoldoutSplit]) -> list[dict[str, Any]]:
     """Return mean errors over the splits by method; that of the cube with half the atlas has its calibration too."""
     records: list[dict[str, Any]] = []
     for method in splits[0].errors:
-        rms, *delta_e = np.mean([split.errors[method].means() for split in splits], axis=0).tolist()
-        record = {"cube": method, "colours": len(splits[0].actual), "rms": rms}
-        records.append(record | dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True)))
+        means = np.mean([split.errors[method].means() for split in splits], axis=0).tolist()
+        named = dict(zip(("rms", *HELD_OUT_LIGHTS), means, strict=True))
+        records.append({"cube": method, "colours": len(splits[0].actual)} | named)
     # Over all splits together; small atlases have no standard errors.
     parts = [(split.actual, split.predicted, split.bound) for split in splits if split.predicted is not None]
     found = check_calibration(*(np.concatenate(part) for part in zip(*parts, strict=True))) if parts else None

@@ -18,8 +18,8 @@ from uplift.colorimetry.lights import REPORT_LIGHTS
 from uplift.common.arrays import Array, Complex, Indices
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.study import complex_moments
 from uplift.models import Moments, duality
+from uplift.scene.representations import samples
 
 
 @dataclass(frozen=True)
@@ -74,9 +74,9 @@ class Technique:
 
     def reconstruct(self, moments: Complex | Array, wavelengths: ArrayLike) -> Array:
         """Bounded maximum-entropy reflectances (n, N) of moments (n, C)."""
-        solve = duality.try_multipliers if self.mirrored else complex_moments.try_multipliers
+        solve = duality.try_multipliers if self.mirrored else duality.try_complex_multipliers
         multipliers = duality.multipliers_from_moments(moments, solve)
-        waves = complex_moments.fourier_basis(self.phase(wavelengths), moments.shape[1])
+        waves = duality.fourier_basis(self.phase(wavelengths), moments.shape[1])
         return np.asarray(0.5 + np.arctan((multipliers @ waves.T).real) / np.pi)
 
 
@@ -90,8 +90,6 @@ MEASURES = ("delta_e_76_D65", *(f"delta_e_00_{name}" for name in REPORT_LIGHTS),
 """Error measures: ΔE76 under D65 as in the thesis, ΔE00 under every light, rms difference of the spectra."""
 ALL_ATLASES = "all"
 """Name of the group of all entries."""
-STEP = 1.0
-"""Distance in nm of the samples that moments are computed from."""
 
 
 class MomentsResult(NamedTuple):
@@ -107,7 +105,7 @@ class MomentsStudy:
     """Errors of every entry for every technique and number of moments.
 
     ``names``, ``atlases``: names and atlases of the E entries.
-    ``measured`` (E, N): reflectances at the wavelengths of `fine_grid`.
+    ``measured`` (E, N): reflectances at `uplift.scene.representations.samples.wavelengths`.
     ``errors`` (4, max_moments + 1, E, len(MEASURES)): errors, by the order of `TECHNIQUES` and by moments from 0.
     """
 
@@ -149,23 +147,12 @@ class MomentsStudy:
 
     def _record(self, group: str, technique: Technique, moments: int) -> dict[str, Any]:
         result = self.result(technique, moments, group)
+        mapping = {"mirrored": technique.mirrored, "warped": technique.warped}
+        size = {"moments": moments, "floats": technique.floats(moments)}
         names = [f"{name}_{kind}" for name in MEASURES for kind in ("mean", "max")]
-        errors = np.stack([result.mean, result.max], axis=1).ravel().tolist()
-        return {
-            "atlas": group,
-            "entries": len(self.rows(group)),
-            "mirrored": technique.mirrored,
-            "warped": technique.warped,
-            "moments": moments,
-            "floats": technique.floats(moments),
-            **dict(zip(names, errors, strict=True)),
-            "worst": self.names[result.worst],
-        }
-
-
-def fine_grid() -> Array:
-    """Wavelengths (401,) that moments are computed from."""
-    return np.arange(observer.START, observer.END + STEP / 2, STEP)
+        errors = dict(zip(names, np.stack([result.mean, result.max], axis=1).ravel().tolist(), strict=True))
+        worst = self.names[result.worst]
+        return {"atlas": group, "entries": len(self.rows(group)), **mapping, **size, **errors, "worst": worst}
 
 
 def study_moments(
@@ -179,8 +166,8 @@ def study_moments(
     atlas = merge(atlases.values())
     if not atlas.entries:
         raise AtlasError("the atlases have no entries", code="too-few-entries", hint="name an atlas with reflectances")
-    measured = on_grid(atlas, fine_grid())
-    original = measured[:, :: round(observer.STEP / STEP)]
+    measured = on_grid(atlas, samples.wavelengths())
+    original = measured[:, :: samples.TABLE_STRIDE]
     lights = [observer.light(name) for name in REPORT_LIGHTS]
 
     def labs(spectra: Array) -> list[Array]:
@@ -189,7 +176,7 @@ def study_moments(
     expected, counts = labs(original), max_moments + 1
     errors = np.empty((len(TECHNIQUES), counts, len(measured), len(MEASURES)))
     for row, technique in enumerate(TECHNIQUES):
-        moments = technique.moments(measured, fine_grid(), max_moments)
+        moments = technique.moments(measured, samples.wavelengths(), max_moments)
         for count in range(counts):
             spectra = technique.reconstruct(moments[:, : count + 1], observer.grid())
             actual, rms = labs(spectra), np.sqrt(((spectra - original) ** 2).mean(axis=1))

@@ -8,9 +8,10 @@ import numpy as np
 
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.arrays import Array, StrPath
-from uplift.lab.study.moments import TECHNIQUES, MomentsStudy, Technique, fine_grid
+from uplift.lab.study.moments import TECHNIQUES, MomentsStudy, Technique
 from uplift.lab.study.sensitivity import MOVED_DELTA_E, Change
 from uplift.models import Sigmoid
+from uplift.scene.representations import samples
 from uplift.viz.figure import (
     ACCENT,
     GREY,
@@ -28,6 +29,9 @@ PATCHES = ("neutral 5 (.70 D)", "blue flower")
 """Patches of the ColorChecker in the thesis."""
 WARPED, UNWARPED = TECHNIQUES[:2]
 COLOURS = {WARPED: "#d1495b", UNWARPED: "#1f6fb4"}
+LINE: dict[str, Any] = {"linewidth": 1.6, "markersize": 3.5}
+WARPED_STYLE: dict[str, Any] = {"linestyle": "-", "marker": "o"}
+UNWARPED_STYLE: dict[str, Any] = {"linestyle": (0, (3, 1.5)), "marker": "s", "markerfacecolor": "white"}
 
 
 def plot_errors(rows: Mapping[str, Mapping[Technique, Array]], path: StrPath, *, force: bool = False) -> None:
@@ -40,17 +44,9 @@ def plot_errors(rows: Mapping[str, Mapping[Technique, Array]], path: StrPath, *,
     for pair, (name, curves) in zip(panels, rows.items(), strict=True):
         for axes, column, title in zip(pair, (1, 2), ("mean", "largest"), strict=True):
             for technique, curve in curves.items():
-                axes.plot(
-                    curve[:, 0],
-                    curve[:, column],
-                    color="#1f6fb4" if technique.mirrored else "#d98200",
-                    linestyle="-" if technique.warped else (0, (3, 1.5)),
-                    linewidth=1.6,
-                    marker="o" if technique.warped else "s",
-                    markersize=3.5,
-                    markerfacecolor=None if technique.warped else "white",
-                    label=technique.label,
-                )
+                style = WARPED_STYLE if technique.warped else UNWARPED_STYLE
+                colour = "#1f6fb4" if technique.mirrored else "#d98200"
+                axes.plot(curve[:, 0], curve[:, column], color=colour, label=technique.label, **LINE, **style)
             axes.set_yscale("log")
             axes.yaxis.set_major_formatter("{x:g}")
             axes.set_title(figure_text(f"{name}: {title}"), loc="left", fontsize=10)
@@ -86,12 +82,14 @@ def _plot_spectra(study: MomentsStudy, rows: Sequence[Iterable[int]], path: StrP
     panels = figure.subplots(len(entries), len(entries[0]), squeeze=False)
     for axes, entry in zip(panels.flat, itertools.chain(*entries), strict=True):
         measured = study.measured[entry : entry + 1]
-        axes.plot(fine_grid(), measured[0], color="0.15", linewidth=3.0, alpha=0.35, label="measured")
+        axes.plot(samples.wavelengths(), measured[0], color="0.15", linewidth=3.0, alpha=0.35, label="measured")
         for technique, colour in COLOURS.items():
-            found = technique.reconstruct(technique.moments(measured, fine_grid(), moments), fine_grid())[0]
+            found = technique.reconstruct(
+                technique.moments(measured, samples.wavelengths(), moments), samples.wavelengths()
+            )[0]
             error = study.errors[TECHNIQUES.index(technique), moments, entry, 0]
             label = f"{'warped' if technique.warped else 'unwarped'}, ΔE76 {error:.2f}"
-            axes.plot(fine_grid(), found, color=colour, linewidth=1.5, label=label)
+            axes.plot(samples.wavelengths(), found, color=colour, linewidth=1.5, label=label)
         style_spectrum_axes(axes)
         # Dark entries fill their panel, with room for the legend above.
         axes.set_ylim(0, min(1.02, 1.5 * measured.max() + 0.02))

@@ -63,13 +63,9 @@ class Change:
     def record(self) -> Record:
         """Convert to JSON values; the radii are the largest distances of moved nodes, 0 if no node moved."""
         radii = [None, None] if self.distance is None else self.distance[:, self.moved].max(axis=1, initial=0).tolist()
-        return {
-            "change": self.description,
-            "moved": float(self.moved.mean()),
-            **dict(zip(("rgb_radius", "lab_radius"), radii, strict=True)),
-            **_mean_and_most("delta_e", self.delta_e),
-            **_mean_and_most("rms", self.rms),
-        }
+        record: Record = {"change": self.description, "moved": float(self.moved.mean())}
+        record |= dict(zip(("rgb_radius", "lab_radius"), radii, strict=True))
+        return record | _mean_and_most("delta_e", self.delta_e) | _mean_and_most("rms", self.rms)
 
 
 def study_sensitivity(
@@ -81,11 +77,8 @@ def study_sensitivity(
     """
     data = cube.data
     if data.complete_cells is not None:
-        raise OptionError(
-            "a sparse cube has no answers between the cells of its scene",
-            code="sparse-cube",
-            hint="build it without a scene",
-        )
+        problem = "a sparse cube has no answers between the cells of its scene"
+        raise OptionError(problem, code="sparse-cube", hint="build it without a scene")
     light = observer.light(NARROW_BAND_LIGHT, data.sensor.observer)
     changes = []
     if atlas is not None and entries > 0:
@@ -108,11 +101,10 @@ def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Record]:
     ``jump`` is what the first of them is at most if steps are halved: 0 but for rounding, unless answers jump.
     """
     lights = light, cube.data.sensor.light
-    moves = (
-        perturb_answers(mode, partial(cube.reflectance, mode=mode), cube.decode, lights, count)
-        for mode in CONTINUOUS_MODES
-    )
-    return [move for rows in moves for move in rows]
+    moves: list[Record] = []
+    for mode in CONTINUOUS_MODES:
+        moves += perturb_answers(mode, partial(cube.reflectance, mode=mode), cube.decode, lights, count)
+    return moves
 
 
 def perturb_answers(
@@ -130,17 +122,10 @@ def perturb_answers(
         after = answer(colours)
         delta_e = delta_e_spectra(lights[0], before, after)
         largest = np.argsort(delta_e)[-HALVED:]
-        found.append(
-            {
-                "mode": mode,
-                "step": step,
-                **_mean_and_most("rms", _rms(after - before)),
-                "largest": float(np.abs(after - before).max()),
-                **_mean_and_most("light", delta_e),
-                **_mean_and_most("own", delta_e_spectra(lights[1], before, after)),
-                "jump": _largest_jump(answer, lights[0], rgb[largest], colours[largest]),
-            }
-        )
+        move: Record = {"mode": mode, "step": step} | _mean_and_most("rms", _rms(after - before))
+        move |= {"largest": float(np.abs(after - before).max())} | _mean_and_most("light", delta_e)
+        move |= _mean_and_most("own", delta_e_spectra(lights[1], before, after))
+        found.append(move | {"jump": _largest_jump(answer, lights[0], rgb[largest], colours[largest])})
     return found
 
 

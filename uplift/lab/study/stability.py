@@ -7,7 +7,7 @@ hypercube sample of all combinations covers the rest. Synthetic atlases are diff
 import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -18,12 +18,12 @@ from uplift.atlas.atlas import LOWEST
 from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError, UpliftWarning, unknown_name
+from uplift.common.errors import UpliftWarning, unknown_name
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lattice import Status
-from uplift.models import Moments, Sigmoid
+from uplift.models import Sigmoid
 from uplift.pipeline.build import build
-from uplift.pipeline.options import MODELS, ModelName
+from uplift.pipeline.options import ModelName
 
 CROWDED_ENTRIES, ENTRIES = 120, 24
 """Numbers of entries of the crowded atlas and of the others."""
@@ -156,55 +156,42 @@ SEED = 4
 
 @dataclass(frozen=True)
 class DesignSpace:
-    """Values of each axis of the design, not empty, and the size of the Latin hypercube sample."""
+    """Values of each axis of the design, and the size of the Latin hypercube sample.
+
+    Grids vary one axis at the other values of `RunConfig`, in a lattice of the size that is nearest to its own.
+    """
 
     dims: tuple[int, ...] = (4, 8, 17, 32, 64)
     coefficients: tuple[int, ...] = (3, 5, 9, 17)
     spaces: tuple[str, ...] = SPACES
-    models: tuple[str, ...] = MODELS
     thresholds: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
     atlases: tuple[str, ...] = (NO_ATLAS, *SYNTHETIC_ATLASES)
     samples: int = 12
 
-    def __post_init__(self) -> None:
-        for field in fields(self):
-            if getattr(self, field.name) == ():
-                raise OptionError(f"{field.name} must not be empty", hint="give at least one value")
-
     @property
     def variants(self) -> tuple[RunConfig, ...]:
         """A configuration for every model and number of coefficients."""
-        moments = [RunConfig("moments", count) for count in self.coefficients if Moments.name in self.models]
-        return (*moments, *[RunConfig("sigmoid", Sigmoid.count)] * (Sigmoid.name in self.models))
+        return (*(RunConfig("moments", count) for count in self.coefficients), RunConfig("sigmoid", Sigmoid.count))
 
     def grids(self) -> Iterator[RunConfig]:
         """Yield every variant at the values of one axis, the others fixed."""
-        default, wide_and_small = self._fixed(), self._fixed(SMALL_DIM, SPACES[-1])
-        for axis, values, fixed in (
-            ("space", self.spaces, default),
-            ("threshold", self.thresholds, default),
-            ("threshold", self.thresholds, wide_and_small),
-            ("atlas", self.atlases, default),
-            ("dim", self.dims, default),
-        ):
+        usual, small = (min(self.dims, key=lambda dim: abs(dim - size)) for size in (RunConfig.dim, SMALL_DIM))
+        grids: tuple[tuple[str, tuple[Any, ...], dict[str, Any]], ...] = (
+            ("space", self.spaces, {"dim": usual}),
+            ("threshold", self.thresholds, {"dim": usual}),
+            ("threshold", self.thresholds, {"dim": small, "space": self.spaces[-1]}),
+            ("atlas", self.atlases, {"dim": usual}),
+            ("dim", self.dims, {}),
+        )
+        for axis, values, fixed in grids:
             for variant, value in product(self.variants, values):
                 yield replace(variant, **fixed | {axis: value})
-
-    def _fixed(self, dim: int = 17, space: str = SPACES[0]) -> dict[str, Any]:
-        """Values of the axes that a grid does not vary: the given or usual one if the axis has it, else the first."""
-        preferred: list[tuple[str, Any, tuple[Any, ...]]] = [
-            ("space", space, self.spaces),
-            ("threshold", 1e-4, self.thresholds),
-            ("atlas", NO_ATLAS, self.atlases),
-        ]
-        nearest = min(self.dims, key=lambda value: abs(value - dim))
-        return {"dim": nearest} | {name: value if value in axis else axis[0] for name, value, axis in preferred}
 
     def sample(self) -> tuple[RunConfig, ...]:
         """Draw configurations up to `MAX_SAMPLED_DIM` from a Latin hypercube with a fixed seed."""
         from scipy.stats import qmc
 
-        dims = [dim for dim in self.dims if dim <= MAX_SAMPLED_DIM] or [min(self.dims)]
+        dims = [dim for dim in self.dims if dim <= MAX_SAMPLED_DIM]
         axes = (self.variants, dims, self.spaces, self.thresholds, self.atlases)
         hypercube = qmc.LatinHypercube(len(axes), rng=np.random.default_rng(SEED))
         rows = hypercube.random(self.samples) * [len(axis) for axis in axes]
