@@ -42,7 +42,7 @@ ATLASES = ROOT / "atlases"
 MACBETH = ATLASES / "macbeth.txt"
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+def pytest_terminal_summary(terminalreporter) -> None:
     """List why tests were skipped, one line for each reason."""
     skipped = Counter(report.longrepr[2] for report in terminalreporter.stats.get("skipped", ()))
     for reason, count in skipped.most_common():

@@ -1,7 +1,7 @@
 """Every ``uplift`` line of the README, the documentation and the help texts, run where a reader would run it.
 
 ``python -m tests.examples`` (``make examples``) runs all of them from a wheel, unpacked outside the clone, in an empty
-folder, and exits with 1 if one fails; ``tests/test_examples.py`` runs a few.
+folder, and exits with 1 if one fails; ``tests/test_package.py`` runs a few.
 """
 
 import json

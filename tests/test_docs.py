@@ -109,13 +109,6 @@ def is_real(code):
     return code == "make site"
 
 
-@pytest.mark.parametrize(
-    "code", ["tests/fit/test_seeds.py::test_seed", "tests/no.py", "make measure PAGE=no", "make no"]
-)
-def test_evidence_that_does_not_exist_is_found(code):
-    assert not is_real(code)
-
-
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 def test_the_tutorial_runs(tmp_path, monkeypatch):
     need(MITSUBA)

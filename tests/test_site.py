@@ -3,10 +3,8 @@
 import re
 
 import pytest
-from uplift_cli.main import COMMANDS
 
 from tests.conftest import ROOT
-from tools.command_reference import command_reference
 
 DOCS = ROOT / "docs"
 SITE = ROOT / "out" / "site"
@@ -36,11 +34,3 @@ def test_no_page_loads_from_the_network():
         text = page.read_text(encoding="utf-8")
         loaded = re.findall(r'(?:src|<link[^>]*href)="(https?:[^"]+)"', text)
         assert loaded == [], page.name
-
-
-def test_reference_has_every_command():
-    reference = command_reference()
-    for name in COMMANDS:
-        assert f"\n### uplift {name}\n" in reference
-    assert "\n### uplift study moments\n" in reference
-    assert "| `--dim N` |" in reference

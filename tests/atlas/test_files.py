@@ -130,13 +130,13 @@ def check_round_trip(spectra, name):
             assert getattr(one, key) == getattr(other, key)
 
 
-@settings(max_examples=60)
+@settings(max_examples=20)
 @given(atlases(one_sampling=False))
 def test_text_keeps_every_bit(spectra):
     check_round_trip(spectra, "atlas.txt")
 
 
-@settings(max_examples=60)
+@settings(max_examples=20)
 @given(atlases(one_sampling=True))
 def test_csv_keeps_every_bit(spectra):
     check_round_trip(spectra, "atlas.csv")

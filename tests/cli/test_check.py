@@ -1,32 +1,32 @@
-"""``uplift check``, and cubes that are rebuilt without AVX-512."""
+"""``uplift check``."""
 
 import dataclasses
 import json
-import os
-import platform
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import uplift
-from benchmarks.determinism import WITHOUT_AVX512
 from tests.helpers import with_points
 from uplift.cube import write
 from uplift.lattice import Lattice
-from uplift.report.regression import LIMITS, compare_rebuilt
+from uplift.report.regression import LIMITS
 
 ROOT = Path(__file__).parents[2]
 CUBES = [*sorted((ROOT / "cubes").glob("*.uplift")), ROOT / "uplift" / "lookup" / "default.uplift"]
 
 
+@pytest.fixture(scope="module")
+def cube():
+    """Dim 3 without an atlas."""
+    return uplift.build(dim=3, coefficients=4)
+
+
 @pytest.fixture
-def stored(home):
-    """A cube of dim 3 without an atlas."""
-    uplift.build(dim=3, coefficients=4).save(home / "cube.uplift")
+def stored(home, cube):
+    cube.save(home / "cube.uplift")
     return home / "cube.uplift"
 
 
@@ -139,17 +139,3 @@ def test_stored_cubes_pass(run, cube):
     result = run("check", "-v", cube)
     assert "passed" in result.stdout
     assert "storing: " in result.stderr
-
-
-@pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="the instruction sets are those of x86-64")
-def test_cubes_pass_without_avx512_and_have_equal_nodes(home, macbeth):
-    with pytest.warns(uplift.UpliftWarning):
-        uplift.build(macbeth, dim=8).save(home / "cube.uplift")
-    lines = ("check cube.uplift", f"build -q --atlas {macbeth} --dim 8 -o without.uplift")
-    code = f"from uplift_cli.main import main\nfor line in {lines!r}: main(line.split(), standalone_mode=False)"
-    environment = os.environ | {"JAX_ENABLE_COMPILATION_CACHE": "false"} | WITHOUT_AVX512
-    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
-    assert "passed" in done.stdout
-    first, second = (uplift.load(name).data for name in ("cube.uplift", "without.uplift"))
-    np.testing.assert_array_equal(first.lattice.nodes, second.lattice.nodes)
-    assert compare_rebuilt(home, first, second).failures == ()

@@ -3,9 +3,11 @@
 import csv
 import json
 import re
+from functools import cache
 
 import pytest
 from click.testing import CliRunner
+from uplift_cli.commands import compare
 from uplift_cli.main import main
 
 from uplift.atlas import read_atlas
@@ -13,6 +15,8 @@ from uplift.lab.timing import ONE_THREAD
 from uplift.lights.lamps import read_lamps
 
 FILES = ["compare-boxes.png", "compare-cost.png", "compare.html"]
+measure = cache(compare._measure)
+GIVEN = ("--light", "LED-B3", "--light", "HP1")
 
 
 @pytest.fixture(scope="module")
@@ -21,6 +25,7 @@ def quick(repository, tmp_path_factory):
     folder = tmp_path_factory.mktemp("compare")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
+        patch.setattr(compare, "_measure", measure)
         for name, value in ONE_THREAD.items():
             patch.setenv(name, value)
         atlas = str(repository / "atlases" / "macbeth.txt")
@@ -31,8 +36,9 @@ def quick(repository, tmp_path_factory):
 
 
 @pytest.fixture(autouse=True)
-def threads(monkeypatch):
-    """Restore the environment that the command changes."""
+def once(monkeypatch):
+    """Restore the environment that the command changes, and repeat no measurement."""
+    monkeypatch.setattr(compare, "_measure", measure)
     for name, value in ONE_THREAD.items():
         monkeypatch.setenv(name, value)
 
@@ -49,15 +55,15 @@ def test_all_files_are_written_and_tables_printed(quick):
 
 def test_target_prints_the_cheapest_for_each_set_of_lights(run, macbeth):
     words = ["compare", "--quick", "--atlas", macbeth, "--tolerance"]
-    near = run(*words, 1.0).stdout.splitlines()
+    near = run(*words, 1.0, "--filters").stdout.splitlines()
     assert [line.split(" lights")[0] for line in near] == ["smooth", "spiky"]
     assert all(float(re.search(r"97\.5 % below ([\d.]+)", line)[1]) <= 1 for line in near)
-    (far,) = run(*words, 0.001, "--light", "FL11").stdout.splitlines()
-    assert far.startswith("given lights (FL11): none; ")
+    (far,) = run(*words, 0.001, *GIVEN).stdout.splitlines()
+    assert far.startswith("given lights (LED-B3, HP1): none; ")
 
 
 def test_lights_replace_the_default_sets(run, macbeth):
-    words = ["compare", "--quick", "--atlas", macbeth, "--light", "LED-B3", "--light", "HP1", "--format"]
+    words = ["compare", "--quick", "--atlas", macbeth, *GIVEN, "--format"]
     fields = json.loads(run(*words, "json").stdout)
     rows = list(csv.DictReader(run(*words, "csv").stdout.splitlines()))
     names = {row["representation"] for row in fields["representations"] if row["lights"] == "given"}

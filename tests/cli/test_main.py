@@ -2,8 +2,6 @@
 
 import errno
 import json
-import subprocess
-import sys
 import time
 import warnings
 from collections.abc import Iterator
@@ -12,7 +10,6 @@ import click
 import pytest
 from click.testing import CliRunner
 from rich.cells import cell_len
-from uplift_cli.commands.help import TOPICS
 from uplift_cli.main import COMMANDS, main
 from uplift_cli.options import HELP_ALL, Number
 from uplift_cli.output import progress as progress_module
@@ -41,13 +38,6 @@ def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run):
     assert {"--atlas", "--dim", "--help", "--help-all"} <= shown < every
     command = main.get_command(click.Context(main), "build")
     assert all(each.opts[-1] in full for each in command.params)
-
-
-def test_topics_are_listed_and_explained(run):
-    words = ("70", "clip: ", "LED-B3", "refined", "1964", "ITU-R BT.2020")
-    for topic, word in zip(TOPICS, words, strict=True):
-        assert f"{topic} " in run("help").stdout
-        assert word in run("help", topic).stdout
 
 
 @pytest.mark.parametrize(
@@ -227,9 +217,3 @@ def test_progress_off_terminals_is_a_line_now_and_then(monkeypatch, capsys):
             for _ in range(4):
                 report(event)
         assert capsys.readouterr().err.splitlines() == lines
-
-
-def test_command_line_is_importable_only_by_its_installed_name(repository):
-    done = subprocess.run([sys.executable, "-c", "import cli"], cwd=repository, capture_output=True, text=True)
-    assert done.returncode == 1
-    assert "ImportError: the command line is installed as 'uplift_cli'" in done.stderr

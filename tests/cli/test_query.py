@@ -85,15 +85,7 @@ def test_invalid_input_is_an_error(refuse, words, code):
     assert refuse("query", *words.split()).code == code
 
 
-@pytest.mark.parametrize(
-    ("method", "rgb"),
-    [
-        ("clip", [1, 0.3, 0]),
-        ("scale", [1, 0.26667, 0]),
-        ("desaturate", [1, 0.3916, 0.1704]),
-        ("desaturate-oklab", [1, 0.4215, 0.1069]),
-    ],
-)
+@pytest.mark.parametrize(("method", "rgb"), [("clip", [1, 0.3, 0]), ("desaturate-oklab", [1, 0.4215, 0.1069])])
 def test_out_of_gamut_colours_are_mapped_with_a_warning(run, method, rgb):
     words = ("query", "-", "--out-of-gamut", method)
     result = run(*words, "--format", "json", input="1.4,0.3,-0.1\n#cc3319\n")
@@ -189,7 +181,7 @@ def test_an_endless_line_is_an_error(refuse):
     assert isinstance(refuse("query", "--input", "/dev/zero"), ColourError)
 
 
-@pytest.mark.parametrize("style", ["json", "csv", "table"])
+@pytest.mark.parametrize("style", ["json", "table"])
 def test_lines_of_a_stream_are_answered_as_they_come(style):
     words = ["query", "-", "--format", style, "--wavelengths", "500,600"]
     command = [sys.executable, "-m", "uplift_cli", *words]
@@ -297,12 +289,6 @@ def test_colours_under_lights_are_those_of_relit_images(run, ask, macbeth_cube):
     assert found["hex"] in run(*words).stdout
     (row,) = csv.DictReader(io.StringIO(run(*words, "--format", "csv").stdout))
     assert row["hex_FL11"] == found["hex"]
-
-
-def test_modes_differ_and_spectra_is_the_default(ask):
-    found = {mode: ask("query", *RED, "--mode", mode)["reflectance"] for mode in ("spectra", "moments", "refined")}
-    assert found["spectra"] == ask("query", *RED)["reflectance"]
-    assert len({tuple(values) for values in found.values()}) == 3
 
 
 @pytest.mark.parametrize(

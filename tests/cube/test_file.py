@@ -18,7 +18,7 @@ from uplift.cube.file import ARRAYS, MAX_LIGHTS, METADATA, VERSION
 from uplift.lattice import Status
 from uplift.models import Moments
 
-FLIPS, CUTS = 1500, 200
+FLIPS, CUTS = 500, 60
 STORED = [name for name in ARRAYS if name not in ("points", "sensor.sensitivities")]
 """Arrays of the cube of these tests."""
 FORMAT_3 = Path(__file__).parent / "format-3.uplift"

@@ -157,7 +157,7 @@ def test_every_row_is_in_one_batch(count):
 SEVERAL = """
 import sys, jax, uplift
 assert len(jax.devices()) == 3
-uplift.build(sys.argv[1], dim=9).save(sys.argv[2])
+uplift.build(sys.argv[1], dim=5).save(sys.argv[2])
 """
 
 
@@ -167,7 +167,7 @@ def test_several_devices_build_the_same_cube(repository, tmp_path):
     macbeth, path = repository / "atlases" / "macbeth.txt", tmp_path / "several.uplift"
     flags = {"XLA_FLAGS": "--xla_force_host_platform_device_count=3"}
     subprocess.run([sys.executable, "-W", "ignore", "-c", SEVERAL, macbeth, path], env=os.environ | flags, check=True)
-    one, several = build(macbeth, dim=9).data, load(path).data
+    one, several = build(macbeth, dim=5).data, load(path).data
     np.testing.assert_allclose(several.points.coefficients, one.points.coefficients, rtol=0, atol=1e-9)
     np.testing.assert_allclose(several.points.standard_error, one.points.standard_error, rtol=1e-6)
     np.testing.assert_array_equal(several.points.status, one.points.status)

@@ -21,14 +21,10 @@ def lack(task):
     raise NotInstalledError(f"needs {NEEDS}")
 
 
-def leave(task):
-    os._exit(3)
-
-
 METHODS = tuple(
     Method(
         method=f"faulty-{prepare.__name__}", title="Faulty", family="Faulty", source="a test",
         prepare=prepare, needs=NEEDS,
     )
-    for prepare in (abort, hang, lack, leave)
+    for prepare in (abort, hang, lack)
 )  # fmt: skip
