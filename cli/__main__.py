@@ -20,6 +20,8 @@ def run() -> None:
         main(prog_name="uplift")
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
+    finally:
+        gc.freeze()  # Python would search them again as it ends
 
 
 if __name__ == "__main__":

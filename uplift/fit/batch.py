@@ -40,16 +40,24 @@ def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any) -> A
     devices, parts = len(jax.devices()), []
     width, chunk = CPU_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_ROWS
     with jax.enable_x64(True):
-        run, constants = _program(function, chunk, devices), _place(constants, EVERYWHERE)
+        run = _program(function, chunk, devices)
         for rows in blocks(len(jax.tree.leaves(arrays)[0]), devices * width):
-            # The last row is repeated. Chunks beyond the counts are not computed.
-            count, last = rows.stop - rows.start, rows.stop - 1
-            own = np.minimum(np.arange(rows.start, rows.start + devices * width), last)
+            # Chunks beyond the counts are not computed.
+            count = rows.stop - rows.start
             counts = np.clip(count - width * np.arange(devices), 0, width)
-            given = jax.tree.map(lambda array, own=own: array[own], arrays)
-            parts.append((count, run(constants, *_place((counts, given), ROWS))))
+            given = jax.tree.map(lambda array, rows=rows: _padded(array[rows], devices * width), arrays)
+            parts.append((count, run(constants, counts, given)))
         parts = [jax.tree.map(lambda array, count=count: np.asarray(array)[:count], part) for count, part in parts]
-    return jax.tree.map(lambda *joined: np.concatenate(joined), *parts)
+    return parts[0] if len(parts) == 1 else jax.tree.map(lambda *joined: np.concatenate(joined), *parts)
+
+
+def _padded(array: Array, count: int) -> Array:
+    """Repeat the last row, so that there are ``count``."""
+    if len(array) == count:
+        return array
+    padded = np.empty((count, *array.shape[1:]), array.dtype)
+    padded[: len(array)], padded[len(array) :] = array, array[-1]
+    return padded
 
 
 @cache
@@ -59,28 +67,25 @@ def _program(function: Callable[..., Any], chunk: int, devices: int) -> Callable
 
     def run(constants: Any, counts: jax.Array, arrays: Any) -> Any:
         def compute(first: Any) -> Any:
-            rows = jax.tree.map(lambda array: lax.dynamic_slice_in_dim(array, first, chunk), arrays)
+            rows = jax.tree.map(
+                lambda array: lax.dynamic_slice_in_dim(array, first, chunk, allow_negative_indices=False), arrays
+            )
             return traced_once(constants, *rows)
 
         def advance(carry: Any) -> Any:
             first, results = carry
-            update = partial(lax.dynamic_update_slice_in_dim, start_index=first, axis=0)
+            update = partial(lax.dynamic_update_slice_in_dim, start_index=first, axis=0, allow_negative_indices=False)
             return first + chunk, jax.tree.map(update, results, compute(first))
 
         width = len(jax.tree.leaves(arrays)[0])
         empty = jax.tree.map(lambda some: jnp.zeros((width, *some.shape[1:]), some.dtype), jax.eval_shape(compute, 0))
         return lax.while_loop(lambda carry: carry[0] < counts[0], advance, (jnp.asarray(0), empty))[1]
 
-    if devices > 1:
-        run = jax.shard_map(run, mesh=_mesh(), in_specs=(EVERYWHERE, ROWS, ROWS), out_specs=ROWS, check_vma=False)
-    return jax.jit(run)
-
-
-def _place(arrays: Any, spec: PartitionSpec) -> Any:
-    """Put arrays on the devices."""
-    if len(jax.devices()) == 1:
-        return jax.device_put(arrays)
-    return jax.device_put(arrays, NamedSharding(_mesh(), spec))  # type: ignore[no-untyped-call]
+    if devices == 1:
+        return jax.jit(run)
+    run = jax.shard_map(run, mesh=_mesh(), in_specs=(EVERYWHERE, ROWS, ROWS), out_specs=ROWS, check_vma=False)
+    shardings = [NamedSharding(_mesh(), spec) for spec in (EVERYWHERE, ROWS, ROWS)]
+    return jax.jit(run, in_shardings=tuple(shardings))
 
 
 def _mesh() -> Mesh:

@@ -33,9 +33,10 @@ def grow_outward(
             prior = expected(points)
             # Where both are known, δ ≈ 2 δ₁ − δ₂ with the corrections one and two steps towards a seed, else δ₁.
             near, far = toward[points], toward[toward[points]]
-            one = (known[near] & (distance[near] < number))[:, None]
-            two = one & (known[far] & (distance[far] < distance[near]))[:, None]
-            change = np.where(two, 2 * corrections[near] - corrections[far], np.where(one, corrections[near], 0))
+            one = known[near] & (distance[near] < number)
+            two = one & known[far] & (distance[far] < distance[near])
+            change = np.add(one, two, dtype=np.float32)[:, None] * corrections.take(near, axis=0)
+            change -= two[:, None] * corrections.take(far, axis=0)
             solution = growth.attempt(points, prior + change, number, prior, max_passes=1)
             found = solution.multipliers - prior
             corrections[points], known[points] = found, growth.is_smooth(found) & ~seeded[points]

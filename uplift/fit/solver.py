@@ -60,8 +60,8 @@ class BatchSolver(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
         return y, aux, {}
 
     def resume(self, options: Options, y: Any, state: Any) -> Options:
-        """Return the options with which ``init`` goes on, from those before, multipliers ``y`` (n, C) and the state."""
-        return options
+        """Return the options that ``init`` goes on with in place of those before, from ``y`` (n, C) and the state."""
+        return {}
 
 
 class Method(Protocol):
@@ -144,7 +144,7 @@ class LeastChange(BatchSolver):
 
     def resume(self, options: Options, y: Any, state: LeastChangeState) -> Options:
         """Go on with the damping and the weight reached."""
-        return options | {"damping": state.damping, "anchor_weight": state.anchor_weight}
+        return {"damping": state.damping, "anchor_weight": state.anchor_weight}
 
     @staticmethod
     def options(start: Array, prior: Array | None) -> Options:
@@ -188,27 +188,29 @@ def solve(
     squared residual increases. Failure to converge is not an error: the distance reports it. The steps of a problem do
     not depend on the others.
     """
-    count = len(start)
-    steps_taken = np.zeros(count, dtype=np.int64)
-    solution = Solution(start.copy(), np.full((count, 3), np.inf), np.full(count, np.inf), steps_taken)
-    rows, stale, options = np.arange(count), np.zeros(count, dtype=np.int64), method.options(start, prior)
+    count, advance = len(start), _advance(method)  # type: ignore[arg-type]
+    unknown = np.full((count, 3), np.inf)
+    solution = Solution(start.copy(), unknown, unknown[:, 0].copy(), np.zeros(count, dtype=np.int64))
+    rows: Any = slice(None)
+    stale, options = np.zeros(count, dtype=np.int64), method.options(start, prior)
     for steps in islice(method.schedule(), max_passes):
-        if not rows.size:
+        if not stale.size:
             break
-        given = (solution.multipliers[rows], target[rows], options)
-        advance = _advance(method)  # type: ignore[arg-type]
-        y, residual, taken, options = map_batches(advance, (forward, tolerance, steps), *given)
-        steps_taken[rows] += taken
-        before = solution.distance[rows]
-        closer = (residual**2).sum(axis=1) <= (solution.residual[rows] ** 2).sum(axis=1)
-        better = rows[closer]
-        solution.multipliers[better], solution.residual[better] = y[closer], residual[closer]
-        solution.distance[better] = np.abs(residual[closer]).max(axis=1)
+        before = Solution(*(column[rows] for column in solution))
+        given = (before.multipliers, target[rows], options)
+        y, residual, taken, changed = map_batches(advance, (forward, tolerance, steps), *given)
+        closer = (residual**2).sum(axis=1) <= (before.residual**2).sum(axis=1)
+        distance = np.where(closer, np.abs(residual).max(axis=1), before.distance)
+        stale = np.where(distance > (1 - MIN_GAIN) * before.distance, stale + 1, 0)
+        y, residual = (
+            np.where(closer[:, None], *pair) for pair in ((y, before.multipliers), (residual, before.residual))
+        )
+        for column, values in zip(solution, (y, residual, distance, before.steps + taken), strict=True):
+            column[rows] = values
         # Converged and abandoned problems leave the batch.
-        distance = solution.distance[rows]
-        stale = np.where(distance > (1 - MIN_GAIN) * before, stale + 1, 0)
         kept = (distance > tolerance) & (stale < PATIENCE)
-        rows, stale, options = rows[kept], stale[kept], {name: array[kept] for name, array in options.items()}
+        rows, stale = np.arange(count)[rows][kept], stale[kept]
+        options = {name: array[kept] for name, array in (options | changed).items()}
     return solution
 
 
