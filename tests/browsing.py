@@ -3,8 +3,11 @@
 Widths change the layout and schemes the colours, never both: two states show what four would.
 """
 
+import atexit
 import json
 import time
+from contextlib import ExitStack
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -52,15 +55,23 @@ def findings(tab):
     return tab.evaluate(RUN.replace("STYLE", json.dumps(PLAIN_BOXES)))
 
 
+@cache
+def shared_tab():
+    """Return the tab of the browser that checks all pages of this process."""
+    need(CHROMIUM)
+    stack = ExitStack()
+    atexit.register(stack.close)
+    return stack.enter_context(browser())
+
+
 def check_page(html, folder):
     """Fail if a page is too wide, has errors or violates rules; skip what the machine lacks."""
-    need(CHROMIUM)
-    with browser() as tab:
-        for width, scheme in zip(WIDTHS, SCHEMES, strict=True):
-            open_page(tab, html, folder, width, scheme)
-            assert overflow(tab) <= 0
-            assert tab.errors == []
-            if AXE.exists():
-                assert findings(tab) == []
+    tab = shared_tab()
+    for width, scheme in zip(WIDTHS, SCHEMES, strict=True):
+        open_page(tab, html, folder, width, scheme)
+        assert overflow(tab) <= 0
+        assert tab.errors == []
+        if AXE.exists():
+            assert findings(tab) == []
     if not AXE.exists():
         pytest.skip(f"no axe-core at {AXE}: run make axe")

@@ -65,21 +65,6 @@ def test_files_that_the_pages_name_exist():
         assert missing == [], page.name
 
 
-def unknown_options(text):
-    """Options next to a command in code that this command does not have, and unknown commands."""
-    unknown = []
-    with click.Context(main, **main.context_settings) as context:
-        for code in re.findall(r"`uplift ([^`]+)`", text):
-            name, *words = code.split()
-            command = main.get_command(context, name)
-            if isinstance(command, click.Group) and words:
-                command = command.commands.get(words.pop(0))
-            known = {option for each in (command.params if command else ()) for option in each.opts}
-            unknown += [code] if command is None else []
-            unknown += [word for word in words if word.startswith("-") and word not in known]
-    return unknown
-
-
 REASONS = ("background", "not done", "not offered", "cannot be repeated")
 
 
@@ -88,7 +73,6 @@ def test_the_page_of_coverage_has_no_empty_row_and_names_what_exists():
     table = [[cell.strip() for cell in row] for row in lines]
     assert len(table) > 80
     assert [row for row in table if len(row) != 4 or not all(row)] == []
-    assert unknown_options(COVERAGE) == []
     shown = [row for row in table if row[3] not in ("—", "shown by")]
     assert [row for row in table if row[3] == "—" and not row[2].startswith(REASONS)] == []
     assert [

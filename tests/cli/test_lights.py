@@ -1,6 +1,7 @@
 """``uplift lights``, and commands that need a cube."""
 
 import json
+from functools import partial
 
 import numpy as np
 import OpenEXR
@@ -8,6 +9,7 @@ import pytest
 from uplift_cli.output.diagnostics import hint_for
 
 import uplift
+from uplift.lights.build import build_emission
 from uplift.lights.table import emission_digest
 
 
@@ -33,7 +35,8 @@ def test_colours_that_no_light_has(run):
     assert "round trip" in run("lights", "query", "-1", "1", "-1", "--out-of-gamut", "clip").stdout
 
 
-def test_a_table_of_measured_lamps_is_built_and_queried(run, home):
+def test_a_table_of_measured_lamps_is_built_and_queried(run, home, monkeypatch):
+    monkeypatch.setattr("uplift.lights.build.build_emission", partial(build_emission, knots=32, rings=4))
     at = np.arange(400, 701, 10)
     power = np.exp(-(((at - 600) / 40) ** 2)) + 0.1
     values = ",".join(f"{value:.6g}" for value in power)

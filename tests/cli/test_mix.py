@@ -4,10 +4,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 
-import uplift
 from tests.io.texture.conftest import planes, read_channels, write_exr
-from uplift.design.mixing import Surface
-from uplift.design.mixing.theories import mixers
 from uplift.samples import sample_path
 
 from .conftest import warning_lines
@@ -38,17 +35,6 @@ def test_entries_by_name_have_their_measured_spectra(ask, cubes, macbeth):
     np.testing.assert_allclose(from_cube["spectrum"][4:], measured["spectrum"][4:], atol=0.03)  # from 400 nm
     plain = ask("mix", "2:0.113,0.199,0.336", "yellow", "--atlas", macbeth)
     assert np.abs(np.subtract(plain["spectrum"], measured["spectrum"])).max() > 0.03
-
-
-def test_surfaces_and_plates(ask):
-    """Saunderson's reflectances are those of the index, unless given; a plate reflects, transmits and absorbs."""
-    given = ("--surface-reflectance", 0.04, "--internal-reflectance", Surface.of_index(1.5).inside)
-    found, expected = (ask("mix", BLUE, "#ffe080", *words) for words in (given, ("--refractive-index", 1.5)))
-    np.testing.assert_allclose(found["spectrum"], expected["spectrum"], rtol=1e-12)
-    plate = ("mix", "--dye", "#c8a070", "--refractive-index", 1.5, "--plate")
-    through, back = ask(*plate, "transmitted"), ask(*plate, "reflected", "--ground", "black")
-    assert np.all(np.add(through["spectrum"], back["spectrum"]) < 1)
-    assert min(back["spectrum"]) > 0.04
 
 
 def test_duntley_s_constants_from_files(ask):
@@ -122,13 +108,3 @@ def test_invalid_input_is_an_error(refuse, words, code):
 )
 def test_wrong_usage(misuse, words):
     misuse("mix", *words)
-
-
-def test_theories_are_those_of_the_library(ask, run):
-    found = ask("mix", "--theories", f"2:{BLUE}", YELLOW)
-    titles = [mixer.title for mixer in mixers(uplift.load())]
-    assert [row["theory"] for row in found["theories"]] == titles
-    by_title = {row["theory"]: row["hex"] for row in found["theories"]}
-    assert by_title["Kubelka–Munk"] == ask("mix", f"2:{BLUE}", YELLOW)["hex"]
-    table = run("mix", "--theories", f"2:{BLUE}", YELLOW).stdout
-    assert all(title in table and code in table for title, code in by_title.items())

@@ -269,11 +269,9 @@ def test_standard_errors_under_other_lights(ask, run, table, macbeth_cube):
     row = next(rows)
     assert {light: float(row[f"standard_error_{light}"]) for light in lights} == expected
     assert {light: float(row[f"error_bound_{light}"]) for light in lights} == bounds
-    for options, style in ((["--input", file], ".2f"), (["0", "1", "0"], ".2g")):
-        text = run("query", *options, *words).stdout
-        assert "unlike the atlas" in text
-        assert format(float(cube.standard_error([0, 1, 0], "HP1")), style) in text
-        assert max(map(len, text.splitlines())) <= 80
+    text = run("query", "--input", file, *words).stdout
+    assert "unlike the atlas" in text
+    assert max(map(len, text.splitlines())) <= 80
 
 
 def test_colours_under_lights_are_those_of_relit_images(run, ask, macbeth_cube):
@@ -304,16 +302,6 @@ def test_wavelengths(ask, text, expected):
     answer = ask("query", "#cc3319", "--wavelengths", text)
     np.testing.assert_allclose(answer["wavelengths"], expected, rtol=1e-14)
     assert len(answer["reflectance"]) == len(expected)
-
-
-def test_texts(run, table, macbeth_cube):
-    text = run("query", "--cube", macbeth_cube, "#cc3319", "--light", "A").stdout
-    assert text.split("exp. error")[1].split("\n")[0].count("under A") == 1  # the light of the cube's own errors
-    assert all(word in text for word in ("#cc3319", *(f"{wavelength} nm" for wavelength in range(380, 781, 20))))
-    assert "\x1b" not in text
-    lines = run("query", "--input", table("#cc3319\n#ffffff\n#000000\n")).stdout.splitlines()
-    assert lines[0] == "cube     packaged: 16³ nodes, no atlas"
-    assert [line.split()[0] for line in lines[2:]] == ["#cc3319", "#ffffff", "#000000"]
 
 
 def test_stored_answers_are_checked(run, refuse, misuse, home, small_cube, plain_cube, table):

@@ -9,7 +9,7 @@ import shutil
 import matplotlib.image
 import pytest
 
-from uplift.lab.study import stability
+from uplift.lab.study import held_out, stability
 
 METHODS = ["half the atlas", "without an atlas", "sigmoid", "local-linear regression"]
 
@@ -24,6 +24,17 @@ def tcs(repository):
 def rows(run):
     """Rows of the CSV on standard output."""
     return lambda *args: list(csv.DictReader(io.StringIO(run("study", *args, "--format", "csv").stdout)))
+
+
+def compute_once(monkeypatch, module, name):
+    """Give every command of a test the first result of a study."""
+    compute, results = getattr(module, name), []
+
+    def repeat(*args, **options):
+        results.append(results[0] if results else compute(*args, **options))
+        return results[0]
+
+    monkeypatch.setattr(module, name, repeat)
 
 
 def check_plots(folder, names, stderr):
@@ -83,7 +94,8 @@ def test_invalid_input_is_an_error(refuse, home, tcs, options, code):
     assert refuse("study", *options).code == code
 
 
-def test_held_out_has_the_same_numbers_in_all_formats(run, rows, macbeth):
+def test_held_out_has_the_same_numbers_in_all_formats(run, rows, macbeth, monkeypatch):
+    compute_once(monkeypatch, held_out, "holdout")
     args = ("held-out", "--atlas", macbeth, "--dim", 4, "--splits", 1)
     objects = json.loads(run("study", *args, "--format", "json").stdout)
     assert [one["cube"] for one in objects] == METHODS
@@ -99,6 +111,7 @@ def test_stability(run, rows, home, monkeypatch, tcs):
     design = stability.DesignSpace((4,), (), ("sRGB",), (1e-3, 1e-4), samples=1)
     monkeypatch.setattr(stability, "QUICK_DESIGN", design)
     monkeypatch.setattr(stability, "SYNTHETIC_ATLASES", {})
+    compute_once(monkeypatch, stability, "study_stability")
     words = ("stability", "--quick", "--atlas", tcs)
     result = run("study", *words, "-o", "out")
     check_plots(home / "out", ["stability.png"], result.stderr)

@@ -143,10 +143,6 @@ def test_the_error_names_both_format_versions(data, tmp_path, version):
     assert str(VERSION) in error.problem
 
 
-def test_an_unchanged_forgery_is_read(data, tmp_path):
-    assert_same(read(forge(data, tmp_path / "cube", lambda tensors, metadata: None)), data)
-
-
 @pytest.mark.parametrize("name", STORED)
 def test_arrays_that_are_missing_or_of_another_form_are_refused(data, tmp_path, name):
     def remove(tensors, metadata):

@@ -8,7 +8,7 @@ from tests.conftest import MACBETH
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab
-from uplift.fit.entries import FLATNESS, fit_entries, minimise, objective
+from uplift.fit.entries import fit_entries, minimise, objective
 from uplift.fit.problem import Problem
 from uplift.models import Moments, Sigmoid, evaluate
 
@@ -107,19 +107,6 @@ def test_a_fit_does_not_depend_on_the_others(sensor, measured):
     goal = objective(problem_of(sensor))
     alone = np.concatenate([minimise(goal, each[None]) for each in measured[:4]])
     np.testing.assert_allclose(minimise(goal, measured)[:4], alone, rtol=1e-9)
-
-
-def test_weighted_squares_sum_to_a_mean_square(sensor):
-    problem, difference = problem_of(sensor), np.random.default_rng(0).normal(size=81)
-    assert np.sum((objective(problem).values * difference) ** 2) == pytest.approx((difference**2).mean())
-
-
-def test_smoothness_leaves_the_level_to_the_measurement(sensor):
-    for model in (Moments(5), Sigmoid()):
-        weights = objective(problem_of(sensor, model=model), smoothness=0.5).multipliers
-        constant = model.constant() > 0
-        assert weights[constant] == FLATNESS
-        np.testing.assert_allclose(weights[~constant], 0.5 * np.sqrt(model.metric_diagonal()[~constant]))
 
 
 def test_error_is_the_difference_between_fit_and_measurement(sensor, measured):

@@ -10,15 +10,7 @@ from tools import ship_library
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.fit.base import learn_base
-from uplift.fit.families import (
-    FILE,
-    LENGTH,
-    NUGGET,
-    FamilySamples,
-    families_with,
-    krige_families,
-    learn_relevance,
-)
+from uplift.fit.families import FILE, LENGTH, NUGGET, FamilySamples, families_with, krige_families, learn_relevance
 from uplift.fit.problem import Problem
 from uplift.fit.solver import solve
 from uplift.models import Moments

@@ -131,24 +131,6 @@ def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch, 
         assert (difference > 2e-4).mean() < 1e-3  # nearly box-shaped spectra at the faces
 
 
-@pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
-def test_nodes_of_a_scene_have_the_answers_of_the_whole_lattice(repository):
-    """Though shells have holes, and fewer corrections are known."""
-
-    class Some:
-        def required_points(self, boxes, sensor, progress):
-            return np.arange(boxes.lattice.size) % 5 == 0
-
-        def describe(self):
-            return []
-
-    whole, some = (build(repository / "atlases" / "macbeth.txt", dim=9, scene=scene).data for scene in (None, Some()))
-    rows = np.flatnonzero(some.points.present)
-    both = [reflectance(data.model, data.points.coefficients[rows], data.sensor.wavelengths) for data in (whole, some)]
-    assert len(rows) == 9**3 // 5 + 1
-    assert np.quantile(np.abs(np.subtract(*both)).max(axis=1), 0.98) < 1e-5
-
-
 @pytest.mark.parametrize("grow", [grow_outward, grow_coarse_to_fine])
 def test_a_correction_saves_steps(sensor, monkeypatch, grow):
     lattice = Lattice(observer.axis_nodes("srgb", 17))

@@ -23,17 +23,7 @@ from uplift.fit.entries import fit_entries
 from uplift.fit.families import shipped_library
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem
-from uplift.fit.seeds import (
-    DIMS,
-    FAR,
-    FULL_ENTRY,
-    HALF_ENTRY,
-    NEAR,
-    choose_lattice,
-    initial_guess,
-    lattice_error,
-    seed,
-)
+from uplift.fit.seeds import DIMS, FAR, FULL_ENTRY, HALF_ENTRY, NEAR, choose_lattice, initial_guess, lattice_error, seed
 from uplift.lattice import Lattice
 from uplift.models import Moments, reflectance
 
@@ -71,17 +61,6 @@ ENTRIES = np.random.default_rng(0).normal(size=(2, 5)) / 3
 @pytest.fixture(scope="module")
 def prior(sensor):
     return Prior(MODEL, sensor, learn_base(Problem(sensor, MODEL))[0])
-
-
-@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
-def test_corners_start_between_the_entry_and_the_prior(prior, share):
-    seeds = seed(LATTICE, RGB)
-    nodes, own = LATTICE.points[seeds.points], ENTRIES[seeds.entry]
-    start, expected = initial_guess(seeds.points, nodes, prior, seeds, ENTRIES, (share, share)), prior(nodes)
-    mixed = share * MODEL.to_storage(own) + (1 - share) * MODEL.to_storage(expected)
-    np.testing.assert_array_equal(start[seeds.primary], own[seeds.primary])
-    corners = ~seeds.primary
-    np.testing.assert_allclose(MODEL.to_storage(start)[corners], mixed[corners], atol=1e-6)
 
 
 def test_the_share_of_the_entry_falls_from_near_to_far_corners(prior):

@@ -76,10 +76,7 @@ def forward(sensor):
 def test_optimistix_runs_it(forward):
     with jax.enable_x64(True):
         found = optimistix.least_squares(
-            lambda y, target: forward.residual(y, target),
-            LeastChange(forward, 1e-9),
-            PRIORS,
-            args=INNER,
+            lambda y, target: forward.residual(y, target), LeastChange(forward, 1e-9), PRIORS, args=INNER
         )
     off = forward.residual(np.asarray(found.value), INNER)
     assert np.abs(off).max() <= 1e-9
@@ -96,10 +93,7 @@ def test_the_answer_is_the_nearest_to_the_prior(forward):
             prior,
             method="SLSQP",
             tol=1e-14,
-            constraints={
-                "type": "eq",
-                "fun": lambda p, target=target: forward.residual(p[None], target[None])[0],
-            },
+            constraints={"type": "eq", "fun": lambda p, target=target: forward.residual(p[None], target[None])[0]},
         )
         np.testing.assert_allclose(multipliers, oracle.x, atol=2e-4)
 

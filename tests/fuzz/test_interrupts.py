@@ -47,7 +47,7 @@ def test_builds_in_threads_give_equal_cubes():
     def built(dim: int) -> str:
         return digest(uplift.build(dim=dim, coefficients=5).data)
 
-    alone = {dim: built(dim) for dim in (3, 4, 5)}
-    dims = [3, 4, 5, 5, 4, 3]
+    alone = {dim: built(dim) for dim in (3, 4)}
+    dims = [3, 4, 4, 3]
     with ThreadPoolExecutor(len(dims)) as pool:
         assert list(pool.map(built, dims)) == [alone[dim] for dim in dims]

@@ -37,13 +37,7 @@ from uplift.scene.representations import find_representation
 from uplift.scene.representations.composite import enhanced_riemann, sun_composite
 from uplift.scene.representations.filters import COARSE_STRIDE, candidates, filtered_point_samples
 from uplift.scene.representations.models import trigonometric_moments
-from uplift.scene.representations.samples import (
-    linear,
-    point_samples,
-    riemann_sums,
-    wavelengths,
-    xyz_weights,
-)
+from uplift.scene.representations.samples import linear, point_samples, riemann_sums, wavelengths, xyz_weights
 
 
 @pytest.fixture(scope="module")

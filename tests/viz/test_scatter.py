@@ -27,12 +27,6 @@ def test_labels_of_close_points_do_not_overlap():
     assert (corners + sizes <= PANEL[2:]).all()
 
 
-def test_labels_without_room_are_left_out():
-    anchors, sizes = np.full((2, 2), 100.0), np.array([[40.0, 8.0], [400.0, 8.0]])
-    corners = place_labels(anchors, sizes, anchors, PANEL)
-    assert np.isnan(corners).any(axis=1).tolist() == [False, True]
-
-
 def test_label_does_not_cover_a_marker():
     anchors, markers = np.array([[100.0, 100.0]]), np.array([[100.0, 100.0], [120.0, 100.0]])
     (corner,) = place_labels(anchors, np.array([[40.0, 8.0]]), markers, PANEL)

@@ -10,7 +10,7 @@ from matplotlib.image import imread
 
 from tests.cube.hand_made import hand_made
 from uplift.colorimetry.srgb import encode
-from uplift.viz.sheet import BACKGROUND, GAP, HIGHLIGHT, RAMP, STATUS, Layout, compose, panels, write_sheet
+from uplift.viz.sheet import BACKGROUND, HIGHLIGHT, RAMP, STATUS, Layout, compose, panels, write_sheet
 
 COLOUR, DISTANCE, STATE, ERROR, ROUND = range(5)
 
@@ -60,23 +60,6 @@ def test_panels_of_missing_quantities_are_left_out():
     sheet = compose(data)
     assert sheet.image.shape[1::-1] == Layout(4, 3).size
     assert not {"Round", "Standard error"} & {label.text for label in sheet.labels}
-
-
-@pytest.mark.parametrize("dim", [2, 5, 23, 64])
-@pytest.mark.parametrize("count", [3, 4, 5])
-def test_layout(dim, count):
-    layout = Layout(dim, count)
-    width, height = layout.size
-    assert 900 < width < 3000
-    assert layout.columns * layout.rows >= dim
-    covered = np.zeros((height, width), dtype=int)
-    for panel, blue in product(range(count), range(dim)):
-        x, y = layout.tile(panel, blue)
-        covered[y : y + layout.pitch, x : x + layout.pitch] += 1
-    side = dim * layout.scale
-    assert covered.max() == 1
-    assert covered.sum() == count * dim * layout.pitch**2
-    assert layout.pitch - side == GAP
 
 
 def test_exr_is_flat_linear_rgb(tmp_path):

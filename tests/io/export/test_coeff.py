@@ -191,10 +191,7 @@ int main() {{
 
 @pytest.mark.parametrize(
     ("layout", "namespace", "name", "width", "space", "light"),
-    [
-        ("pbrt", "pbrt", "ACES2065_1", 3, "ACES2065-1", "D60"),
-        ("luisa", "luisa::render", "sRGB", 4, "sRGB", "D65"),
-    ],
+    [("pbrt", "pbrt", "ACES2065_1", 3, "ACES2065-1", "D60"), ("luisa", "luisa::render", "sRGB", 4, "sRGB", "D65")],
 )
 def test_sources_compile_to_the_numbers_of_the_table(
     small_cube, tmp_path, layout, namespace, name, width, space, light

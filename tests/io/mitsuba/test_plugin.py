@@ -162,29 +162,3 @@ def test_samples_are_radiance_over_density(mi, sky, radiance, monkeypatch):
         wavelengths, weight = emitter.sample_wavelengths(it, sample[0])
         expected = radiance(emitter, [0, 0, -1], list(wavelengths))
         np.testing.assert_allclose(weight * mi.pdf_rgb_spectrum(wavelengths), expected, rtol=1e-4)
-
-
-def test_a_white_wall_has_the_colour_of_the_sky(mi, table):
-    """Rendered by light and by BSDF samples."""
-    scene = mi.load_dict(
-        {
-            "type": "scene",
-            "integrator": {"type": "direct"},
-            "sky": {"type": "uplift_envmap", "bitmap": mi.Bitmap(np.full((4, 8, 3), SUNSET, np.float32))},
-            "wall": {
-                "type": "rectangle",
-                "bsdf": {"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.5}},
-            },
-            "camera": {
-                "type": "orthographic",
-                "to_world": mi.ScalarTransform4f().look_at(origin=[0, 0, 5], target=[0, 0, 0], up=[0, 1, 0]),
-                "film": {
-                    "type": "hdrfilm", "width": 4, "height": 4, "pixel_format": "xyz",
-                    "component_format": "float32", "rfilter": {"type": "box"},
-                },
-                "sampler": {"type": "multijitter", "sample_count": 256},
-            },
-        }
-    )  # fmt: skip
-    xyz = np.array(mi.render(scene, spp=256)).reshape(-1, 3).mean(axis=0)
-    np.testing.assert_allclose(xyz, 0.5 * table.xyz(SUNSET), rtol=0.03)

@@ -13,12 +13,7 @@ from uplift.colorimetry.lights import HELD_OUT_LIGHTS, SCENE_LIGHTS
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress
 from uplift.lab.study import held_out
-from uplift.lab.study.held_out import (
-    HoldoutSplit,
-    holdout,
-    local_linear,
-    split_records,
-)
+from uplift.lab.study.held_out import HoldoutSplit, holdout, local_linear, split_records
 from uplift.pipeline.build import build
 from uplift.report.fidelity import Answers
 
