@@ -1,7 +1,6 @@
 """The content of a cube, and the file that stores it."""
 
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
-from uplift.cube.file import contents, digest, read, write
-from uplift.cube.summary import summarise
+from uplift.cube.file import contents, digest, read, summarise, write
 
 __all__ = ["AtlasTable", "CubeData", "EntrySpectra", "contents", "digest", "read", "summarise", "write"]

@@ -231,7 +231,7 @@ class Cube:
         Cube
             The filled cube; this cube if no point is missing.
         """
-        from uplift.lookup.fill import fill_missing, missing_points
+        from uplift.lookup.outside import fill_missing, missing_points
 
         colours = None if rgb is None else blocks.as_colours(rgb, self.data.sensor).reshape(-1, 3)
         points = missing_points(self.data, colours)

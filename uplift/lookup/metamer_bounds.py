@@ -78,7 +78,7 @@ def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", division
     """
     data = cube.data
     volumes = mismatch_volumes(data.sensor, light, rgb, divisions)
-    spectra = reflectance_anywhere(cube, rgb, data.sensor.wavelengths, mode, ~in_unit_cube(rgb))
+    spectra = reflectance_anywhere(data, rgb, data.sensor.wavelengths, mode, ~in_unit_cube(rgb))
     xyz = spectra @ light.xyz.T
     errors = None if data.atlas.left_out is None else lab_errors(data, light)
     covariance = None if errors is None else errors.covariance(rgb)

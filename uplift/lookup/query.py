@@ -124,7 +124,7 @@ def _block(
     if outside.any():
         from uplift.lookup.outside import reflectance_anywhere
 
-        spectra = reflectance_anywhere(cube, answered, grid, mode, outside)
+        spectra = reflectance_anywhere(data, answered, grid, mode, outside)
     else:
         spectra = MODES[mode](data, rgb, grid)
     at_sensor = spectra[:, :count]

@@ -123,7 +123,7 @@ def entry_errors(cube: Cube, query: EntryQuery, lights: tuple[Sensor, ...]) -> E
     """Compare the answers of a cube in its default mode with the targets of a query."""
     data, target = cube.data, query.target
     inside = _inside(data, query.rgb)
-    spectra = reflectance_anywhere(cube, query.rgb, data.sensor.wavelengths, "spectra", ~in_unit_cube(query.rgb))
+    spectra = reflectance_anywhere(data, query.rgb, data.sensor.wavelengths, "spectra", ~in_unit_cube(query.rgb))
     answers = compare_spectra(spectra, target, [sensor.light for sensor in lights])
     errors = EntryErrors(
         names=query.names,
