@@ -1,7 +1,6 @@
 """``uplift build``."""
 
 import os
-import re
 
 import pytest
 
@@ -11,8 +10,6 @@ from .conftest import warning_lines
 
 SMALL = ("--dim", "4", "--coefficients", "4")
 LOOK = '[[look]]\nrgb = "#4060a0"\nA = "#5060a0"\n[[look]]\nrgb = "#8a2a20"\nHP1 = "#70392a"\nname = "brick"\n'
-NIKON = "Nikon 5100 (NPL)"
-CAMERA = ("--dim", "3", "--coefficients", "5", "--space", "camera", "--observer")
 
 
 def test_unrealisable_colours_are_counted(run, home):
@@ -76,20 +73,6 @@ def test_the_same_input_gives_the_same_bytes_and_warnings(run, home, macbeth):
         assert len(warnings) == result.stderr.count("\n")
 
 
-def test_verbose_prints_every_round_and_storing(run, home):
-    result = run("build", "-v", *SMALL, "-o", "cube")
-    rounds = [line for line in result.stderr.splitlines() if line.startswith("fitting: ")]
-    counts = [int(re.match(r"fitting: (\d+) of 64", line)[1]) for line in rounds]
-    assert counts == sorted(counts)
-    assert counts[-1] == 64
-    assert "\nstoring: 64 of 64" in result.stderr
-    assert not {"\x1b", "\r"} & set(result.stderr)
-    data = uplift.load(home / "cube").data
-    assert (data.lattice.dim, data.model.count, data.points.round) == (4, 4, None)
-    assert result.stdout.startswith("cube: 64 nodes, all within 0.0001 (worst ")
-    assert result.stdout.count("\n") == 1
-
-
 @pytest.mark.parametrize(
     ("args", "code"),
     [
@@ -128,15 +111,3 @@ def test_looks_are_built_summarised_and_shown(run, home):
     line = next(line for line in run("info", "looks.uplift").stdout.splitlines() if line.startswith("look brick"))
     assert line.split()[2:] == ["HP1", "#70392a", "(ΔE00", "0.00)"]
     run("check", "looks.uplift")
-
-
-def test_a_camera_cube_is_built_queried_shown_and_checked(run, ask):
-    run("build", *CAMERA, NIKON, "--quiet")
-    query = ("query", "--cube", "camera-3.uplift", 0.5, 0.5, 0.5)
-    answer = ask(*query, "--mode", "refined")
-    assert answer["round_trip"]["rgb"] == pytest.approx([0.5, 0.5, 0.5], abs=1e-4)
-    assert len(answer["xyz"]) == 3
-    assert "XYZ" in run(*query).stdout
-    facts = ask("info", "camera-3.uplift")
-    assert (facts["space"], facts["provenance"]["options"]["observer"]) == (NIKON, NIKON)
-    run("check", "camera-3.uplift")

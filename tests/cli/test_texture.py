@@ -62,15 +62,6 @@ def test_invalid_input_is_an_error(refuse, frames, words, code):
     assert refuse("texture", *words).code == code
 
 
-def test_out_of_gamut(run, refuse, frames, cubes):
-    words = ("texture", "shot.1.exr", "-o", "out.exr", "--cube", cubes / "moments-8.uplift")
-    (warning,) = warning_lines(run(*words, "--out-of-gamut", "scale"))
-    assert re.search(r"\d+ of 30 pixels", warning)
-    stored = OpenEXR.File("out.exr", separate_channels=True).channels()
-    assert max(stored[letter].pixels.max() for letter in "RGB") == 1
-    assert refuse(*words, "--force", "--out-of-gamut", "error").code == "rgb-out-of-gamut"
-
-
 def test_masks_choose_among_cubes(run, refuse, misuse, frames, cubes):
     two = ("--cube", cubes / "moments-8.uplift", "--cube", cubes / "moments-8-macbeth.uplift")
     options = ("--mask", "mask.exr", *two, "--representation", "moments")

@@ -131,24 +131,6 @@ def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch, 
         assert (difference > 2e-4).mean() < 1e-3  # nearly box-shaped spectra at the faces
 
 
-@pytest.mark.parametrize("grow", [grow_outward, grow_coarse_to_fine])
-def test_a_correction_saves_steps(sensor, monkeypatch, grow):
-    lattice = Lattice(observer.axis_nodes("srgb", 17))
-    problem, nodes = Problem(sensor, MODEL), all_nodes(lattice)
-    prior = prior_of(problem)
-    solve, counts = Problem.solve, []
-    monkeypatch.setattr(Problem, "solve", lambda self, *args: counts.append(len(args[0])) or solve(self, *args))
-
-    def solved_again():
-        counts.clear()
-        grow(problem, nodes, lambda at: prior(nodes.goal(at)), NO_SEEDS, ignore_progress)
-        return sum(counts) - lattice.size
-
-    with_corrections = solved_again()
-    monkeypatch.setattr("uplift.fit.growth.MAX_CORRECTION", 0.0)
-    assert with_corrections < 0.9 * solved_again()
-
-
 def test_an_unrealisable_colour_has_status_unfitted(sensor):
     """The green corner of ProPhoto RGB, not declared as unrealisable. Other points are not affected."""
     wide = observer.sensor("ProPhoto RGB", "D65")

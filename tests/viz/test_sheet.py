@@ -55,13 +55,6 @@ def test_distance_is_logarithmic_up_to_the_threshold(distance, colour):
     np.testing.assert_allclose(panel.colours, np.broadcast_to(colour, (64, 3)), atol=1e-9)
 
 
-def test_panels_of_missing_quantities_are_left_out():
-    data = hand_made(round=None, standard_error=None)
-    sheet = compose(data)
-    assert sheet.image.shape[1::-1] == Layout(4, 3).size
-    assert not {"Round", "Standard error"} & {label.text for label in sheet.labels}
-
-
 def test_exr_is_flat_linear_rgb(tmp_path):
     data = hand_made()
     write_sheet(data, tmp_path / "sheet.exr")
