@@ -66,7 +66,7 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
             say(f"  {line}")
         say()
         worst = result.confirmed.worst
-        paragraph(f"{result.scene.path.name}: {result.chosen.candidate.name}")
+        paragraph(f"{result.scene.path.name}: {result.chosen.name}")
         paragraph(f"{verdict(result)} ({worst.group} under {worst.light}). {' '.join(notes(result))}")
         say()
         table = make_table(("",), HEADINGS[:4])

@@ -54,7 +54,7 @@ def test_the_page_fits_and_is_accessible(planned, tmp_path):
 def test_command_lines_are_accepted(planned, tmp_path, pixel):
     found, path = planned[0], tmp_path / "my plan.plan.json"
     assert cube_name(path) == "my plan.uplift"
-    chosen = dataclasses.replace(found.chosen, candidate=dataclasses.replace(found.chosen.candidate, pixel=pixel))
+    chosen = dataclasses.replace(found.chosen, pixel=pixel)
     for line in commands(dataclasses.replace(found, chosen=chosen), path):
         program, name, *arguments = shlex.split(line)
         assert program == "uplift"

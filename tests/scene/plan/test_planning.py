@@ -29,13 +29,13 @@ def test_the_choice_is_the_cheapest_within_the_tolerance(planned):
     assert found.chosen.error.quantile <= found.scene.tolerance
     sufficient = [each for each in found.measured if each.error.quantile <= found.scene.tolerance]
     assert min(each.cost.ranked("balance") for each in sufficient) == found.chosen.cost.ranked("balance")
-    assert found.options["dim"] == found.chosen.candidate.cube.dim
+    assert found.options["dim"] == found.chosen.cube.dim
     assert found.chosen in found.front
 
 
 def test_an_unknown_cost_of_a_cube_is_close_to_its_file(planned):
     found, _ = planned
-    pixels = 20 * 20 * found.chosen.candidate.pixel.size(0, int(found.chosen.cost.samples))
+    pixels = 20 * 20 * found.chosen.pixel.size(0, int(found.chosen.cost.samples))
     assert found.chosen.cost.memory == pytest.approx(found.final_build.size + pixels, rel=0.25)
 
 
@@ -61,10 +61,8 @@ def test_an_independent_computation_on_every_pixel_agrees(planned, kitchen):
     best = uplift.build(atlas, scene=scene, dim=SMALL.reference, coefficients=9, **options)
     cube = uplift.build(atlas, scene=scene, **found.options)
     spectra = cube.reflectance(rgb, found.rendering.sampling.wavelengths)
-    if found.chosen.candidate.pixel.form == "moments":
-        stored = cube.coefficients(rgb).astype(
-            np.float16 if found.chosen.candidate.pixel.depth == "half" else np.float32
-        )
+    if found.chosen.pixel.form == "moments":
+        stored = cube.coefficients(rgb).astype(np.float16 if found.chosen.pixel.depth == "half" else np.float32)
         spectra = models.reflectance(cube.data.model, stored.astype(float), found.rendering.sampling.wavelengths)
     for light in LIGHTS:
         white = colour.XYZ_to_xy(integrated(np.ones((1, 81)), light)[0])
@@ -104,7 +102,7 @@ def planned_for(tmp_path, rgb, lights=LIGHTS, **values):
 
 def test_a_scene_under_the_light_of_its_space_needs_no_spectra(tmp_path):
     found = planned_for(tmp_path, painted(), ("D65",))
-    assert found.chosen.candidate == WITHOUT_SPECTRA
+    assert found.chosen.rendering == WITHOUT_SPECTRA
     assert found.confirmed.quantile < 1e-3
     assert "no spectra" in " ".join(notes(found))
     path = tmp_path / "a.plan.json"
@@ -120,7 +118,7 @@ def test_a_scene_under_the_light_of_its_space_needs_no_spectra(tmp_path):
 
 def test_black_images_need_no_texture(tmp_path):
     found = planned_for(tmp_path, np.zeros((60, 80, 3)), tolerance=0.3, minimise="memory")
-    candidate = found.chosen.candidate
+    candidate = found.chosen
     assert found.within_tolerance
     assert candidate.pixel.form == "index"
 
@@ -128,7 +126,7 @@ def test_black_images_need_no_texture(tmp_path):
 def test_a_list_of_spectra_is_written(tmp_path):
     rgb = np.repeat([[[0.6, 0.1, 0.05], [0.05, 0.3, 0.6], [0.3, 0.6, 0.1]]], 500, axis=0)
     found = planned_for(tmp_path, rgb, ("D65", "A", "FL11"), tolerance=1.0)
-    assert found.chosen.candidate.pixel.form == "index"
+    assert found.chosen.pixel.form == "index"
     values = to_json(found, tmp_path / "a.plan.json")
     assert len(values["spectra"]) == 3
     spectra = np.array([each["reflectance"] for each in values["spectra"]])
@@ -153,7 +151,7 @@ def test_the_plan_file_builds_the_same_cube(planned, plan_file):
     write()
     cube, final = read_plan(path).build(), planned[0].final_build
     np.testing.assert_array_equal(cube.data.points.coefficients, final.cube.data.points.coefficients)
-    assert (cube.data.complete_cells is not None) == planned[0].chosen.candidate.sparse
+    assert (cube.data.complete_cells is not None) == planned[0].chosen.sparse
 
 
 def test_changed_and_missing_sources_are_refused(plan_file):

@@ -1,5 +1,6 @@
 """The search against all candidates of small spaces, with errors that are injected, and of a real scene."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -7,18 +8,27 @@ import pytest
 
 from tests.scene.plan.conftest import SMALL
 from uplift.scene import plan
-from uplift.scene.plan.candidates import MINIMISE, Candidate, Cost, CubeChoice, Measured, Pixel
+from uplift.scene.plan.candidates import (
+    MINIMISE,
+    Candidate,
+    Cost,
+    CubeChoice,
+    Pixel,
+    explore,
+    pareto_front,
+    positions,
+    sufficient,
+)
 from uplift.scene.plan.context import prepare_context
 from uplift.scene.plan.evaluation import ErrorSummary, GroupError
-from uplift.scene.plan.search import Estimate, explore, pareto_front, positions, sufficient
 from uplift.scene.plan.space import CandidateSpace
 
 PIXELS = (Pixel("spectrum", "half"), Pixel("rgb", mode="moments"))
 LIMITS = ({}, {"samples": 5}, {"samples": 6, "memory": 900.0}, {"time": 40.0})
 
 
-def measured(candidate, cost, error):
-    return Measured(candidate, cost, ErrorSummary((GroupError("textures", "D65", error, error, error),)))
+def measured(candidate, error):
+    return replace(candidate, error=ErrorSummary((GroupError("textures", "D65", error, error, error),)))
 
 
 def independent_errors(rng, choice, samples):
@@ -31,17 +41,16 @@ def arbitrary_errors(rng, choice, samples):
 
 
 def small_space(errors, seed, looseness=1.0):
-    """72 candidates with their true errors, and bounds from 0.5 to 1 of these times the ``looseness``."""
-    rng, estimates, truth = np.random.default_rng(seed), [], {}
+    """72 candidates with bounds from 0.5 to 1 of their true errors, times the ``looseness``, and measured ones."""
+    rng, truth = np.random.default_rng(seed), {}
     for count, dim, samples, pixel in product((3, 5, 9), (4, 8, 12), (3, 5, 7, 9), PIXELS):
         choice = CubeChoice("moments", count, "none", dim, "srgb")
         memory = count * dim**3 / 10 + 100 * (samples if pixel.depth else 3)
         cost = Cost(memory, samples * 7 + (not pixel.depth) * count, samples)
-        candidate = Candidate(str(samples), pixel, choice)
-        truth[candidate] = measured(candidate, cost, errors(rng, choice, samples))
-        bound = truth[candidate].error.quantile * rng.uniform(0.5, 1) * looseness
-        estimates.append(Estimate(candidate, cost, bound))
-    return estimates, truth
+        error = errors(rng, choice, samples)
+        candidate = Candidate(str(samples), pixel, cost, choice, bound=error * rng.uniform(0.5, 1) * looseness)
+        truth[candidate] = measured(candidate, error)
+    return truth
 
 
 def cheapest_cost(candidates, tolerance, minimise, limits):
@@ -49,8 +58,8 @@ def cheapest_cost(candidates, tolerance, minimise, limits):
     return found[0].cost.ranked(minimise) if found else None
 
 
-def explored(estimates, truth):
-    return explore(estimates, lambda choice, batch: [truth[each.candidate] for each in batch], 0.0)
+def explored(truth):
+    return explore(truth, lambda choice, batch: [truth[each] for each in batch], 0.0)
 
 
 CHOICES = list(product((0.4, 0.8, 1.2, 2.0), MINIMISE, LIMITS))
@@ -59,8 +68,8 @@ CHOICES = list(product((0.4, 0.8, 1.2, 2.0), MINIMISE, LIMITS))
 @pytest.mark.parametrize("errors", [independent_errors, arbitrary_errors])
 @pytest.mark.parametrize("seed", range(5))
 def test_no_cheaper_candidate_of_a_small_space_suffices(errors, seed):
-    estimates, truth = small_space(errors, seed)
-    found = explored(estimates, truth)
+    truth = small_space(errors, seed)
+    found = explored(truth)
     for tolerance, minimise, limits in CHOICES:
         expected = cheapest_cost(truth.values(), tolerance, minimise, limits)
         assert cheapest_cost(found, tolerance, minimise, limits) == expected
@@ -72,15 +81,15 @@ def test_no_cheaper_candidate_of_a_small_space_suffices(errors, seed):
 def test_the_check_can_fail():
     wrong = 0
     for seed in range(5):
-        estimates, truth = small_space(arbitrary_errors, seed, looseness=4)
-        found = explored(estimates, truth)
+        truth = small_space(arbitrary_errors, seed, looseness=4)
+        found = explored(truth)
         wrong += sum(cheapest_cost(found, *each) != cheapest_cost(truth.values(), *each) for each in CHOICES)
     assert wrong
 
 
 def test_the_front_has_what_nothing_dominates():
     rows = np.random.default_rng(0).integers(0, 4, (60, 4))
-    candidates = [measured(Candidate(str(row), PIXELS[0]), Cost(*row[:3]), float(row[3])) for row in rows]
+    candidates = [measured(Candidate(str(row), PIXELS[0], Cost(*row[:3])), float(row[3])) for row in rows]
     front = positions(pareto_front(candidates))
     for row in rows:
         assert any((kept <= row).all() for kept in front)
@@ -92,7 +101,7 @@ def test_the_front_has_what_nothing_dominates():
 def test_bounds_of_a_real_scene_exclude_no_cheaper_candidate(kitchen, planned):
     scene = plan.read_scene_file(kitchen)
     space = CandidateSpace(prepare_context(scene, SMALL, lambda progress: None))
-    everything = explore([each._replace(bound=0.0) for each in space.estimates()], space.measure, 0.0)
+    everything = explore([replace(each, bound=0.0) for each in space.candidates()], space.measure, 0.0)
     found, _ = planned
     assert len(found.measured) <= len(everything) <= found.considered
     for tolerance, minimise in product((2.5, 4.0, 6.0), MINIMISE):

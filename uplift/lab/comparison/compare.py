@@ -23,7 +23,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError, UpliftError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lab.timing import Spread, environment, time_laps
-from uplift.scene.plan.search import front
+from uplift.scene.plan.candidates import front
 from uplift.scene.representations import filters, samples
 from uplift.scene.representations.filters import Filter
 from uplift.scene.representations.samples import Representation

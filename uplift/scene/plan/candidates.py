@@ -1,5 +1,7 @@
-"""Candidates of a plan, and what they cost: bytes, operations per pixel and light, and samples per ray."""
+"""Candidates of a plan, what they cost (bytes, operations per pixel and light, samples per ray), and the search."""
 
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from math import prod
@@ -7,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Mask
 from uplift.common.errors import UpliftError
 from uplift.io import texture
 from uplift.lookup import Cube
@@ -134,29 +136,93 @@ PIXELS = (
 """Pixels that need a cube."""
 
 
+UNMEASURED = ErrorSummary(())
+
+
 @dataclass(frozen=True)
 class Candidate:
     """A complete choice: a cube, with all cells or those of the textures, pixels, and the name of a `Rendering`.
 
-    Without a cube, pixels are RGB or an index.
+    Without a cube, pixels are RGB or an index. ``bound`` is a lower bound of its ΔE00, ``error`` that of the test
+    colours once it is measured.
     """
 
     rendering: str
     pixel: Pixel
+    cost: Cost
     cube: CubeChoice | None = None
     sparse: bool = False
+    bound: float = 0.0
+    error: ErrorSummary = UNMEASURED
+
+    @property
+    def cube_name(self) -> str:
+        """Short text, empty without a cube."""
+        return f"{self.cube.name}{' sparse' * self.sparse}" if self.cube else ""
 
     @property
     def name(self) -> str:
         """Short text."""
-        cube = f"{self.cube.name}{' sparse' * self.sparse}; " if self.cube else ""
-        return f"{cube}{self.rendering}; {self.pixel.name}"
+        return "; ".join(filter(None, (self.cube_name, self.rendering, self.pixel.name)))
 
 
-@dataclass(frozen=True)
-class Measured:
-    """A candidate with its costs and its error on the test colours."""
+Measure = Callable[[CubeChoice | None, Sequence[Candidate]], list[Candidate]]
+"""Builds the cube that candidates share, and measures their errors."""
 
-    candidate: Candidate
-    cost: Cost
-    error: ErrorSummary
+
+def explore(candidates: Iterable[Candidate], measure: Measure, floor: float) -> list[Candidate]:
+    """Measure the candidates that may be on the Pareto front, by branch and bound, cubes of few bytes first.
+
+    Candidates that share a cube are measured together, as they cost one build. One is left out if a measured one
+    dominates it: no cost is larger, and its error is at most the lower bound of the other's. Errors below the ``floor``
+    count as equal. If every bound holds, none that is left out costs less than the cheapest measured one of its error.
+    """
+    groups: dict[CubeChoice | None, list[Candidate]] = defaultdict(list)
+    for candidate in candidates:
+        groups[candidate.cube].append(candidate)
+    measured, best = list[Candidate](), np.empty((0, 4))
+    for cube in sorted(groups, key=lambda cube: min(each.cost.memory for each in groups[cube])):
+        rows = np.array([(*each.cost, max(each.bound, floor)) for each in groups[cube]])
+        promising = [groups[cube][row] for row in np.flatnonzero(~dominated(rows, best))]
+        if promising:
+            measured += measure(cube, promising)
+            best = positions(pareto_front(measured), floor)
+    return measured
+
+
+def dominated(rows: Array, by: Array) -> Mask:
+    """Rows (m, k) for which a row of ``by`` (f, k) is nowhere larger."""
+    return np.asarray((by[:, None] <= rows).all(axis=2).any(axis=0))
+
+
+def front(rows: Array) -> list[int]:
+    """Numbers of the rows (m, k) that no other dominates, smallest rows first; of equal rows the first."""
+    kept: list[int] = []
+    for row in np.lexsort(rows.T[::-1]).tolist():  # what dominates a row comes before it
+        if not dominated(rows[[row]], rows[kept])[0]:
+            kept.append(row)
+    return kept
+
+
+def positions(measured: Sequence[Candidate], floor: float = 0.0) -> Array:
+    """Costs and errors (m, 4) of candidates."""
+    return np.array([(*each.cost, max(each.error.quantile, floor)) for each in measured]).reshape(-1, 4)
+
+
+def pareto_front(measured: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates that no other dominates in cost and error, by ascending error; one of equal ones."""
+    return sorted((measured[row] for row in front(positions(measured))), key=lambda each: each.error.quantile)
+
+
+def cheapest_first(measured: Iterable[Candidate], minimise: str) -> list[Candidate]:
+    """Candidates by cost, then by error."""
+    return sorted(measured, key=lambda each: (each.cost.ranked(minimise), each.error.quantile))
+
+
+def sufficient(
+    measured: Iterable[Candidate], tolerance: float, minimise: str, limits: Mapping[str, float]
+) -> list[Candidate]:
+    """Candidates within the tolerance and the limits of costs, cheapest first."""
+    found = (each for each in measured if each.error.quantile <= tolerance)
+    allowed = (each for each in found if all(getattr(each.cost, key) <= limits[key] for key in limits))
+    return cheapest_first(allowed, minimise)

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from uplift.scene.plan.candidates import INDEX, Measured
+from uplift.scene.plan.candidates import INDEX, Candidate, cheapest_first
 from uplift.scene.plan.plan_file import commands
 from uplift.scene.plan.planning import Plan, cost_text
 from uplift.viz.format import format_error, format_size, pluralise
@@ -21,7 +21,7 @@ def page(plan: Plan, path: Path) -> str:
     return render(
         TEMPLATE,
         title=f"Plan for {plan.scene.path.stem}",
-        lead=f"{plan.chosen.candidate.name}: {verdict(plan)}.",
+        lead=f"{plan.chosen.name}: {verdict(plan)}.",
         notes=notes(plan),
         commands=commands(plan, path),
         headings=HEADINGS,
@@ -32,22 +32,21 @@ def page(plan: Plan, path: Path) -> str:
     )
 
 
-def front_rows(plan: Plan) -> list[Measured]:
+def front_rows(plan: Plan) -> list[Candidate]:
     """The choice, and candidates whose error is clearly below that of all cheaper ones, by what the scene minimises."""
-    found: list[Measured] = []
-    for each in sorted(plan.measured, key=lambda each: (each.cost.ranked(plan.scene.minimise), each.error.quantile)):
+    found: list[Candidate] = []
+    for each in cheapest_first(plan.measured, plan.scene.minimise):
         smallest = min((other.error.quantile for other in found), default=float("inf"))
         if each is plan.chosen or each.error.quantile < CLEARLY_SMALLER * smallest:
             found.append(each)
     return found
 
 
-def front_row(measured: Measured) -> tuple[str, ...]:
+def front_row(measured: Candidate) -> tuple[str, ...]:
     """Texts of a candidate in the order of `HEADINGS`."""
-    candidate, cost = measured.candidate, measured.cost
-    cube = f"{candidate.cube.name}{' sparse' * candidate.sparse}" if candidate.cube else ""
+    cost, words = measured.cost, (measured.cube_name, measured.rendering, measured.pixel.name)
     costs = (format_size(cost.memory), f"{cost.time:,.0f}", f"{cost.samples:g}")
-    return format_error(measured.error.quantile), *costs, cube, candidate.rendering, candidate.pixel.name
+    return format_error(measured.error.quantile), *costs, *words
 
 
 def verdict(plan: Plan) -> str:
@@ -61,7 +60,7 @@ def verdict(plan: Plan) -> str:
 
 def notes(plan: Plan) -> list[str]:
     """What the choice costs, whether the scene needs spectra, and what its colours are worth."""
-    cost, final, candidate = plan.chosen.cost, plan.final_build, plan.chosen.candidate
+    cost, final = plan.chosen.cost, plan.final_build
     shared = f" for {pluralise(len(plan.scene.textures), 'texture')}" if len(plan.scene.textures) > 1 else ""
     cube = f", of which one cube{shared} {format_size(final.size)}" if final else ""
     found = [f"It costs {format_size(cost.memory)}{cube}, {cost_text(cost, 'time')} and {cost_text(cost, 'samples')}."]
@@ -70,7 +69,7 @@ def notes(plan: Plan) -> list[str]:
     else:
         rgb = format_error(plan.without_spectra.quantile)
         found.append(f"Without spectra, by RGB and the best 3 × 3 matrix per light, ΔE00 is {rgb}.")
-    if candidate.pixel.form == INDEX and plan.spectra is not None:
+    if plan.chosen.pixel.form == INDEX and plan.spectra is not None:
         found.append(f"The textures have {pluralise(len(plan.spectra[0]), 'colour')}: a list of spectra suffices.")
     if plan.expected_error is not None:
         found.append(_yardstick(plan, plan.expected_error))

@@ -29,6 +29,7 @@ FORMAT: Literal["uplift plan 1"] = "uplift plan 1"
 HINT = "plan the scene again"
 MAX_FILES = 10_000
 SUFFIX = ".plan.json"
+CANDIDATE_KEYS = ("rendering", "pixel", "cube", "sparse")
 SCENE_KEYS = ("lights", "tolerance", "quantile", "encoding", "minimise", "limits")
 
 
@@ -37,7 +38,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
 
     ``path`` is the file to write them to: paths of textures and atlases are relative to its folder.
     """
-    scene, final, candidate = plan.scene, plan.final_build, plan.chosen.candidate
+    scene, final, chosen = plan.scene, plan.final_build, plan.chosen
     # All options in JSON values, so that later defaults do not change the build.
     options = {
         key: list(each) if isinstance(each, tuple) else each for key, each in asdict(Options(**plan.options)).items()
@@ -51,27 +52,27 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
             "textures": _sources(scene.textures, path),
             "atlases": _sources(scene.atlases, path),
         },
-        "name": candidate.name,
+        "name": chosen.name,
         "build": options if final else None,
-        "cells": "sparse" if candidate.sparse else "whole",
-        "texture": asdict(candidate.pixel),
+        "cells": "sparse" if chosen.sparse else "whole",
+        "texture": asdict(chosen.pixel),
         "rendering": _rendering_json(plan),
         "spectra": plan.spectra
         and [{"rgb": rgb.tolist(), "reflectance": row.tolist()} for rgb, row in zip(*plan.spectra, strict=True)],
         "error": {
-            "predicted": {**asdict(plan.chosen.error.worst), **asdict(plan.chosen.error)},
-            "confirmed": {**asdict(plan.confirmed.worst), **asdict(plan.confirmed)},
+            "predicted": asdict(chosen.error.worst) | asdict(chosen.error),
+            "confirmed": asdict(plan.confirmed.worst) | asdict(plan.confirmed),
             "within": plan.within_tolerance,
             "without_spectra": plan.without_spectra.quantile,
             "expected_of_measurements": plan.expected_error,
         },
         "cost": {
-            **plan.chosen.cost._asdict(),
+            **chosen.cost._asdict(),
             **({"points": final.points, "bytes": final.size, "cpu_seconds": final.seconds} if final else {}),
         },
         "search": {"considered": plan.considered, "measured": len(plan.measured)},
         "front": [
-            {"name": each.candidate.name, **asdict(each.candidate), **each.cost._asdict()}
+            {"name": each.name, **{key: asdict(each)[key] for key in CANDIDATE_KEYS}, **each.cost._asdict()}
             | {"error": asdict(each.error.worst)}
             for each in plan.front
         ],
@@ -104,7 +105,7 @@ def cube_name(plan_path: StrPath) -> str:
 
 def commands(plan: Plan, path: Path) -> tuple[str, ...]:
     """Command lines for a plan at ``path``: its build, and its textures or the program that looks colours up."""
-    scene, pixel = plan.scene, plan.chosen.candidate.pixel
+    scene, pixel = plan.scene, plan.chosen.pixel
     if plan.final_build is None:
         return ()
     build, cube = f"uplift build --plan {shlex.quote(str(path))}", cube_name(path)

@@ -3,7 +3,7 @@
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +15,12 @@ from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.scene_colours import Images
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
-from uplift.scene.plan.candidates import INDEX, Cost, Measured
+from uplift.scene.plan.candidates import INDEX, Candidate, Cost, explore, pareto_front, sufficient
 from uplift.scene.plan.context import PlanContext, SearchGrid, prepare_context
 from uplift.scene.plan.evaluation import ErrorSummary
 from uplift.scene.plan.renderings import Rendering
 from uplift.scene.plan.scene_file import SceneFile
-from uplift.scene.plan.search import explore, pareto_front, sufficient
-from uplift.scene.plan.space import WITHOUT_SPECTRA, CandidateSpace, Evaluator
+from uplift.scene.plan.space import CandidateSpace
 from uplift.viz.format import format_error, format_size
 
 FINALISTS = 6
@@ -52,11 +51,11 @@ class Plan:
     ----------
     scene : SceneFile
         The scene file.
-    measured : tuple of Measured
+    measured : tuple of Candidate
         Candidates that were measured.
     considered : int
         Number of candidates, most of which bounds exclude.
-    chosen : Measured
+    chosen : Candidate
         The cheapest candidate within the tolerance and the limits that was confirmed.
     confirmed : ErrorSummary
         Its error on other pixels.
@@ -78,9 +77,9 @@ class Plan:
     """
 
     scene: SceneFile
-    measured: tuple[Measured, ...]
+    measured: tuple[Candidate, ...]
     considered: int
-    chosen: Measured
+    chosen: Candidate
     confirmed: ErrorSummary
     rendering: Rendering | None
     matrices: Array
@@ -91,8 +90,8 @@ class Plan:
     expected_error: float | None
 
     @property
-    def front(self) -> list[Measured]:
-        """Measured candidates that no other dominates in memory, time, samples, and error."""
+    def front(self) -> list[Candidate]:
+        """Candidate candidates that no other dominates in memory, time, samples, and error."""
         return pareto_front(self.measured)
 
     @property
@@ -100,7 +99,7 @@ class Plan:
         """Whether the confirmed error is within the tolerance."""
         return self.confirmed.quantile <= self.scene.tolerance
 
-    def cheapest(self, tolerance: float) -> Measured | None:
+    def cheapest(self, tolerance: float) -> Candidate | None:
         """Find what the scene would need with another tolerance.
 
         Parameters
@@ -110,7 +109,7 @@ class Plan:
 
         Returns
         -------
-        Measured or None
+        Candidate or None
             The cheapest measured candidate within it and the limits of the scene.
         """
         found = sufficient(self.measured, tolerance, self.scene.minimise, self.scene.limits)
@@ -143,20 +142,19 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     """
     context = prepare_context(scene, grid or SearchGrid(), progress)
     space = CandidateSpace(context)
-    measured = explore(space.estimates(), space.measure, space.floor)
+    measured = explore(space.candidates(), space.measure, space.floor)
     finalists = sufficient(measured, scene.tolerance, scene.minimise, scene.limits)
     if not finalists:
         raise no_candidate(scene, measured)
     chosen, confirmed = _confirm(context, space, finalists)
-    candidate = chosen.candidate
-    rendering = space.evaluator.renderings.get(candidate.rendering)
+    rendering = space.evaluator.renderings.get(chosen.rendering)
     textures = context.colours.predicting
     spectra = None
-    if candidate.pixel.form == INDEX and rendering is not None and context.colours.few is not None:
+    if chosen.pixel.form == INDEX and rendering is not None and context.colours.few is not None:
         colours = context.colours.few
         cube = context.cube(colours, context.reference)
         spectra = colours, cube.reflectance(colours, rendering.wavelengths)
-    options = {} if candidate.cube is None else {**context.options, **candidate.cube.options}
+    options = {} if chosen.cube is None else {**context.options, **chosen.cube.options}
     progress(Progress("final build", 0, 1))
     return Plan(
         scene=scene,
@@ -165,34 +163,34 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         chosen=chosen,
         confirmed=confirmed,
         rendering=rendering,
-        matrices=space.matrices,
-        without_spectra=space.evaluator.errors(None, [WITHOUT_SPECTRA], space.matrices)[0],
+        matrices=space.evaluator.matrices,
+        without_spectra=space.without_spectra,
         options=options,
-        final_build=_build(context, options, sparse=candidate.sparse) if options else None,
+        final_build=_build(context, options, sparse=chosen.sparse) if options else None,
         spectra=spectra,
         expected_error=_expected_error(space.evaluator.reference, scene, textures.rgb, textures.share),
     )
 
 
 def _confirm(
-    context: PlanContext, space: CandidateSpace, finalists: Sequence[Measured]
-) -> tuple[Measured, ErrorSummary]:
+    context: PlanContext, space: CandidateSpace, finalists: Sequence[Candidate]
+) -> tuple[Candidate, ErrorSummary]:
     """The first finalist within the tolerance on other pixels, or else the one of the smallest error there."""
     context.progress(Progress("confirmation", 0, 1))
-    other = Evaluator(*context.evaluation_set(context.colours.confirming), space.evaluator.renderings)
-    tried: list[tuple[Measured, ErrorSummary]] = []
+    tests, reference = context.evaluation_set(context.colours.confirming)
+    other = replace(space.evaluator, tests=tests, reference=reference)
+    tried: list[tuple[Candidate, ErrorSummary]] = []
     for each in finalists:
         if tried and each.error.quantile > CLEARLY_SMALLER * tried[-1][0].error.quantile:
             continue
-        choice = each.candidate.cube
-        cube = None if choice is None else context.cube(other.tests.rgb, choice)
-        tried.append((each, other.errors(cube, [each.candidate], space.matrices)[0]))
+        cube = None if each.cube is None else context.cube(tests.rgb, each.cube)
+        tried.append((each, other.measure(cube, [each])[0].error))
         if tried[-1][1].quantile <= context.scene.tolerance or len(tried) == FINALISTS:
             break
     return min(tried, key=lambda each: (each[1].quantile > context.scene.tolerance, each[1].quantile))
 
 
-def no_candidate(scene: SceneFile, measured: Sequence[Measured]) -> PlanFileError:
+def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileError:
     """The error if no candidate is within the tolerance, or within the limits as well."""
     enough = sufficient(measured, scene.tolerance, scene.minimise, {})
     if not enough:
@@ -205,7 +203,7 @@ def no_candidate(scene: SceneFile, measured: Sequence[Measured]) -> PlanFileErro
             hint=f"set tolerance = {np.ceil(best.quantile * 110) / 100:g} or more",
         )
 
-    def excess(each: Measured) -> float:
+    def excess(each: Candidate) -> float:
         return sum(max(getattr(each.cost, key) / limit, 1) for key, limit in scene.limits.items())
 
     cheapest = min(enough, key=excess)

@@ -12,9 +12,9 @@ from uplift.colorimetry.delta_e import delta_e_2000_weights, lab_jacobian
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress
+from uplift.scene.plan.candidates import UNMEASURED, front
 from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.evaluation import ErrorSummary, EvaluationSet
-from uplift.scene.plan.search import front
 from uplift.scene.representations import Representation, all_representations, samples
 from uplift.scene.wavelengths import Sampling, choose, make_setup
 from uplift.scene.wavelengths.sampling import RenderSetup, interp_curves
@@ -27,7 +27,6 @@ MAX_MEYER = 12
 """Meyer's wavelengths that are tried; more take long."""
 FAMILIES = ("PS", "PF", "RS", "RE", "CS", "GQ", "LM")
 """Representations that are tried: no models, which cubes have, and none with noise."""
-NO_ERROR = ErrorSummary(())
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +44,7 @@ class Rendering:
     surface: float
     wavelengths: Array
     xyz: Callable[[Array], Array]
-    error: ErrorSummary = NO_ERROR
+    error: ErrorSummary = UNMEASURED
     sampling: Sampling | None = None
 
 

@@ -5,7 +5,7 @@ lattice add, to predict the error of a cube. The squares of the errors of a cube
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -20,11 +20,10 @@ from uplift.io.scene_colours import cells_touched
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
 from uplift.models import Moments, Sigmoid
-from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, CubeChoice, Measured, Pixel
+from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, CubeChoice, Pixel
 from uplift.scene.plan.context import PlanContext
 from uplift.scene.plan.evaluation import ErrorSummary, EvaluationSet
 from uplift.scene.plan.renderings import Rendering, fit_matrices, renderings
-from uplift.scene.plan.search import Estimate
 
 FLOOR, CEILING = 0.5, 2.0
 """Shares of the tolerance below which errors count as equal, and above which candidates are not measured."""
@@ -36,35 +35,36 @@ PROBE = 9
 """Coefficients of the cubes that measure lattices."""
 LEAST_BYTES, POINT_NUMBER = 4, 4
 """Bytes of a coefficient, unless colours need 8, and of the number of a point in a sparse file."""
-WITHOUT_SPECTRA = Candidate("RGB × light", Pixel(RGB))
-"""RGB, and a matrix for each light."""
+WITHOUT_SPECTRA = "RGB × light"
+"""Name of the rendering of RGB, by a matrix for each light."""
 
 
 @dataclass(frozen=True, eq=False)
 class Evaluator:
-    """Errors of candidates on test colours, with the ``reference`` cube of these colours."""
+    """Test colours, the ``reference`` cube of these, renderings by name, and matrices (K, 3, 3) of RGB."""
 
     tests: EvaluationSet
     reference: Cube
     renderings: dict[str, Rendering]
+    matrices: Array
 
-    def errors(self, cube: Cube | None, candidates: Sequence[Candidate], matrices: Array) -> list[ErrorSummary]:
-        """Errors of candidates that share a cube. ``matrices`` (K, 3, 3) are those of RGB."""
-        names = dict.fromkeys(each.rendering for each in candidates if each != WITHOUT_SPECTRA)
+    def measure(self, cube: Cube | None, candidates: Sequence[Candidate]) -> list[Candidate]:
+        """Measure the errors of candidates that share a cube."""
+        names = dict.fromkeys(each.rendering for each in candidates if each.rendering != WITHOUT_SPECTRA)
         needed = [self.renderings[name].wavelengths for name in names]
         nm, ends = np.concatenate([[], *needed]), np.cumsum([0, *map(len, needed)])
         columns = dict(zip(names, map(slice, ends, ends[1:]), strict=False))
         spectra: dict[Pixel, Array] = {}
         found = []
         for each in candidates:
-            if each == WITHOUT_SPECTRA:
-                found.append(self.tests.error(self.tests.rgb @ matrices.mT))
-                continue
-            if each.pixel not in spectra:
-                pixel = Pixel(texture.Spectrum.name, each.pixel.depth) if cube is None else each.pixel
-                spectra[each.pixel] = pixel.decoded(cube or self.reference, self.tests.rgb, nm)
-            values = spectra[each.pixel][:, columns[each.rendering]]
-            found.append(self.tests.error(self.renderings[each.rendering].xyz(values)))
+            if each.rendering == WITHOUT_SPECTRA:
+                xyz = self.tests.rgb @ self.matrices.mT
+            else:
+                if each.pixel not in spectra:
+                    pixel = Pixel(texture.Spectrum.name, each.pixel.depth) if cube is None else each.pixel
+                    spectra[each.pixel] = pixel.decoded(cube or self.reference, self.tests.rgb, nm)
+                xyz = self.renderings[each.rendering].xyz(spectra[each.pixel][:, columns[each.rendering]])
+            found.append(replace(each, error=self.tests.error(xyz)))
         return found
 
 
@@ -82,8 +82,7 @@ class CandidateSpace:
 
         found = renderings(context, tests, spectra, self.floor)
         self.cubes = {context.reference: reference}
-        self.evaluator = Evaluator(tests, reference, {each.name: each for each in found})
-        self.matrices = fit_matrices(tests)
+        self.evaluator = Evaluator(tests, reference, {each.name: each for each in found}, fit_matrices(tests))
         self.base = tests.xyz(reference.reflectance(tests.rgb))
         arrays = contents(reference.data)[0]
         rows = {name: array for name, array in arrays.items() if name in POINTS}
@@ -91,35 +90,34 @@ class CandidateSpace:
         self.other_bytes = sum(array.nbytes for name, array in arrays.items() if name not in rows)
         self.built = self.considered = 0
 
-    def estimates(self) -> list[Estimate]:
-        """All candidates with their costs and the lower bounds of their errors.
+    def candidates(self) -> list[Candidate]:
+        """All candidates with their costs and the lower bounds of their errors; RGB alone is the first.
 
         Cubes are left out where they cannot save anything: where RGB have no error, or colours are few.
         """
         colours = self.context.colours
-        found = [Estimate(WITHOUT_SPECTRA, Cost(colours.size, 21, 3), 0.0)]
+        found = [Candidate(WITHOUT_SPECTRA, Pixel(RGB), Cost(colours.size, 21, 3))]
+        (self.without_spectra,) = (each.error for each in self.evaluator.measure(None, found))
         if colours.few is not None:
             for each in self.evaluator.renderings.values():
                 if each.sampling is not None:
                     cost = Cost(colours.pixels + 2 * len(colours.few) * each.surface, each.operations, each.samples)
-                    found.append(Estimate(Candidate(each.name, Pixel(INDEX, "half")), cost, 0.0))
+                    found.append(Candidate(each.name, Pixel(INDEX, "half"), cost))
         self.considered = len(found)
-        if colours.few is None and self.measure(None, found)[0].error.quantile > self.floor:
+        if colours.few is None and self.without_spectra.quantile > self.floor:
             found += self._with_cubes()
         return found
 
-    def measure(self, choice: CubeChoice | None, estimates: Sequence[Estimate]) -> list[Measured]:
+    def measure(self, choice: CubeChoice | None, candidates: Sequence[Candidate]) -> list[Candidate]:
         """Build the cube that candidates share, and measure their errors."""
-        candidates = [each.candidate for each in estimates]
         cube = None
         if choice is not None:
             self.built += 1
             self.context.progress(Progress(f"cube {self.built}: {choice.name}", 0, 1))
             cube = self._cube(choice)
-        errors = self.evaluator.errors(cube, candidates, self.matrices)
-        return [Measured(each.candidate, each.cost, error) for each, error in zip(estimates, errors, strict=True)]
+        return self.evaluator.measure(cube, candidates)
 
-    def _with_cubes(self) -> Iterator[Estimate]:
+    def _with_cubes(self) -> Iterator[Candidate]:
         """Candidates that need a cube and whose bounds are below the ceiling."""
         tests, renderings = self.evaluator.tests, self.evaluator.renderings.values()
         base = _quantiles(tests.error(self.base))
@@ -139,7 +137,7 @@ class CandidateSpace:
 
     def _with_pixels(
         self, choice: CubeChoice, points: tuple[int, int], rendering: Rendering, bound: float
-    ) -> Iterator[Estimate]:
+    ) -> Iterator[Candidate]:
         """Candidates of a cube, of ``points`` with all cells and with those of the textures, and a rendering."""
         colours, count = self.context.colours, round(rendering.surface)
         for sparse, pixel in product((False, True)[: 1 + self.context.scene.sparse], PIXELS):
@@ -151,9 +149,7 @@ class CandidateSpace:
             texels = colours.pixels * pixel.size(choice.coefficients, count) if pixel.depth else colours.size
             memory = self.other_bytes + points[sparse] * row + texels
             time = pixel.operations(choice, count) + rendering.operations
-            yield Estimate(
-                Candidate(rendering.name, pixel, choice, sparse), Cost(memory, time, rendering.samples), bound
-            )
+            yield Candidate(rendering.name, pixel, Cost(memory, time, rendering.samples), choice, sparse, bound)
 
     def _models(self) -> dict[tuple[str, int, str], Array]:
         """Changes of XYZ (K, n, 3) by models of spectra, on a fine lattice: of each warp up to one without error."""
