@@ -61,7 +61,7 @@ def mean_error(setup: RenderSetup, space: paper.ChannelSpace, allocation: Sequen
 
 def run_trials(setup: RenderSetup, space: paper.ChannelSpace) -> tuple[Array, Array]:
     """Evaluate every allocation of defined orders up to 10: numbers of wavelengths (T, 3) and mean ΔE76 (T,)."""
-    candidates = list(paper.allocations(paper.quadrature_rules(space, setup.wavelengths, setup.cmfs)))
+    candidates = list(paper.allocations(setup, space))
     counts = [[len(rule) for rule in allocation] for allocation in candidates]
     return np.array(counts), np.array([mean_error(setup, space, allocation) for allocation in candidates])
 
@@ -123,11 +123,11 @@ def node_row(channel: str, order: int, rule: QuadratureRule | str, expected: Nod
 
 
 def four_wavelengths(
-    setup: RenderSetup, space: paper.ChannelSpace, rules: paper.ChannelRules, factor: float
+    setup: RenderSetup, space: paper.ChannelSpace, rules: list[dict[int, QuadratureRule | str]], factor: float
 ) -> Iterator[Row]:
     """Yield the rows of table 2; the first of each allocation has its error."""
     separate = tuple(orders[order] for orders, order in zip(rules, (3, 2, 1), strict=True))
-    shared = paper.four_wavelength_rule(rules, paper.channel_functions(space, setup.wavelengths, setup.cmfs))
+    shared = paper.four_wavelength_rule(paper.channel_functions(space, setup.wavelengths, setup.cmfs))
     expected = printed_rules("meyer1988_table2.csv", "row")
     stated = {row["row"]: float(row["error"]) for row in read_reference("meyer1988_table2.csv") if row["error"]}
     for number, allocation in (("1", separate), ("2", shared)):

@@ -75,7 +75,7 @@ def test_rules_equal_tables_1a_and_1b(cmfs, opponent):
 
 def test_four_wavelength_rule_equals_table_2(cmfs, opponent, setting_c):
     rules = quadrature_rules(opponent, grid(), cmfs)
-    shared = four_wavelength_rule(rules, channel_functions(opponent, grid(), cmfs))
+    shared = four_wavelength_rule(channel_functions(opponent, grid(), cmfs))
     table = [row for row in read_reference("meyer1988_table2.csv") if row["row"] == "2"]
     nodes = np.concatenate([rule.nodes for rule in shared])
     weights = np.concatenate([rule.weights for rule in shared])
@@ -97,12 +97,12 @@ def test_figure_6_opponent_space_needs_the_fewest_wavelengths(cmfs, opponent, se
 
 
 @pytest.mark.parametrize("count", [4, 5, 12])
-def test_meyer_takes_the_best_allocation(smooth, count, opponent, cmfs):
+def test_meyer_takes_the_best_allocation(smooth, count, opponent):
     chosen = meyer(smooth, count)
     assert len(chosen) == count
     np.testing.assert_allclose((chosen.powers @ chosen.to_xyz)[:, 1], 1, rtol=1e-12)
     reached = evaluate(smooth, chosen).mean
-    for allocation in allocations(quadrature_rules(opponent, grid(), cmfs), count):
+    for allocation in allocations(smooth, opponent, count):
         assert sum(map(len, allocation)) == count
         assert evaluate(smooth, balanced(combine_rules(smooth, opponent, allocation))).mean >= reached
 

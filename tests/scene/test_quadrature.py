@@ -10,16 +10,10 @@ from numpy.polynomial import legendre
 
 from tests.helpers import raises
 from uplift.common.errors import OptionError
-from uplift.scene.quadrature import QuadratureRule, gauss_rule, interpolatory_rule
+from uplift.scene.quadrature import gauss_rule, interpolatory_rule
 
 POINTS = np.arange(380.0, 771.0)
 BELL = np.exp(-(((POINTS - 560) / 40) ** 2))
-
-
-def _rule(points, masses, order):
-    result = gauss_rule(points, masses, order)
-    assert isinstance(result, QuadratureRule), result
-    return result
 
 
 def _moment_error(rule, points, masses, degree):
@@ -34,14 +28,14 @@ def _moment_error(rule, points, masses, degree):
 def test_legendre_rule_as_masses_gives_the_smaller_legendre_rule(order):
     points, masses = legendre.leggauss(100)
     nodes, weights = legendre.leggauss(order)
-    rule = _rule(points, masses, order)
+    rule = gauss_rule(points, masses, order)
     np.testing.assert_allclose(rule.nodes, nodes, atol=1e-12)
     np.testing.assert_allclose(rule.weights, weights, atol=1e-11)
 
 
 @pytest.mark.parametrize("order", [1, 3, 8, 20])
 def test_rule_is_exact_to_degree_2n_minus_1_and_no_further(order):
-    rule = _rule(POINTS, BELL, order)
+    rule = gauss_rule(POINTS, BELL, order)
     assert len(rule) == order
     assert (rule.weights > 0).all()
     assert _moment_error(rule, POINTS, BELL, 2 * order - 1) < 1e-12
@@ -66,8 +60,9 @@ def _exact_nodes(points, masses, order):
 @given(st.lists(st.integers(-9, 9), min_size=6, max_size=12).filter(lambda m: sum(map(bool, m)) > 4), st.integers(1, 4))
 def test_nodes_agree_with_elimination_in_fractions(masses, order):
     points = list(range(len(masses)))
-    result = gauss_rule(points, masses, order)
-    if isinstance(result, str):
+    try:
+        result = gauss_rule(points, masses, order)
+    except OptionError:
         return
     expected = np.sort_complex(_exact_nodes(points, masses, order))
     gap = np.diff(result.nodes).min() if order > 1 else 1.0
@@ -85,9 +80,9 @@ def test_nodes_agree_with_elimination_in_fractions(masses, order):
     ],
 )
 def test_undefined_order_states_its_reason(masses, order, reason):
-    result = gauss_rule(range(len(masses)), masses, order)
-    assert isinstance(result, str)
-    assert reason in result
+    with raises(OptionError, "undefined-rule") as caught:
+        gauss_rule(range(len(masses)), masses, order)
+    assert reason in caught.value.problem
 
 
 @pytest.mark.parametrize("nodes", [[560.0], [631.4, 490.9, 557.7], np.linspace(400, 700, 12)])
@@ -95,11 +90,3 @@ def test_interpolatory_rule_is_exact_below_its_number_of_nodes(nodes):
     rule = interpolatory_rule(nodes, POINTS, BELL)
     np.testing.assert_array_equal(rule.nodes, np.sort(nodes))
     assert _moment_error(rule, POINTS, BELL, len(nodes) - 1) < 1e-12
-
-
-@pytest.mark.parametrize(("masses", "order"), [([1, 1], 1), ([1, np.nan, 1], 1), ([1, 1, 1], 0), ([1, 0, 1], 3)])
-def test_invalid_measures_and_orders_raise(masses, order):
-    with raises(OptionError):
-        gauss_rule([1, 2, 3], masses, order)
-    with raises(OptionError):
-        interpolatory_rule([500, 500], POINTS, BELL)

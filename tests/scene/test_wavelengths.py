@@ -9,7 +9,7 @@ from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.errors import OptionError, UnknownNameError, UpliftError
 from uplift.scene.wavelengths import METHODS, choose, fit_weights, grid, make_setup
 from uplift.scene.wavelengths.optimise import MAX_FITTED_PAIRS, FitProblem, delta_e_factors, fit_at, optimise
-from uplift.scene.wavelengths.sampling import evaluate, midpoints, prefiltered, prefiltered_uniform
+from uplift.scene.wavelengths.sampling import evaluate, midpoints, prefiltered
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_metric_is_delta_e_of_close_colours(spiky):
 
 def test_jacobian_agrees_with_central_differences(spiky):
     small = FitProblem(spiky.only(range(0, 24, 5)))
-    start = prefiltered_uniform(small.setup, 3)
+    start = prefiltered(small.setup, midpoints(3))
     unknowns = small.pack(start)
     result = small.jacobian(unknowns)
     for column, step in enumerate(np.maximum(1e-6 * np.abs(unknowns), 1e-9)):
@@ -136,7 +136,9 @@ def test_weights_for_given_wavelengths_beat_prefiltering(spiky):
     np.testing.assert_array_equal(result.wavelengths, nm)
     assert min(result.to_xyz.min(), result.powers.min()) >= 0
     error = evaluate(spiky, result).mean
-    assert evaluate(spiky, optimise(spiky, 7)).mean < error < evaluate(spiky, prefiltered_uniform(spiky, 7)).mean / 1.5
+    assert (
+        evaluate(spiky, optimise(spiky, 7)).mean < error < evaluate(spiky, prefiltered(spiky, midpoints(7))).mean / 1.5
+    )
 
 
 @pytest.mark.parametrize("nm", [[], [500, 500], [300, 500], [500, 800], [[500]], [np.nan]])

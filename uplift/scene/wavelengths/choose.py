@@ -7,15 +7,16 @@ from numpy.typing import ArrayLike
 
 from uplift.common.errors import OptionError, unknown_name
 from uplift.scene.wavelengths.meyer import CHANNELS, meyer, meyer_orders
-from uplift.scene.wavelengths.optimise import fit_at, fit_uniform, optimise
+from uplift.scene.wavelengths.optimise import fit_at, optimise
 from uplift.scene.wavelengths.sampling import (
     MEASURES,
     ColourErrors,
     RenderSetup,
     Sampling,
     evaluate,
+    midpoints,
     ordered,
-    prefiltered_uniform,
+    prefiltered,
     uniform,
 )
 
@@ -23,8 +24,8 @@ METHODS: Mapping[str, Callable[[RenderSetup, int], Sampling]] = {
     "optimised": optimise,
     "meyer": meyer,
     "uniform": uniform,
-    "bins": prefiltered_uniform,
-    "fitted": fit_uniform,
+    "bins": lambda setup, count: prefiltered(setup, midpoints(count)),
+    "fitted": lambda setup, count: fit_at(setup, midpoints(count)),
 }
 """Methods by name: all fitted, Meyer 1988, and three with even spacing."""
 GIVEN = "given"

@@ -6,7 +6,7 @@ Sections 3 and 4: quadrature, tables 1a, 1b and 2.
 """
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -90,9 +90,7 @@ over every nanometre move the outer wavelengths of high orders by up to 5 nm."""
 MAX_ORDER = 10
 """Highest order of tables 1a and 1b."""
 
-ChannelRules = tuple[Mapping[int, QuadratureRule | str], ...]
-"""For each channel, a mapping from order to rule, or to the reason why there is none."""
-Allocation = tuple[QuadratureRule, QuadratureRule, QuadratureRule]
+Rules = tuple[QuadratureRule, ...]
 """A rule for each channel."""
 
 
@@ -101,31 +99,33 @@ def channel_functions(space: ChannelSpace, wavelengths: Array, cmfs: Array) -> A
     return (POINTS[1] - POINTS[0]) * space.matrix @ interp_curves(POINTS, wavelengths, cmfs.T)
 
 
-def quadrature_rules(space: ChannelSpace, wavelengths: Array, cmfs: Array) -> ChannelRules:
-    """Rules of orders 1 to `MAX_ORDER` for each channel of a space: tables 1a and 1b for AC1C2."""
-    orders = range(1, MAX_ORDER + 1)
-    channels = channel_functions(space, wavelengths, cmfs)
-    return tuple({order: gauss_rule(POINTS, masses, order) for order in orders} for masses in channels)
+def quadrature_rules(space: ChannelSpace, wavelengths: Array, cmfs: Array) -> list[dict[int, QuadratureRule | str]]:
+    """Rules of orders 1 to `MAX_ORDER` for each channel of a space, or why there is none (tables 1a and 1b)."""
+
+    def rule(masses: Array, order: int) -> QuadratureRule | str:
+        try:
+            return gauss_rule(POINTS, masses, order)
+        except OptionError as error:
+            return error.problem
+
+    functions = channel_functions(space, wavelengths, cmfs)
+    return [{order: rule(masses, order) for order in range(1, MAX_ORDER + 1)} for masses in functions]
 
 
-def allocations(rules: ChannelRules, count: int | None = None) -> Iterator[Allocation]:
+def allocations(setup: RenderSetup, space: ChannelSpace, count: int | None = None) -> Iterator[Rules]:
     """Yield every combination of defined rules, or only those of ``count`` wavelengths in total."""
+    rules = quadrature_rules(space, setup.wavelengths, setup.cmfs)
     defined = [[rule for rule in channel.values() if isinstance(rule, QuadratureRule)] for channel in rules]
-    for first, second, third in itertools.product(*defined):
-        if count is None or len(first) + len(second) + len(third) == count:
-            yield first, second, third
+    return (each for each in itertools.product(*defined) if count is None or sum(map(len, each)) == count)
 
 
-def four_wavelength_rule(rules: ChannelRules, functions: Array) -> Allocation:
+def four_wavelength_rule(functions: Array) -> Rules:
     """Rule of table 2, second row, in which A shares the two wavelengths of C1.
 
     A also has the middle node of the rule of order 3, and C2 has one node. ``functions`` (3, 101) are the
     `channel_functions` of the space. Raises `OptionError` where the observer has no such rules.
     """
-    a, c1, c2 = rules[0][3], rules[1][2], rules[2][1]
-    if isinstance(a, str) or isinstance(c1, str) or isinstance(c2, str):
-        problem = "the opponent channels of the observer have no rules of orders 3, 2 and 1"
-        raise OptionError(problem, code="undefined-rule", hint="choose another method or observer")
+    a, c1, c2 = (gauss_rule(POINTS, masses, order) for masses, order in zip(functions, (3, 2, 1), strict=True))
     return interpolatory_rule([*c1.nodes, a.nodes[1]], POINTS, functions[0]), c1, c2
 
 
@@ -146,17 +146,12 @@ def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: ChannelSpace)
     Figure 6 of the paper compares AC1C2, the cones and XYZ in this way.
     Raises `OptionError` for an order out of range, or without a rule.
     """
-    defined = quadrature_rules(space, setup.wavelengths, setup.cmfs)
-    rules = []
-    for channel, by_order, order in zip(space.channels, defined, orders, strict=True):
-        if order not in by_order:
-            hint = "the paper tabulates orders 1 to 10"
-            raise OptionError(f"orders must be in [1, {MAX_ORDER}], got {order}", hint=hint)
-        rule = by_order[order]
-        if isinstance(rule, str):
-            problem = f"channel {channel} has no rule of order {order}: {rule}"
-            raise OptionError(problem, code="undefined-rule", hint="choose another order")
-        rules.append(rule)
+    if not all(1 <= order <= MAX_ORDER for order in orders):
+        raise OptionError(
+            f"orders must be in [1, {MAX_ORDER}], got {orders}", hint="the paper tabulates orders 1 to 10"
+        )
+    functions = channel_functions(space, setup.wavelengths, setup.cmfs)
+    rules = [gauss_rule(POINTS, masses, order) for masses, order in zip(functions, orders, strict=True)]
     return balanced(combine_rules(setup, space, rules))
 
 
@@ -166,12 +161,10 @@ def meyer(setup: RenderSetup, count: int) -> Sampling:
     The paper does not state how to allocate. The best allocation is an upper bound on the method.
     Raises `OptionError` if no allocation of orders 1 to 10 has ``count`` wavelengths.
     """
-    nm, cmfs = setup.wavelengths, setup.cmfs
-    space = opponent_space(nm, cmfs)
-    rules = quadrature_rules(space, nm, cmfs)
-    candidates = list(allocations(rules, count))
+    space = opponent_space(setup.wavelengths, setup.cmfs)
+    candidates = list(allocations(setup, space, count))
     if count == 4:
-        candidates.append(four_wavelength_rule(rules, channel_functions(space, nm, cmfs)))
+        candidates.append(four_wavelength_rule(channel_functions(space, setup.wavelengths, setup.cmfs)))
     if not candidates:
         problem = f"method 'meyer' has no rule of {count} wavelengths"
         raise OptionError(problem, code="undefined-rule", hint="give a count in [4, 30]")

@@ -148,11 +148,6 @@ def fit_at(setup: RenderSetup, wavelengths: ArrayLike) -> Sampling:
     return _with_nearby_powers(problem.setup, fit)
 
 
-def fit_uniform(setup: RenderSetup, count: int) -> Sampling:
-    """Fit weights and powers at evenly spaced wavelengths."""
-    return fit_at(setup, midpoints(count))
-
-
 def _with_nearby_powers(setup: RenderSetup, sampling: Sampling) -> Sampling:
     """Move a factor from weights to powers at each wavelength so that the powers resemble the lights.
 

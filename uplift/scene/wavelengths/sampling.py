@@ -280,11 +280,6 @@ def uniform(setup: RenderSetup, count: int) -> Sampling:
     return balanced(Sampling(nm, weights, setup.lights, setup.sampled_powers(nm)))
 
 
-def prefiltered_uniform(setup: RenderSetup, count: int) -> Sampling:
-    """Prefilter the lights and the colour-matching functions at even spacing: `prefiltered` at `midpoints`."""
-    return prefiltered(setup, midpoints(count))
-
-
 def prefiltered(setup: RenderSetup, wavelengths: Array) -> Sampling:
     """Distribute lights and colour-matching functions over wavelengths (n,) nm by the weights of linear interpolation.
 
