@@ -16,7 +16,7 @@ from benchmarks.pictures import pictures
 from uplift.io.scene_colours import MAX_LIST, MAX_PIXELS
 from uplift.lab.panels import Panel, Point, write_panels
 from uplift.samples import copy_samples
-from uplift.scene.plan.context import SearchGrid
+from uplift.scene.plan.candidates import SearchGrid
 from uplift.scene.plan.space import CEILING, FLOOR, MARGIN
 from uplift.viz.figure import ACCENT, INK
 from uplift.viz.format import format_size

@@ -204,7 +204,7 @@ def command(
         plan = read_plan(plan_path)
         make: Callable[..., Cube] = partial(plan.build, debug=settings["debug"])
         name = cube_name(plan_path)
-        inputs = [plan_path, *plan.textures, *plan.atlases]
+        inputs = [plan_path, *plan.images.paths, *plan.atlases]
     else:
         if not images and (useless := [given[name] for name in OF_IMAGES if name in given]):
             raise click.UsageError(f"{', '.join(useless)}: no --scene image is given to which this applies.")

@@ -45,7 +45,7 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
     enable_jit_cache()
     from uplift.common.files import check_outputs, write_text
     from uplift.scene.plan import plan, read_scene_file
-    from uplift.scene.plan.context import SearchGrid
+    from uplift.scene.plan.candidates import SearchGrid
     from uplift.scene.plan.page import HEADINGS, describe_error, front_row, front_rows, notes, page, verdict
     from uplift.scene.plan.plan_file import to_json
 

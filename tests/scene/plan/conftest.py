@@ -10,7 +10,7 @@ import uplift
 from tests.conftest import MACBETH
 from tests.io.texture.conftest import planes, write_exr
 from uplift.scene import plan
-from uplift.scene.plan.context import SearchGrid
+from uplift.scene.plan.candidates import SearchGrid
 
 SMALL = SearchGrid(
     models={"none": (5, 9)},

@@ -157,7 +157,7 @@ def test_the_plan_file_builds_the_same_cube(planned, plan_file):
 def test_changed_and_missing_sources_are_refused(plan_file):
     path, _, write = plan_file
     write()
-    assert read_plan(path).textures == (path.parent / "wood.exr",)
+    assert read_plan(path).images.paths == (path.parent / "wood.exr",)
     with (path.parent / "macbeth.txt").open("a", encoding="utf-8") as file:
         file.write("\n")
     with raises(PlanFileError, "source-changed") as caught:

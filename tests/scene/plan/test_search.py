@@ -19,7 +19,6 @@ from uplift.scene.plan.candidates import (
     positions,
     sufficient,
 )
-from uplift.scene.plan.context import prepare_context
 from uplift.scene.plan.evaluation import ErrorSummary, GroupError
 from uplift.scene.plan.space import CandidateSpace
 
@@ -100,7 +99,7 @@ def test_the_front_has_what_nothing_dominates():
 @pytest.mark.filterwarnings("ignore::uplift.UpliftWarning")
 def test_bounds_of_a_real_scene_exclude_no_cheaper_candidate(kitchen, planned):
     scene = plan.read_scene_file(kitchen)
-    space = CandidateSpace(prepare_context(scene, SMALL, lambda progress: None))
+    space = CandidateSpace(scene, SMALL, lambda progress: None)
     everything = explore([replace(each, bound=0.0) for each in space.candidates()], space.measure, 0.0)
     found, _ = planned
     assert len(found.measured) <= len(everything) <= found.considered

@@ -2,13 +2,14 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from uplift.colorimetry.observer import AXES
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import UpliftError
 from uplift.io import texture
@@ -17,6 +18,40 @@ from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import refined_multipliers
 from uplift.models import Sigmoid, evaluate, reflectance
 from uplift.scene.plan.evaluation import ErrorSummary
+
+MODELS: Mapping[str, tuple[int, ...]] = {
+    "none": (3, 5, 7, 9, 11, 13, 15, 17),
+    "vision": (5, 7, 9, 11),
+    "colour": (3, 5, 7, 9),
+}
+"""Numbers of coefficients by warp: warps are for few."""
+
+
+@dataclass(frozen=True)
+class SearchGrid:
+    """Candidates, in ascending order, and sizes of the pixel samples.
+
+    ``models`` are numbers of coefficients of moments by warp. ``samples`` are numbers of wavelengths, which other
+    representations are compared with if ``others``. The reference has the last number of coefficients without a warp,
+    and ``reference`` nodes along each axis. Candidates are chosen by ``predicting`` pixels and verified on
+    ``confirming`` ones.
+    """
+
+    models: Mapping[str, tuple[int, ...]] = field(default_factory=lambda: MODELS)
+    dims: tuple[int, ...] = (8, 12, 16, 24, 32, 48, 64, 96)
+    axes: tuple[str, ...] = AXES
+    samples: tuple[int, ...] = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20)
+    others: bool = True
+    reference: int = 96
+    predicting: int = 1500
+    confirming: int = 4000
+
+    @classmethod
+    def quick(cls) -> "SearchGrid":
+        """Fewer candidates and pixels: seconds."""
+        models, dims, samples = {"none": (5, 9, 13, 17)}, (8, 16, 32, 48), (3, 5, 6, 7, 8, 10)
+        return cls(models, dims, AXES[:1], samples, others=False, reference=64, predicting=400, confirming=1000)
+
 
 MINIMISE = ("balance", "memory", "time", "samples")
 """What the choice minimises: the product of the costs, or one of them."""

@@ -68,7 +68,11 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
         },
         "cost": {
             **chosen.cost._asdict(),
-            **({"points": final.points, "bytes": final.size, "cpu_seconds": final.seconds} if final else {}),
+            **(
+                {"points": int(final.cube.data.points.present.sum()), "bytes": final.size, "cpu_seconds": final.seconds}
+                if final
+                else {}
+            ),
         },
         "search": {"considered": plan.considered, "measured": len(plan.measured)},
         "front": [
@@ -124,18 +128,15 @@ def commands(plan: Plan, path: Path) -> tuple[str, ...]:
 class PlanFile:
     """What a build needs of a plan: its unchanged sources, the ``options`` of the build, and whether it is sparse."""
 
-    path: Path
-    textures: tuple[Path, ...]
+    images: Images
     atlases: tuple[Path, ...]
-    encoding: str
     sparse: bool
     options: dict[str, Any]
 
     def build(self, *, debug: bool = False, progress: ProgressCallback = ignore_progress) -> Cube:
         """Build the planned cube, with the warnings and errors of `uplift.build`."""
-        scene = Images(self.textures, self.encoding) if self.sparse else None
-        options = {**self.options, "debug": debug}
-        return build(self.atlases or None, scene=scene, progress=progress, **options)
+        scene = self.images if self.sparse else None
+        return build(self.atlases or None, scene=scene, progress=progress, **self.options, debug=debug)
 
 
 class _Source(SpecModel):
@@ -186,9 +187,8 @@ def read_plan(path: StrPath) -> PlanFile:
     if table.build is None:
         file.fail(("build",), "the plan needs no cube", hint="render as its key 'rendering' describes")
     textures, atlases = (_check_sources(file, key, getattr(table.scene, key)) for key in ("textures", "atlases"))
-    return PlanFile(
-        file.path, textures, atlases, table.scene.encoding, table.cells == "sparse", recorded_options(table.build)
-    )
+    images = Images(textures, table.scene.encoding)
+    return PlanFile(images, atlases, table.cells == "sparse", recorded_options(table.build))
 
 
 def _check_sources(file: SpecFile, key: str, sources: list[_Source]) -> tuple[Path, ...]:

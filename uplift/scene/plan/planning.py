@@ -12,11 +12,9 @@ import numpy as np
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.io.scene_colours import Images
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
-from uplift.scene.plan.candidates import INDEX, Candidate, Cost, explore, pareto_front, sufficient
-from uplift.scene.plan.context import PlanContext, SearchGrid, prepare_context
+from uplift.scene.plan.candidates import INDEX, Candidate, Cost, SearchGrid, explore, pareto_front, sufficient
 from uplift.scene.plan.evaluation import ErrorSummary
 from uplift.scene.plan.renderings import Rendering
 from uplift.scene.plan.scene_file import SceneFile
@@ -36,11 +34,6 @@ class FinalBuild:
     cube: Cube
     size: int
     seconds: float
-
-    @property
-    def points(self) -> int:
-        """Number of lattice points."""
-        return int(self.cube.data.points.present.sum())
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,21 +133,20 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     AtlasError, TextureError
         If a file cannot be read.
     """
-    context = prepare_context(scene, grid or SearchGrid(), progress)
-    space = CandidateSpace(context)
+    space = CandidateSpace(scene, grid or SearchGrid(), progress)
     measured = explore(space.candidates(), space.measure, space.floor)
     finalists = sufficient(measured, scene.tolerance, scene.minimise, scene.limits)
     if not finalists:
         raise no_candidate(scene, measured)
-    chosen, confirmed = _confirm(context, space, finalists)
+    chosen, confirmed = _confirm(space, finalists)
     rendering = space.evaluator.renderings.get(chosen.rendering)
-    textures = context.colours.predicting
+    textures = space.colours.predicting
     spectra = None
-    if chosen.pixel.form == INDEX and rendering is not None and context.colours.few is not None:
-        colours = context.colours.few
-        cube = context.cube(colours, context.reference)
+    if chosen.pixel.form == INDEX and rendering is not None and space.colours.few is not None:
+        colours = space.colours.few
+        cube = space.cube(colours, space.reference)
         spectra = colours, cube.reflectance(colours, rendering.wavelengths)
-    options = {} if chosen.cube is None else {**context.options, **chosen.cube.options}
+    options = {} if chosen.cube is None else {**space.options, **chosen.cube.options}
     progress(Progress("final build", 0, 1))
     return Plan(
         scene=scene,
@@ -166,56 +158,47 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         matrices=space.evaluator.matrices,
         without_spectra=space.without_spectra,
         options=options,
-        final_build=_build(context, options, sparse=chosen.sparse) if options else None,
+        final_build=_build(space, options, sparse=chosen.sparse) if options else None,
         spectra=spectra,
         expected_error=_expected_error(space.evaluator.reference, scene, textures.rgb, textures.share),
     )
 
 
-def _confirm(
-    context: PlanContext, space: CandidateSpace, finalists: Sequence[Candidate]
-) -> tuple[Candidate, ErrorSummary]:
+def _confirm(space: CandidateSpace, finalists: Sequence[Candidate]) -> tuple[Candidate, ErrorSummary]:
     """The first finalist within the tolerance on other pixels, or else the one of the smallest error there."""
-    context.progress(Progress("confirmation", 0, 1))
-    tests, reference = context.evaluation_set(context.colours.confirming)
+    space.progress(Progress("confirmation", 0, 1))
+    tests, reference = space.evaluation_set(space.colours.confirming)
     other = replace(space.evaluator, tests=tests, reference=reference)
     tried: list[tuple[Candidate, ErrorSummary]] = []
     for each in finalists:
         if tried and each.error.quantile > CLEARLY_SMALLER * tried[-1][0].error.quantile:
             continue
-        cube = None if each.cube is None else context.cube(tests.rgb, each.cube)
+        cube = None if each.cube is None else space.cube(tests.rgb, each.cube)
         tried.append((each, other.measure(cube, [each])[0].error))
-        if tried[-1][1].quantile <= context.scene.tolerance or len(tried) == FINALISTS:
+        if tried[-1][1].quantile <= space.scene.tolerance or len(tried) == FINALISTS:
             break
-    return min(tried, key=lambda each: (each[1].quantile > context.scene.tolerance, each[1].quantile))
+    return min(tried, key=lambda each: (each[1].quantile > space.scene.tolerance, each[1].quantile))
 
 
 def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileError:
     """The error if no candidate is within the tolerance, or within the limits as well."""
     enough = sufficient(measured, scene.tolerance, scene.minimise, {})
-    if not enough:
-        best = min(measured, key=lambda each: each.error.quantile).error.worst
-        return PlanFileError(
-            f"no candidate: the smallest error is ΔE00 {format_error(best.quantile)}, of {best.group} under "
-            f"{best.light}; tolerance allows {scene.tolerance:g}",
-            code="no-candidate",
-            path=scene.path,
-            hint=f"set tolerance = {np.ceil(best.quantile * 110) / 100:g} or more",
+    if enough:
+        limits = scene.limits.items()
+        excess = [sum(max(getattr(each.cost, key) / limit, 1) for key, limit in limits) for each in enough]
+        cost = enough[int(np.argmin(excess))].cost
+        over = [key for key, limit in limits if getattr(cost, key) > limit]
+        needs, allowed = (
+            " and ".join(cost_text(each, key) for key in over) for each in (cost, cost._replace(**scene.limits))
         )
-
-    def excess(each: Candidate) -> float:
-        return sum(max(getattr(each.cost, key) / limit, 1) for key, limit in scene.limits.items())
-
-    cheapest = min(enough, key=excess)
-    over = [key for key, limit in scene.limits.items() if getattr(cheapest.cost, key) > limit]
-    needs = " and ".join(cost_text(cheapest.cost, key) for key in over)
-    allowed = " and ".join(cost_text(Cost(**{**cheapest.cost._asdict(), **scene.limits}), key) for key in over)
-    return PlanFileError(
-        f"no candidate: the cheapest within {scene.tolerance:g} needs {needs}; limits allow {allowed}",
-        code="no-candidate",
-        path=scene.path,
-        hint=f"raise limits.{over[0]} or the tolerance",
-    )
+        problem = f"the cheapest within {scene.tolerance:g} needs {needs}; limits allow {allowed}"
+        hint = f"raise limits.{over[0]} or the tolerance"
+    else:
+        best = min(measured, key=lambda each: each.error.quantile).error.worst
+        found = f"the smallest error is ΔE00 {format_error(best.quantile)}, of {best.group} under {best.light}"
+        problem = f"{found}; tolerance allows {scene.tolerance:g}"
+        hint = f"set tolerance = {np.ceil(best.quantile * 110) / 100:g} or more"
+    return PlanFileError(f"no candidate: {problem}", code="no-candidate", path=scene.path, hint=hint)
 
 
 def cost_text(cost: Cost, key: str) -> str:
@@ -237,11 +220,11 @@ def _expected_error(reference: Cube, scene: SceneFile, rgb: Array, weights: Arra
     return max(found, default=None)
 
 
-def _build(context: PlanContext, options: Mapping[str, Any], *, sparse: bool) -> FinalBuild:
+def _build(space: CandidateSpace, options: Mapping[str, Any], *, sparse: bool) -> FinalBuild:
     """Build the cube with all cells, or with those of the textures."""
-    scene = Images(context.scene.textures, context.scene.encoding) if sparse else None
+    scene = space.images if sparse else None
     begin = time.process_time()
-    cube = build(context.atlas, scene=scene, **options)
+    cube = build(space.atlas, scene=scene, **options)
     seconds = time.process_time() - begin
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.uplift"

@@ -7,13 +7,13 @@ from functools import partial
 
 import numpy as np
 
-from uplift.colorimetry import Light, observer
+from uplift.colorimetry import Light, Sensor, observer
 from uplift.colorimetry.delta_e import delta_e_2000_weights, lab_jacobian
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.common.progress import Progress
-from uplift.scene.plan.candidates import UNMEASURED, front
-from uplift.scene.plan.context import PlanContext
+from uplift.common.progress import Progress, ProgressCallback
+from uplift.lookup import Cube
+from uplift.scene.plan.candidates import UNMEASURED, SearchGrid, front
 from uplift.scene.plan.evaluation import ErrorSummary, EvaluationSet
 from uplift.scene.representations import Representation, all_representations, samples
 from uplift.scene.wavelengths import Sampling, choose, make_setup
@@ -49,36 +49,30 @@ class Rendering:
 
 
 def renderings(
-    context: PlanContext, tests: EvaluationSet, spectra: Callable[[Array], Array], floor: float
+    grid: SearchGrid, sensor: Sensor, tests: EvaluationSet, reference: Cube, floor: float, progress: ProgressCallback
 ) -> list[Rendering]:
-    """Measure fitted wavelengths up to a ΔE00 of ``floor``, Meyer's, and representations, and drop dominated ones.
+    """Measure fitted wavelengths up to a ΔE00 of ``floor``, Meyer's, and representations, and drop dominated ones."""
 
-    ``spectra`` maps wavelengths (W,) in nm to the reflectances (n, W) of the reference.
-    """
-    setup = make_setup(
-        tests.reflectances[tests.subsample(FEW)],
-        [light.name for light in tests.lights],
-        wavelengths=context.sensor.wavelengths,
-        observer_name=context.sensor.observer,
-    )
+    fitted, lights = tests.reflectances[tests.subsample(FEW)], [light.name for light in tests.lights]
+    setup = make_setup(fitted, lights, wavelengths=sensor.wavelengths, observer_name=sensor.observer)
     full = Sampling(setup.wavelengths, setup.cmfs, setup.lights, setup.powers)
-    found = [_measured(_of_sampling(f"{len(full)} wavelengths", full), tests, spectra)]
-    for done, count in enumerate(context.grid.samples):
-        context.progress(Progress("wavelengths", done, len(context.grid.samples)))
-        fitted = _of_sampling(f"{count} wavelengths", _rounded(choose(setup, count=count).sampling))
-        found.append(_measured(fitted, tests, spectra))
+    found = [_measured(_of_sampling(f"{len(full)} wavelengths", full), tests, reference)]
+    for done, count in enumerate(grid.samples):
+        progress(Progress("wavelengths", done, len(grid.samples)))
+        chosen = _of_sampling(f"{count} wavelengths", _rounded(choose(setup, count=count).sampling))
+        found.append(_measured(chosen, tests, reference))
         if found[-1].error.quantile <= floor:
             break
-    if context.grid.others:
-        context.progress(Progress("other representations", 0, 1))
-        others = (each for each in _others(context, tests, setup) if each.samples < found[-1].samples)
-        found += [_measured(each, tests, spectra) for each in others]
+    if grid.others:
+        progress(Progress("other representations", 0, 1))
+        others = (each for each in _others(sensor, tests, setup) if each.samples < found[-1].samples)
+        found += [_measured(each, tests, reference) for each in others]
     rows = np.array([(each.samples, each.operations, each.surface, max(each.error.quantile, floor)) for each in found])
     return [found[row] for row in sorted(front(rows))]
 
 
-def _measured(rendering: Rendering, tests: EvaluationSet, spectra: Callable[[Array], Array]) -> Rendering:
-    return replace(rendering, error=tests.error(rendering.xyz(spectra(rendering.wavelengths))))
+def _measured(rendering: Rendering, tests: EvaluationSet, reference: Cube) -> Rendering:
+    return replace(rendering, error=tests.error(rendering.xyz(reference.reflectance(tests.rgb, rendering.wavelengths))))
 
 
 def _of_sampling(name: str, sampling: Sampling) -> Rendering:
@@ -93,13 +87,13 @@ def _rounded(sampling: Sampling) -> Sampling:
     return replace(sampling, wavelengths=np.round(distinct, DIGITS))
 
 
-def _others(context: PlanContext, tests: EvaluationSet, setup: RenderSetup) -> Iterator[Rendering]:
+def _others(sensor: Sensor, tests: EvaluationSet, setup: RenderSetup) -> Iterator[Rendering]:
     """Meyer's wavelengths, and representations, which are defined for one observer."""
     for count in range(4, MAX_MEYER + 1):
         with contextlib.suppress(OptionError):  # no rule of this order
             sampling = _rounded(choose(setup, count=count, method="meyer").sampling)
             yield _of_sampling(f"{count} wavelengths of Meyer", sampling)
-    if context.sensor.observer != observer.DEFAULT_OBSERVER:
+    if sensor.observer != observer.DEFAULT_OBSERVER:
         return
     dense = np.stack([observer.illuminant_spd(light.name, step=samples.STEP) for light in tests.lights])
     powers = dense / (dense @ samples.xyz_weights()[:, 1:2])

@@ -4,6 +4,7 @@ What a model of spectra, a lattice, and a rendering change is measured once each
 lattice add, to predict the error of a cube. The squares of the errors of a cube and of a rendering add.
 """
 
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -11,19 +12,25 @@ from typing import Any
 
 import numpy as np
 
+from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
-from uplift.common.progress import Progress
+from uplift.common.errors import UpliftWarning
+from uplift.common.progress import Progress, ProgressCallback
 from uplift.cube.file import POINTS, contents
+from uplift.fit.problem import Problem
 from uplift.io import texture
-from uplift.io.scene_colours import cells_touched
+from uplift.io.scene_colours import ColourSet, Images, PixelSample, cells_touched, sample_colours
 from uplift.lattice import Lattice
 from uplift.lookup import Cube
 from uplift.models import Moments, Sigmoid
-from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, CubeChoice, Pixel
-from uplift.scene.plan.context import PlanContext
-from uplift.scene.plan.evaluation import ErrorSummary, EvaluationSet
+from uplift.models.model import Model
+from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
+from uplift.pipeline.options import Options
+from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, CubeChoice, Pixel, SearchGrid
+from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ErrorSummary, EvaluationSet
 from uplift.scene.plan.renderings import Rendering, fit_matrices, renderings
+from uplift.scene.plan.scene_file import SceneFile
 
 FLOOR, CEILING = 0.5, 2.0
 """Shares of the tolerance below which errors count as equal, and above which candidates are not measured."""
@@ -69,19 +76,27 @@ class Evaluator:
 
 
 class CandidateSpace:
-    """Candidates for a scene, measured with the pixels of the first sample."""
+    """A scene with its files read, and the candidates for it, measured with the pixels of the first sample.
 
-    def __init__(self, context: PlanContext) -> None:
-        self.context = context
-        self.floor, self.ceiling = (share * context.scene.tolerance for share in (FLOOR, CEILING))
-        context.progress(Progress("reference cube", 0, 1))
-        tests, reference = context.evaluation_set(context.colours.predicting)
+    ``materials`` (E, 3) are linear RGB of the atlas entries within the RGB space, ``reflectances`` (E, N) theirs.
+    Raises `AtlasError`, `TextureError`, `PlanFileError`.
+    """
 
-        def spectra(nm: Array) -> Array:
-            return reference.reflectance(tests.rgb, nm)
-
-        found = renderings(context, tests, spectra, self.floor)
-        self.cubes = {context.reference: reference}
+    def __init__(self, scene: SceneFile, grid: SearchGrid, progress: ProgressCallback) -> None:
+        self.scene, self.grid, self.progress, self.sensor = scene, grid, progress, scene.sensor()
+        self.atlas = read_atlas(*scene.atlases) if scene.atlases else None
+        self.images = Images(scene.textures, scene.encoding)
+        reflectances = resample(self.atlas or Atlas(), self.sensor.wavelengths).values
+        rgb = self.sensor.rgb(reflectances)
+        inside = self.sensor.contains(rgb)
+        self.colours = sample_colours(self.images, self.sensor, (grid.predicting, grid.confirming), progress)
+        self.reflectances, self.materials = reflectances[inside], np.clip(rgb[inside], 0, 1)
+        self.learnt: dict[tuple[Model, Model], Learnt] = {}
+        self.floor, self.ceiling = (share * scene.tolerance for share in (FLOOR, CEILING))
+        progress(Progress("reference cube", 0, 1))
+        tests, reference = self.evaluation_set(self.colours.predicting)
+        found = renderings(grid, self.sensor, tests, reference, self.floor, progress)
+        self.cubes = {self.reference: reference}
         self.evaluator = Evaluator(tests, reference, {each.name: each for each in found}, fit_matrices(tests))
         self.base = tests.xyz(reference.reflectance(tests.rgb))
         arrays = contents(reference.data)[0]
@@ -90,12 +105,49 @@ class CandidateSpace:
         self.other_bytes = sum(array.nbytes for name, array in arrays.items() if name not in rows)
         self.built = self.considered = 0
 
+    @property
+    def options(self) -> dict[str, Any]:
+        """Options of all cubes: entries hold under the scene's lights, and under the illuminant of the RGB space."""
+        named = {key: getattr(self.scene, key) for key in ("space", "illuminant", "observer")}
+        return named | {"lights": tuple(dict.fromkeys((self.sensor.illuminant, *self.scene.lights)))}
+
+    @property
+    def reference(self) -> CubeChoice:
+        """Options of the reference cube."""
+        return CubeChoice(Moments.name, self.grid.models["none"][-1], "none", self.grid.reference, "srgb")
+
+    def cube(self, rgb: Array, choice: CubeChoice) -> Cube:
+        """Build a sparse cube for linear RGB (n, 3)."""
+
+        def shared(problem: Problem, entry_model: Model, *rest: Any) -> Learnt:
+            models = problem.model, entry_model
+            if models not in self.learnt:
+                self.learnt[models] = learn(problem, entry_model, *rest)
+            return self.learnt[models]
+
+        # The final build repeats the warnings of trial builds.
+        with warnings.catch_warnings(action="ignore", category=UpliftWarning):
+            options = Options(**self.options, **choice.options)
+            options, problem = problem_of(options, options.observer, options.solver)
+            return build_stages(self.atlas, options, problem, scene=ColourSet(rgb), learn=shared)
+
+    def evaluation_set(self, sample: PixelSample) -> tuple[EvaluationSet, Cube]:
+        """Test colours, with the spectra of the reference cube or of the measurement, and this cube."""
+        rgb = np.concatenate([sample.rgb, self.materials])
+        reference = self.cube(rgb, self.reference)
+        spectra = np.concatenate([reference.reflectance(sample.rgb), self.reflectances])
+        pixels, count = len(sample.rgb), len(self.materials)
+        weights = np.concatenate([sample.share, np.full(count, 1 / max(count, 1))])
+        groups = {TEXTURES: slice(0, pixels)} | ({MATERIALS: slice(pixels, pixels + count)} if count else {})
+        lights = self.scene.light_sources()
+        return EvaluationSet(rgb, spectra, weights, groups, lights, self.scene.quantile), reference
+
     def candidates(self) -> list[Candidate]:
         """All candidates with their costs and the lower bounds of their errors; RGB alone is the first.
 
         Cubes are left out where they cannot save anything: where RGB have no error, or colours are few.
         """
-        colours = self.context.colours
+        colours = self.colours
         found = [Candidate(WITHOUT_SPECTRA, Pixel(RGB), Cost(colours.size, 21, 3))]
         (self.without_spectra,) = (each.error for each in self.evaluator.measure(None, found))
         if colours.few is not None:
@@ -113,7 +165,7 @@ class CandidateSpace:
         cube = None
         if choice is not None:
             self.built += 1
-            self.context.progress(Progress(f"cube {self.built}: {choice.name}", 0, 1))
+            self.progress(Progress(f"cube {self.built}: {choice.name}", 0, 1))
             cube = self._cube(choice)
         return self.evaluator.measure(cube, candidates)
 
@@ -139,8 +191,8 @@ class CandidateSpace:
         self, choice: CubeChoice, points: tuple[int, int], rendering: Rendering, bound: float
     ) -> Iterator[Candidate]:
         """Candidates of a cube, of ``points`` with all cells and with those of the textures, and a rendering."""
-        colours, count = self.context.colours, round(rendering.surface)
-        for sparse, pixel in product((False, True)[: 1 + self.context.scene.sparse], PIXELS):
+        colours, count = self.colours, round(rendering.surface)
+        for sparse, pixel in product((False, True)[: 1 + self.scene.sparse], PIXELS):
             if choice.model == Sigmoid.name and pixel.form == texture.Moments.name:
                 continue
             if rendering.sampling is None and pixel.form != texture.Spectrum.name:
@@ -153,7 +205,7 @@ class CandidateSpace:
 
     def _models(self) -> dict[tuple[str, int, str], Array]:
         """Changes of XYZ (K, n, 3) by models of spectra, on a fine lattice: of each warp up to one without error."""
-        grid, plain = self.context.grid, "none"
+        grid, plain = self.grid, "none"
         dim = min(FINE, grid.reference)
         finest = self._xyz(dim, Moments.name, grid.models[plain][-1], plain)
         names = [(Sigmoid.name, 3, plain)]
@@ -162,7 +214,7 @@ class CandidateSpace:
 
     def _lattices(self) -> dict[tuple[int, str], Array]:
         """Changes of XYZ (K, n, 3) by lattices, with a usual model: of each axis up to one without error."""
-        grid, model = self.context.grid, (Moments.name, PROBE, "none")
+        grid, model = self.grid, (Moments.name, PROBE, "none")
         names = product(grid.dims, grid.axes)
         steps = [((dim, axis), axis, (dim, *model, axis)) for dim, axis in names]
         return self._changes("lattices", steps, self._xyz(grid.reference, *model))
@@ -171,7 +223,7 @@ class CandidateSpace:
         """Changes of XYZ from the ``finest``, by name, of each series up to the first below the floor."""
         found, done = dict[Any, Array](), set[str]()
         for number, (name, series, cube) in enumerate(steps):
-            self.context.progress(Progress(stage, number, len(steps)))
+            self.progress(Progress(stage, number, len(steps)))
             if series not in done:
                 found[name] = self._xyz(*cube) - finest
                 if self.evaluator.tests.error(self.base + found[name]).quantile <= self.floor:
@@ -185,13 +237,13 @@ class CandidateSpace:
     def _cube(self, choice: CubeChoice) -> Cube:
         """Cube for the test colours, built once."""
         if choice not in self.cubes:
-            self.cubes[choice] = self.context.cube(self.evaluator.tests.rgb, choice)
+            self.cubes[choice] = self.cube(self.evaluator.tests.rgb, choice)
         return self.cubes[choice]
 
     def _points(self, dim: int, axis: str) -> tuple[int, int]:
         """Points of a lattice, and those around one colour of every bin of the textures."""
         lattice = Lattice(observer.axis_nodes(axis, dim))
-        needed = lattice.corner_points(lattice.mask(cells_touched(lattice, self.context.colours.colour_bins)))
+        needed = lattice.corner_points(lattice.mask(cells_touched(lattice, self.colours.colour_bins)))
         return lattice.size, int(needed.sum())
 
 

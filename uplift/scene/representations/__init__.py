@@ -12,15 +12,8 @@ from collections.abc import Callable, Mapping
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.text import format_value, parse_float, parse_whole
-from uplift.scene.representations.composite import enhanced_riemann, sun_composite
-from uplift.scene.representations.filters import EXTENTS, KINDS, Filter, filtered_point_samples, mitchell_point_samples
-from uplift.scene.representations.models import (
-    hero_wavelengths,
-    linear_model,
-    sigmoid_coefficients,
-    trigonometric_moments,
-)
-from uplift.scene.representations.samples import Representation, gauss_samples, point_samples, riemann_sums
+from uplift.scene.representations import composite, filters, models, samples
+from uplift.scene.representations.samples import Representation
 
 __all__ = ["COMPONENTS", "FACTORIES", "Representation", "all_representations", "find_representation"]
 
@@ -32,15 +25,15 @@ COMPONENTS = (4, 8, 16)
 """Numbers of components of the linear model."""
 
 FACTORIES: Mapping[str, tuple[Callable[[int], Representation], tuple[int, ...]]] = {
-    "PS": (point_samples, SIZES),
-    "PF": (mitchell_point_samples, SIZES),
-    "RS": (riemann_sums, SIZES),
-    "RE": (enhanced_riemann, SIZES),
-    "CS": (sun_composite, (5, 7, 11, 15)),  # Fourier coefficients in the thesis
-    "GQ": (gauss_samples, SIZES),
-    "TM": (trigonometric_moments, (5, 9, 13, 17)),  # moments that cubes may store
-    "SG": (sigmoid_coefficients, (3,)),
-    "HW": (hero_wavelengths, (1, 4, 16, 64)),  # paths per pixel
+    "PS": (samples.point_samples, SIZES),
+    "PF": (filters.mitchell_point_samples, SIZES),
+    "RS": (samples.riemann_sums, SIZES),
+    "RE": (composite.enhanced_riemann, SIZES),
+    "CS": (composite.sun_composite, (5, 7, 11, 15)),  # Fourier coefficients in the thesis
+    "GQ": (samples.gauss_samples, SIZES),
+    "TM": (models.trigonometric_moments, (5, 9, 13, 17)),  # moments that cubes may store
+    "SG": (models.sigmoid_coefficients, (3,)),
+    "HW": (models.hero_wavelengths, (1, 4, 16, 64)),  # paths per pixel
 }
 """Factory and sizes by abbreviation. The linear model (LM) is not included, as it depends on the scene."""
 
@@ -48,7 +41,7 @@ FACTORIES: Mapping[str, tuple[Callable[[int], Representation], tuple[int, ...]]]
 def all_representations(lights: Array, surfaces: Array) -> tuple[Representation, ...]:
     """Every registered representation, and the linear models of a scene of lights (L, 401) and surfaces (E, 401)."""
     registered = (make(size) for make, sizes in FACTORIES.values() for size in sizes)
-    return (*registered, *(linear_model(count, lights, surfaces) for count in COMPONENTS))
+    return (*registered, *(models.linear_model(count, lights, surfaces) for count in COMPONENTS))
 
 
 def find_representation(text: str) -> Representation:
@@ -65,10 +58,10 @@ def find_representation(text: str) -> Representation:
             return make(count)
         kind, extent, *parameters = low_pass
         values = tuple(map(parse_float, parameters))
-        is_filter = parse_whole(extent) in EXTENTS and len(values) == len(KINDS[kind].choices)
+        is_filter = parse_whole(extent) in filters.EXTENTS and len(values) == len(filters.KINDS[kind].choices)
         if name[:2] != "PS" or not is_filter or not all(map(math.isfinite, values)):
             raise ValueError
-        return filtered_point_samples(count, Filter(kind, int(extent), values))
+        return filters.filtered_point_samples(count, filters.Filter(kind, int(extent), values))
     except (KeyError, ValueError) as error:
         hint = "write for example PF16, RS32 or TM9; a filter as PS16:gaussian:7:0.5, with an odd extent from 3 to 21"
         raise OptionError(f"unknown representation {format_value(text)}", hint=hint) from error
