@@ -136,7 +136,7 @@ class PlanFile:
     def build(self, *, debug: bool = False, progress: ProgressCallback = ignore_progress) -> Cube:
         """Build the planned cube, with the warnings and errors of `uplift.build`."""
         scene = self.images if self.sparse else None
-        return build(self.atlases or None, scene=scene, progress=progress, **self.options, debug=debug)
+        return build(self.atlases or None, scene=scene, progress=progress, **self.options | {"debug": debug})
 
 
 class _Source(SpecModel):
