@@ -39,10 +39,8 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
     ``path`` is the file to write them to: paths of textures and atlases are relative to its folder.
     """
     scene, final, chosen = plan.scene, plan.final_build, plan.chosen
-    # All options in JSON values, so that later defaults do not change the build.
-    options = {
-        key: list(each) if isinstance(each, tuple) else each for key, each in asdict(Options(**plan.options)).items()
-    }
+    # All options, so that later defaults do not change the build.
+    options = asdict(Options(**plan.options))
     return {
         "format": FORMAT,
         "uplift": VERSION,

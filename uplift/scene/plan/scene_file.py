@@ -113,8 +113,6 @@ Lights = Annotated[
     BeforeValidator(_as_list),
     Field(min_length=1),
 ]
-Space = Annotated[str, resolves(observer.sensor)]
-Illuminant = Annotated[str, resolves(observer.illuminant_spd)]
 Limit = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Observer = Annotated[str, resolves(observer.matching_functions)]
 
@@ -131,8 +129,8 @@ class _SceneTable(SpecModel):
     limits: dict[Literal["memory", "time", "samples"], Limit] = Field(default_factory=dict)
     sparse: bool = SceneFile.sparse
     encoding: Annotated[str, resolves(check_encoding)] = SceneFile.encoding
-    space: Space = SceneFile.space
-    illuminant: Illuminant = SceneFile.illuminant
+    space: Annotated[str, resolves(observer.sensor)] = SceneFile.space
+    illuminant: Annotated[str, resolves(observer.illuminant_spd)] = SceneFile.illuminant
     observer: Observer = SceneFile.observer
 
 

@@ -33,10 +33,8 @@ FINE_STRIDE, COARSE_STRIDE = 1, 5
 
 @dataclass(frozen=True)
 class FilterKind:
-    """A family of filters: its title in tables, its curve over x from −1 to 1 with the parameters, and the values that
-    a search tries for each parameter."""
+    """A family of filters: its curve over x from −1 to 1 with the parameters, and the values that a search tries."""
 
-    title: str
     curve: Callable[..., Array]
     choices: Mapping[str, Sequence[float]]
 
@@ -91,14 +89,14 @@ _ALPHA = [0.05, *np.round(np.arange(0.1, 3.01, 0.1), 1).tolist()]
 _CUBIC = np.round(np.arange(-3, 3.01, 0.2), 1).tolist()
 
 KINDS: dict[str, FilterKind] = {
-    "box": FilterKind("box", np.ones_like, {}),
-    "tent": FilterKind("tent", lambda x: 1 - np.abs(x), {}),
-    "welch": FilterKind("Welch", lambda x: 1 - x**2, {}),
-    "gaussian": FilterKind("Gaussian", lambda x, a: np.exp(-4 * a * x**2) - np.exp(-4 * a), {"α": _ALPHA}),
-    "mitchell": FilterKind("Mitchell", _mitchell, {"b": _CUBIC, "c": _CUBIC}),
-    "lanczos": FilterKind("Lanczos", lambda x, cycles: np.sinc(cycles * x) * np.sinc(x), {"τ": _TAU}),
-    "hann": FilterKind("Hann", lambda x: 0.5 + 0.5 * np.cos(np.pi * x), {}),
-    "hamming": FilterKind("Hamming", lambda x: 0.54 + 0.46 * np.cos(np.pi * x), {}),
+    "box": FilterKind(np.ones_like, {}),
+    "tent": FilterKind(lambda x: 1 - np.abs(x), {}),
+    "welch": FilterKind(lambda x: 1 - x**2, {}),
+    "gaussian": FilterKind(lambda x, a: np.exp(-4 * a * x**2) - np.exp(-4 * a), {"α": _ALPHA}),
+    "mitchell": FilterKind(_mitchell, {"b": _CUBIC, "c": _CUBIC}),
+    "lanczos": FilterKind(lambda x, cycles: np.sinc(cycles * x) * np.sinc(x), {"τ": _TAU}),
+    "hann": FilterKind(lambda x: 0.5 + 0.5 * np.cos(np.pi * x), {}),
+    "hamming": FilterKind(lambda x: 0.54 + 0.46 * np.cos(np.pi * x), {}),
 }
 """Kinds by name, in the order of tables A.1 and A.2."""
 
