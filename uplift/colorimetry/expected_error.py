@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uplift.common.arrays import Array, blocks
+from uplift.common.arrays import Array, blocks, distances
 
 LENGTH = 6.0
 """Length in CIE L*a*b* of the weights exp(−ΔE / length) of the errors of entries around a colour."""
@@ -68,7 +68,7 @@ class ExpectedError:
         rows = max(BLOCK_NUMBERS // len(self.locations), 1)
         for first in range(0, len(lab), rows):
             part = slice(first, first + rows)
-            weights = np.exp(_distances(lab[part], self.locations) / -LENGTH)
+            weights = np.exp(distances(lab[part], self.locations) / -LENGTH)
             found[part] = self.combine(weights @ self.columns, weights.max(axis=1))
         return found
 
@@ -88,7 +88,7 @@ def expected_products(
     parts = list(blocks(len(locations), max(BLOCK_NUMBERS // len(locations), 1)))
 
     def others(part: slice) -> Array:
-        apart = _distances(locations[part], locations)
+        apart = distances(locations[part], locations)
         np.fill_diagonal(apart[:, part], np.inf)
         return apart
 
@@ -137,7 +137,7 @@ def nearest_distances(lab: Array, locations: Array) -> Array:
     if not len(locations):
         return np.full(len(lab), np.inf)
     rows = max(BLOCK_NUMBERS // len(locations), 1)
-    parts = [_distances(lab[first : first + rows], locations).min(axis=1) for first in range(0, len(lab), rows)]
+    parts = [distances(lab[first : first + rows], locations).min(axis=1) for first in range(0, len(lab), rows)]
     return np.concatenate(parts) if parts else np.zeros(0)
 
 
@@ -147,15 +147,6 @@ def familiar_distance(locations: Array) -> float:
         return 0.0
     step = -(-len(locations) // MAX_ROWS)
     rows = np.arange(0, len(locations), step)
-    distances = _distances(locations[rows], locations)
-    distances[np.arange(len(rows)), rows] = np.inf
-    return float(np.quantile(distances.min(axis=1), FAMILIAR))
-
-
-def _distances(first: Array, second: Array) -> Array:
-    """ΔE*ab (n, m) by components, as sums of squares would cancel."""
-    squares = np.zeros((len(first), len(second)))
-    for axis in range(3):
-        difference = first[:, axis, None] - second[None, :, axis]
-        squares += difference * difference
-    return np.sqrt(squares)
+    apart = distances(locations[rows], locations)
+    apart[np.arange(len(rows)), rows] = np.inf
+    return float(np.quantile(apart.min(axis=1), FAMILIAR))

@@ -1,4 +1,4 @@
-"""Types of arrays and paths in signatures; blocks of rows."""
+"""Types of arrays and paths in signatures; blocks of rows, and distances between points."""
 
 import os
 from collections.abc import Iterator
@@ -20,3 +20,11 @@ def blocks(count: int, size: int) -> Iterator[slice]:
     """Split rows into blocks of at most ``size``."""
     for first in range(0, count, size):
         yield slice(first, min(first + size, count))
+
+
+def distances(first: Array, second: Array) -> Array:
+    """Compute the Euclidean distances (n, m) of points (n, K) and (m, K), by components, as products would cancel."""
+    squares = np.zeros((len(first), len(second)))
+    for one, other in zip(first.T, second.T, strict=True):
+        squares += np.subtract.outer(one, other) ** 2
+    return np.sqrt(squares, out=squares)

@@ -16,7 +16,7 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.sensor import Light
-from uplift.common.arrays import Array, blocks
+from uplift.common.arrays import Array, blocks, distances
 from uplift.fit.batch import to_storage
 from uplift.fit.entries import FittedEntries, colour_objective
 from uplift.fit.families import FILE, Family, FamilySamples, krige_families, learn_relevance
@@ -25,7 +25,7 @@ from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.solver import solve
 from uplift.lattice import Lattice, weighted_sum
 from uplift.models import Moments, reflectance
-from uplift.models.arithmetic import blocked_matmul, distances
+from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import cosine_basis
 from uplift.models.minimum_norm import ForwardMap
 from uplift.models.model import Model

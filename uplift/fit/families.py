@@ -20,11 +20,10 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import lab_jacobian
 from uplift.colorimetry.sensor import Light
-from uplift.common.arrays import Array, Indices, blocks
+from uplift.common.arrays import Array, Indices, blocks, distances
 from uplift.common.errors import unknown_name
 from uplift.fit.entries import LIGHTS_WEIGHT
 from uplift.fit.kriging import Kernel
-from uplift.models.arithmetic import distances
 
 FILE = "library.npz"
 """Package data, written by tools/ship_library.py."""

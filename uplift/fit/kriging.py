@@ -12,9 +12,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
-from uplift.common.arrays import Array, Indices, blocks
+from uplift.common.arrays import Array, Indices, blocks, distances
 from uplift.fit.problem import Problem
-from uplift.models.arithmetic import distances
 
 METRIC = np.array([0.5, 1.0, 1.0])
 """Weights of differences of L*, a* and b*: materials of one hue are more alike than those of one lightness."""

@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array, Indices, distances
 from uplift.common.errors import unknown_name
 from uplift.lights.lattice import DENOMINATOR, ChromaticityLattice, chromaticity
 
@@ -123,11 +123,11 @@ def lamp_entries(
         else:
             kept.append(row)
     more, more_uv = _unit(others.power, radiometry)
-    clear = np.flatnonzero(_distances(more_uv, uv[kept]).min(axis=1, initial=np.inf) > CLEARANCE)
+    clear = np.flatnonzero(distances(more_uv, uv[kept]).min(axis=1, initial=np.inf) > CLEARANCE)
     names = (*(constraints.names[row] for row in kept), *(others.names[row] for row in clear))
     uv = np.concatenate([uv[kept], more_uv[clear]])
     spectra = np.concatenate([power[kept], more[clear]])
-    apart = _distances(uv, uv) + np.diag(np.full(len(uv), np.inf))
+    apart = distances(uv, uv) + np.diag(np.full(len(uv), np.inf))
     radius = np.minimum(apart.min(axis=1) / 2, MAX_RADIUS)
     radius = np.minimum(radius, _to_rim(uv, lattice))
     resolved = np.flatnonzero((np.arange(len(names)) < len(kept)) | (radius >= MIN_RADIUS))
@@ -154,10 +154,6 @@ def _unit(power: Array, radiometry: Array) -> tuple[Array, Array]:
     """Power of unit X + 15 Y + 3 Z, and u′v′."""
     unit = power / (power @ radiometry @ DENOMINATOR)[:, None]
     return unit, chromaticity(unit @ radiometry)
-
-
-def _distances(first: Array, second: Array) -> Array:
-    return np.asarray(np.linalg.norm(first[:, None] - second, axis=-1))
 
 
 def _to_rim(uv: Array, lattice: ChromaticityLattice) -> Array:

@@ -83,14 +83,6 @@ def arctan_difference(x: Array, change: Array) -> Array:
     return difference
 
 
-def distances(first: Array, second: Array) -> Array:
-    """Compute the Euclidean distances (n, m) of points (n, K) and (m, K)."""
-    squares = np.zeros((len(first), len(second)))
-    for one, other in zip(first.T, second.T, strict=True):
-        squares += np.subtract.outer(one, other) ** 2
-    return np.sqrt(squares, out=squares)
-
-
 def blocked_matmul(rows: Any, matrix: Any) -> Any:
     """Compute ``rows`` (n, K) @ ``matrix`` (K, N) of numpy or JAX arrays."""
     if rows.__array_namespace__() is not np:

@@ -14,14 +14,13 @@ import numpy as np
 from uplift.colorimetry import Light, Sensor
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.srgb import to_display_codes
-from uplift.common.arrays import Array, StrPath, Values, blocks
+from uplift.common.arrays import Array, StrPath, Values, blocks, distances
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
 from uplift.fit.kriging import DEFAULT, Kernel, posterior
 from uplift.io.scene_colours import BINS, Images, PixelSample, bin_index
 from uplift.lookup import Cube
 from uplift.lookup.light_errors import light_errors
-from uplift.models.arithmetic import distances
 from uplift.viz.figure import ACCENT, colour_map, figure_text, new_figure, write_figure
 
 STEPS = (1, 2, 4, 8)
