@@ -102,11 +102,13 @@ class Prior:
         """
         if self.errors is None:
             return None
-        lab = rgb_to_lab(self.sensor, rgb)
-        none = np.zeros(len(self.errors.locations))
-        sums = kernel_sums(lab, self.errors.locations, self.errors.columns, LENGTH, none)
+        # As many columns as kriging has, so that one program is compiled for both
+        used = self.errors.columns.shape[1]
+        columns = np.pad(self.errors.columns, ((0, 0), (0, self.model.count - used)))
+        none = np.zeros(len(columns))
+        sums, nearest = kernel_sums(rgb_to_lab(self.sensor, rgb), self.errors.locations, columns, LENGTH, none)
         # Expected square v(x) Σ k e² / Σ k + f, and the learnt radius of 68 % in its root
-        squares = self.errors.combine(*sums)[:, 0] + self.errors.floor
+        squares = self.errors.combine(sums[:, :used], nearest)[:, 0] + self.errors.floor
         return np.asarray(self.errors.radii.standard * np.sqrt(squares))
 
     def with_entries(self, entries: FittedEntries, looks: int) -> "Prior":

@@ -214,6 +214,13 @@ def solve(
     return solution
 
 
+def residuals(forward: ForwardMap, multipliers: Array, target: Array, method: Method) -> Array:
+    """Target minus RGB (n, 3), by the program that is compiled for `solve`."""
+    given = (multipliers, target, method.options(multipliers, None))
+    found: Array = map_batches(_advance(method), (forward, 0.0, 0), *given)[1]  # type: ignore[arg-type]
+    return found
+
+
 @cache
 def _advance(method: Method) -> Callable[..., Any]:
     """Make the function that takes up to a number of steps in a chunk of rows; the options go on from there."""

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Indices, blocks
 from uplift.common.progress import Progress
-from uplift.fit.batch import map_batches, to_storage
+from uplift.fit.batch import to_storage
 from uplift.fit.growth import BLOCK_POINTS, Growth
 from uplift.fit.prior import Prior
 from uplift.fit.seeds import Seeds
+from uplift.fit.solver import residuals
 from uplift.lattice import NO_ENTRY, NOT_FITTED, PointTable, Status
-from uplift.models.minimum_norm import ForwardMap
 
 SINGLE: np.dtype[Any] = np.dtype(np.float32)
 DOUBLE: np.dtype[Any] = np.dtype(np.float64)
@@ -59,8 +59,9 @@ def _store_coefficients(
     def evaluate(points: Indices) -> None:
         if points.size:
             multipliers = problem.model.from_storage(coefficients[points].astype(kind))
-            rgb = map_batches(ForwardMap.rgb, problem.forward, multipliers)
-            growth.rgb[points], distance[points] = rgb, np.abs(nodes.goal(points) - rgb).max(axis=1)
+            goal = nodes.goal(points)
+            residual = residuals(problem.forward, multipliers, goal, problem.method)
+            growth.rgb[points], distance[points] = goal - residual, np.abs(residual).max(axis=1)
 
     # Block by block; once a block loses too much in single precision, all sensitive nodes so far are evaluated again.
     sensitive = []
