@@ -26,19 +26,24 @@ SUN_THRESHOLD, ENHANCED_THRESHOLD = 0.3, 0.2
 """Relative gradients of spikes, from Kment 2011, section 6.1."""
 
 
-class Spikes(NamedTuple):
-    """Heights (n, P) of spikes at ``positions`` (P,), indices of the 5 nm table; 0 where a spectrum has no spike."""
+class CompositeCode(NamedTuple):
+    """Code of the smooth part, and heights (n, P) of spikes at ``positions`` (P,), indices of the 5 nm table.
 
+    A height is 0 where a spectrum has no spike.
+    """
+
+    smooth: Array
     positions: Indices
     heights: Array
 
-    @property
-    def storage(self) -> Array:
-        """Numbers (n,) stored for the spikes of each spectrum."""
-        return NUMBERS_PER_SPIKE * (self.heights != 0).sum(axis=1, dtype=float)
+    def at(self, positions: Indices) -> Array:
+        """Heights (n, Q) at ``positions`` (Q,), a superset of those of the spikes."""
+        heights = np.zeros((len(self.heights), len(positions)))
+        heights[:, np.searchsorted(positions, self.positions)] = self.heights
+        return heights
 
 
-def split_spikes(spectra: Array, threshold: float) -> tuple[Array, Spikes]:
+def split_spikes(spectra: Array, threshold: float) -> CompositeCode:
     """Split dense spectra (n, 401) into a smooth part (n, 401), linear between 5 nm, and spikes.
 
     Choices that the text leaves open: the gradient is that between two samples of the 5 nm table, relative to the
@@ -57,27 +62,13 @@ def split_spikes(spectra: Array, threshold: float) -> tuple[Array, Spikes]:
     heights = table - smooth
     heights[heights < NOISE * highest[:, None]] = 0
     positions = np.flatnonzero(heights.any(axis=0))
-    return (table - heights) @ samples.hat_functions(observer.grid()), Spikes(positions, heights[:, positions])
-
-
-def heights_at(spikes: Spikes, positions: Indices) -> Array:
-    """Heights (n, Q) at ``positions`` (Q,), a superset of those of the spikes."""
-    heights = np.zeros((len(spikes.heights), len(positions)))
-    heights[:, np.searchsorted(positions, spikes.positions)] = spikes.heights
-    return heights
+    return CompositeCode((table - heights) @ samples.hat_functions(observer.grid()), positions, heights[:, positions])
 
 
 @functools.cache
 def spike_xyz() -> Array:
     """XYZ (81, 3) of a spike of height 1 at each position: a triangle as wide as linear interpolation makes it."""
     return samples.hat_functions(observer.grid()) @ samples.xyz_weights()
-
-
-class CompositeCode(NamedTuple):
-    """Code (n, C) of the smooth part, and the spikes."""
-
-    smooth: Array
-    spikes: Spikes
 
 
 def composite(name: str, family: str, smooth: Representation, decoder: Array, threshold: float) -> Representation:
@@ -89,24 +80,23 @@ def composite(name: str, family: str, smooth: Representation, decoder: Array, th
     """
 
     def encode(power: Array) -> CompositeCode:
-        rest, spikes = split_spikes(power, threshold)
-        return CompositeCode(smooth.encode_light(rest), spikes)
+        split = split_spikes(power, threshold)
+        return split._replace(smooth=smooth.encode_light(split.smooth))
 
     def multiply(light: CompositeCode, surface: CompositeCode) -> CompositeCode:
-        positions = np.union1d(light.spikes.positions, surface.spikes.positions)
-        of_light, of_surface = heights_at(light.spikes, positions), heights_at(surface.spikes, positions)
+        positions = np.union1d(light.positions, surface.positions)
+        of_light, of_surface = light.at(positions), surface.at(positions)
         below_light, below_surface = (code.smooth @ decoder[:, positions] for code in (light, surface))
         heights = of_light * (below_surface + of_surface) + below_light * of_surface
-        return CompositeCode(smooth.multiply(light.smooth, surface.smooth), Spikes(positions, heights))
+        return CompositeCode(smooth.multiply(light.smooth, surface.smooth), positions, heights)
 
-    return Representation(
-        name,
-        family,
-        encode,
-        lambda light: smooth.xyz(light.smooth) + light.spikes.heights @ spike_xyz()[light.spikes.positions],
-        multiply,
-        storage=lambda code: smooth.storage(code.smooth) + code.spikes.storage,
-    )
+    def storage(code: CompositeCode) -> Array:
+        return smooth.storage(code.smooth) + NUMBERS_PER_SPIKE * (code.heights != 0).sum(axis=1, dtype=float)
+
+    def xyz(light: CompositeCode) -> Array:
+        return smooth.xyz(light.smooth) + light.heights @ spike_xyz()[light.positions]
+
+    return Representation(name, family, encode, xyz, multiply, storage=storage)
 
 
 def fourier_coefficients(count: int) -> Representation:
