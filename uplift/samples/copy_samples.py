@@ -10,29 +10,13 @@ FOLDER = Path(__file__).parent / "files"
 
 
 def sample_names() -> tuple[str, ...]:
-    """Return the names of the sample files, in alphabetical order.
-
-    Returns
-    -------
-    tuple of str
-    """
+    """Return the names of the sample files, in alphabetical order."""
     return tuple(sorted(path.name for path in FOLDER.iterdir()))
 
 
 def sample_path(name: str) -> Path:
-    """Return the installed sample of a name.
+    """Return the installed sample of a name, one of `sample_names`.
 
-    Parameters
-    ----------
-    name : str
-        One of `sample_names`.
-
-    Returns
-    -------
-    Path
-
-    Examples
-    --------
     >>> sample_path("still-life.png").is_file()
     True
     """
@@ -40,24 +24,10 @@ def sample_path(name: str) -> Path:
 
 
 def copy_samples(folder: StrPath = ".", *, force: bool = False) -> tuple[Path, ...]:
-    """Copy the sample files into a folder. Equal files that are there already stay as they are.
+    """Copy the sample files into a folder, which is created. Equal files that are there already stay as they are.
 
-    Parameters
-    ----------
-    folder : path-like
-        The folder, created if it does not exist.
-    force : bool
-        Whether to replace files of the same names.
-
-    Returns
-    -------
-    tuple of Path
-        The copies, in alphabetical order.
-
-    Raises
-    ------
-    OutputError
-        The folder cannot be written, or has another file of the same name and ``force`` is off. Nothing is copied.
+    Raises `OutputError` if the folder cannot be written, or without ``force`` has another file of the same name;
+    nothing is copied then.
     """
     copies = {Path(folder) / name: sample_path(name) for name in sample_names()}
     missing = {copy: sample for copy, sample in copies.items() if not _is_equal(copy, sample)}

@@ -69,33 +69,11 @@ class FilmTable:
 def write_film(
     cube: Cube, path: StrPath, *, light: str | None = None, res: int = SIZE, share: float = SHARE, force: bool = False
 ) -> FilmTable:
-    """Write a cube as a film table of chromaticities and the TOML file that describes it.
+    """Write a cube as a film table of chromaticities, .npy, and the TOML file that describes it.
 
-    Parameters
-    ----------
-    cube : Cube
-        Cube of an RGB space and the CIE 1931 observer. One of a wide gamut has more of the chromaticities.
-    path : path-like
-        The ``.npy`` file. The other one has its name and the suffix ``.toml``.
-    light : str, optional
-        Illuminant of a table of kind ``irradiance``: that of the cube. Without it, the kind is ``reflectance``.
-    res : int, default 192
-        Rows and columns, 2 to 1024.
-    share : float, default 0.5
-        Luminance of the stored reflectances as a fraction of the largest possible one, in (0, 1).
-    force : bool, default False
-        Replace existing files.
-
-    Returns
-    -------
-    FilmTable
-
-    Raises
-    ------
-    OptionError
-        A size or share outside its range, or a cube of another observer.
-    ColourError
-        The cube of a camera.
+    ``light``, for the kind ``irradiance`` in place of ``reflectance``, is that of the cube. ``res`` are rows and
+    columns, 2 to 1024; ``share`` in (0, 1) is the luminance of the stored reflectances as a fraction of the largest
+    possible one. Raises `OptionError`, also for an observer other than CIE 1931, and `ColourError` for a camera.
     """
     sensor = cube.data.sensor
     sensor.require_xyz()

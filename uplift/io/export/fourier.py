@@ -36,26 +36,9 @@ COUNT, LEVEL = 3, 16
 def write_fourier(cube: Cube, path: StrPath, *, res: int | None = None, force: bool = False) -> LutError:
     """Write the table from sRGB to Fourier sRGB, and the shader of its spectra as a ``.glsl`` file.
 
-    Parameters
-    ----------
-    cube : Cube
-        Cube of three moments, of sRGB or another space with its curve.
-    path : path-like
-        ``.png``, or else a ``.cube`` file.
-    res : int, optional
-        Nodes of a ``.cube`` table along each axis, 2 to 129, by default 33. An image has all codes.
-    force : bool, default False
-        Replace existing files.
-
-    Returns
-    -------
-    LutError
-        Under the light of the cube, of random colours with codes of 8 bits before and after.
-
-    Raises
-    ------
-    OptionError
-        A cube of another model or curve, or a size outside its range.
+    The cube has three moments, and sRGB or another space with its curve; `OptionError` otherwise. A ``.cube`` file has
+    ``res`` nodes along each axis, 2 to 129, by default 33; a ``.png`` has all codes. Returns the error of random
+    colours under the light of the cube, with codes of 8 bits before and after.
     """
     data, path = cube.data, Path(path)
     if not isinstance(data.model, Moments) or data.model.count != COUNT:

@@ -44,27 +44,10 @@ class LutError:
 def write_lut(
     cube: Cube, light: str, path: StrPath, *, res: int = SIZE, adapt: bool = True, force: bool = False
 ) -> LutError:
-    """Write the colours of reflectances under a light as a table of ``res``³ nodes.
+    """Write the colours of reflectances under a light as a table of ``res``³ nodes, 2 to 129, ``.clf`` or ``.cube``.
 
-    Parameters
-    ----------
-    cube : Cube
-        Cube of an RGB space; that of a camera is a `ColourError`.
-    light : str
-        Illuminant, by its name.
-    path : path-like
-        ``.clf``, or else a ``.cube`` file.
-    res : int, default 33
-        Nodes along each axis, 2 to 129.
-    adapt : bool, default True
-        Show the white of the light as white (Bradford). Otherwise colours have the tint of the light.
-    force : bool, default False
-        Replace an existing file.
-
-    Returns
-    -------
-    LutError
-        Of 4096 random colours, with OpenColorIO's interpolation.
+    With ``adapt`` the white of the light is shown as white (Bradford); otherwise colours have its tint. Returns the
+    error of 4096 random colours with OpenColorIO's interpolation. The cube of a camera is a `ColourError`.
     """
     if not MIN_SIZE <= res <= MAX_SIZE:
         raise OptionError(f"res must be from {MIN_SIZE} to {MAX_SIZE}, got {res}", hint=f"{SIZE} is usual")
