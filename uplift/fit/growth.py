@@ -30,13 +30,7 @@ are not smooth."""
 NUDGE = 0.5
 EXTREME = 100.0
 """Linear part of a nearly white (+) or nearly black (−) spectrum."""
-STEPS = (
-    "more iterations",
-    "from grey",
-    "constant multiplier nudged",
-    "all multipliers nudged",
-    "from white or black",
-)
+STEPS = ("more iterations", "from grey", "constant multiplier nudged", "all multipliers nudged", "from white or black")
 """More iterations fix nearly every realisable node, grey those whose neighbours were black or white, where the gradient
 vanishes. The steps of the thesis, which moves Ceres out of minima in moment space, remain for the rest."""
 THESIS_STEPS = (

@@ -98,10 +98,7 @@ def _linear_design(sensor: Sensor, goal: LookGoal, expected: Array, near: Array,
         values.append(weights @ (requested - current) + derivative @ (near - expected))
     change = solve_bounded(
         BoundedProblem(
-            np.concatenate([*rows, shape]),
-            np.concatenate([*values, np.zeros(len(shape))]),
-            -expected,
-            1 - expected,
+            np.concatenate([*rows, shape]), np.concatenate([*values, np.zeros(len(shape))]), -expected, 1 - expected
         )
     )
     return np.clip(expected + change, 0, 1)

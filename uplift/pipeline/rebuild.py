@@ -45,11 +45,7 @@ class StoredScene:
 
 
 def rebuild(
-    stored: Cube,
-    path: StrPath,
-    folders: Iterable[StrPath] = (),
-    *,
-    progress: ProgressCallback = ignore_progress,
+    stored: Cube, path: StrPath, folders: Iterable[StrPath] = (), *, progress: ProgressCallback = ignore_progress
 ) -> Cube:
     """Build a cube, read from ``path``, again. Warnings of the first build are not repeated.
 
@@ -155,9 +151,7 @@ def _read_options(data: CubeData, path: StrPath) -> Options:
         )
     if options.dim != data.lattice.dim:
         raise CubeFileError(
-            f"records dim {options.dim}, but has {data.lattice.dim} nodes along each axis",
-            path=path,
-            hint=REBUILD,
+            f"records dim {options.dim}, but has {data.lattice.dim} nodes along each axis", path=path, hint=REBUILD
         )
     return options
 
