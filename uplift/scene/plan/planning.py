@@ -3,7 +3,7 @@
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -139,7 +139,7 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     if not finalists:
         raise no_candidate(scene, measured)
     chosen, confirmed = _confirm(space, finalists)
-    rendering = space.evaluator.renderings.get(chosen.rendering)
+    rendering = space.renderings.get(chosen.rendering)
     textures = space.colours.predicting
     spectra = None
     if chosen.pixel.form == INDEX and rendering is not None and space.colours.few is not None:
@@ -155,12 +155,12 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         chosen=chosen,
         confirmed=confirmed,
         rendering=rendering,
-        matrices=space.evaluator.matrices,
+        matrices=space.matrices,
         without_spectra=space.without_spectra,
         options=options,
         final_build=_build(space, options, sparse=chosen.sparse) if options else None,
         spectra=spectra,
-        expected_error=_expected_error(space.evaluator.reference, scene, textures.rgb, textures.share),
+        expected_error=_expected_error(space.cubes[space.reference], scene, textures.rgb, textures.share),
     )
 
 
@@ -168,13 +168,12 @@ def _confirm(space: CandidateSpace, finalists: Sequence[Candidate]) -> tuple[Can
     """The first finalist within the tolerance on other pixels, or else the one of the smallest error there."""
     space.progress(Progress("confirmation", 0, 1))
     tests, reference = space.evaluation_set(space.colours.confirming)
-    other = replace(space.evaluator, tests=tests, reference=reference)
     tried: list[tuple[Candidate, ErrorSummary]] = []
     for each in finalists:
         if tried and each.error.quantile > CLEARLY_SMALLER * tried[-1][0].error.quantile:
             continue
         cube = None if each.cube is None else space.cube(tests.rgb, each.cube)
-        tried.append((each, other.measure(cube, [each])[0].error))
+        tried.append((each, space.errors(cube, [each], tests, reference)[0].error))
         if tried[-1][1].quantile <= space.scene.tolerance or len(tried) == FINALISTS:
             break
     return min(tried, key=lambda each: (each[1].quantile > space.scene.tolerance, each[1].quantile))

@@ -6,7 +6,7 @@ lattice add, to predict the error of a cube. The squares of the errors of a cube
 
 import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from typing import Any
 
@@ -46,35 +46,6 @@ WITHOUT_SPECTRA = "RGB × light"
 """Name of the rendering of RGB, by a matrix for each light."""
 
 
-@dataclass(frozen=True, eq=False)
-class Evaluator:
-    """Test colours, the ``reference`` cube of these, renderings by name, and matrices (K, 3, 3) of RGB."""
-
-    tests: EvaluationSet
-    reference: Cube
-    renderings: dict[str, Rendering]
-    matrices: Array
-
-    def measure(self, cube: Cube | None, candidates: Sequence[Candidate]) -> list[Candidate]:
-        """Measure the errors of candidates that share a cube."""
-        names = dict.fromkeys(each.rendering for each in candidates if each.rendering != WITHOUT_SPECTRA)
-        needed = [self.renderings[name].wavelengths for name in names]
-        nm, ends = np.concatenate([[], *needed]), np.cumsum([0, *map(len, needed)])
-        columns = dict(zip(names, map(slice, ends, ends[1:]), strict=False))
-        spectra: dict[Pixel, Array] = {}
-        found = []
-        for each in candidates:
-            if each.rendering == WITHOUT_SPECTRA:
-                xyz = self.tests.rgb @ self.matrices.mT
-            else:
-                if each.pixel not in spectra:
-                    pixel = Pixel(texture.Spectrum.name, each.pixel.depth) if cube is None else each.pixel
-                    spectra[each.pixel] = pixel.decoded(cube or self.reference, self.tests.rgb, nm)
-                xyz = self.renderings[each.rendering].xyz(spectra[each.pixel][:, columns[each.rendering]])
-            found.append(replace(each, error=self.tests.error(xyz)))
-        return found
-
-
 class CandidateSpace:
     """A scene with its files read, and the candidates for it, measured with the pixels of the first sample.
 
@@ -97,7 +68,7 @@ class CandidateSpace:
         tests, reference = self.evaluation_set(self.colours.predicting)
         found = renderings(grid, self.sensor, tests, reference, self.floor, progress)
         self.cubes = {self.reference: reference}
-        self.evaluator = Evaluator(tests, reference, {each.name: each for each in found}, fit_matrices(tests))
+        self.tests, self.renderings, self.matrices = tests, {each.name: each for each in found}, fit_matrices(tests)
         self.base = tests.xyz(reference.reflectance(tests.rgb))
         arrays = contents(reference.data)[0]
         rows = {name: array for name, array in arrays.items() if name in POINTS}
@@ -149,9 +120,9 @@ class CandidateSpace:
         """
         colours = self.colours
         found = [Candidate(WITHOUT_SPECTRA, Pixel(RGB), Cost(colours.size, 21, 3))]
-        (self.without_spectra,) = (each.error for each in self.evaluator.measure(None, found))
+        (self.without_spectra,) = (each.error for each in self.measure(None, found))
         if colours.few is not None:
-            for each in self.evaluator.renderings.values():
+            for each in self.renderings.values():
                 if each.sampling is not None:
                     cost = Cost(colours.pixels + 2 * len(colours.few) * each.surface, each.operations, each.samples)
                     found.append(Candidate(each.name, Pixel(INDEX, "half"), cost))
@@ -167,11 +138,32 @@ class CandidateSpace:
             self.built += 1
             self.progress(Progress(f"cube {self.built}: {choice.name}", 0, 1))
             cube = self._cube(choice)
-        return self.evaluator.measure(cube, candidates)
+        return self.errors(cube, candidates, self.tests, self.cubes[self.reference])
+
+    def errors(
+        self, cube: Cube | None, candidates: Sequence[Candidate], tests: EvaluationSet, reference: Cube
+    ) -> list[Candidate]:
+        """Measure the errors of candidates that share a cube, on test colours with the reference cube of these."""
+        names = dict.fromkeys(each.rendering for each in candidates if each.rendering != WITHOUT_SPECTRA)
+        needed = [self.renderings[name].wavelengths for name in names]
+        nm, ends = np.concatenate([[], *needed]), np.cumsum([0, *map(len, needed)])
+        columns = dict(zip(names, map(slice, ends, ends[1:]), strict=False))
+        spectra: dict[Pixel, Array] = {}
+        found = []
+        for each in candidates:
+            if each.rendering == WITHOUT_SPECTRA:
+                xyz = tests.rgb @ self.matrices.mT
+            else:
+                if each.pixel not in spectra:
+                    pixel = Pixel(texture.Spectrum.name, each.pixel.depth) if cube is None else each.pixel
+                    spectra[each.pixel] = pixel.decoded(cube or reference, tests.rgb, nm)
+                xyz = self.renderings[each.rendering].xyz(spectra[each.pixel][:, columns[each.rendering]])
+            found.append(replace(each, error=tests.error(xyz)))
+        return found
 
     def _with_cubes(self) -> Iterator[Candidate]:
         """Candidates that need a cube and whose bounds are below the ceiling."""
-        tests, renderings = self.evaluator.tests, self.evaluator.renderings.values()
+        tests, renderings = self.tests, self.renderings.values()
         base = _quantiles(tests.error(self.base))
         lattices, models = self._lattices(), self._models()
         points = {name: self._points(*name) for name in lattices}
@@ -226,18 +218,18 @@ class CandidateSpace:
             self.progress(Progress(stage, number, len(steps)))
             if series not in done:
                 found[name] = self._xyz(*cube) - finest
-                if self.evaluator.tests.error(self.base + found[name]).quantile <= self.floor:
+                if self.tests.error(self.base + found[name]).quantile <= self.floor:
                     done.add(series)
         return found
 
     def _xyz(self, dim: int, model: str, count: int, warp: str, axis: str = "srgb") -> Array:
-        tests = self.evaluator.tests
+        tests = self.tests
         return tests.xyz(self._cube(CubeChoice(model, count, warp, dim, axis)).reflectance(tests.rgb))
 
     def _cube(self, choice: CubeChoice) -> Cube:
         """Cube for the test colours, built once."""
         if choice not in self.cubes:
-            self.cubes[choice] = self.cube(self.evaluator.tests.rgb, choice)
+            self.cubes[choice] = self.cube(self.tests.rgb, choice)
         return self.cubes[choice]
 
     def _points(self, dim: int, axis: str) -> tuple[int, int]:
