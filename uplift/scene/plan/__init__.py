@@ -5,7 +5,7 @@ Each decision is measured on colours of the scene's own textures; docs/plan.md d
     from uplift.scene import plan
 
     result = plan.plan(plan.read_scene_file("kitchen.toml"))
-    result.confirmed.quantile, result.options, result.sampling.wavelengths
+    result.chosen.name, result.confirmed.quantile, result.options
 """
 
 from uplift.scene.plan.planning import Plan, plan
