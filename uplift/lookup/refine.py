@@ -31,9 +31,10 @@ TRACE = [0, 2, 5]
 """Diagonal elements of a lower triangle, row by row."""
 MIN_CURVATURE = 0.01
 """Least ratio of the curvatures after and before a step."""
-LEAST, SLOPE, MOST = 3e-4, 0.03, 1e-2
+LEAST, SLOPE, MOST, STEEP = 3e-4, 0.03, 1e-2, 100.0
 """Mixtures that are moved are clipped to a distance from 0 and 1, so that programs in single precision follow: the
-first, plus the second times the residual, at most the third."""
+first, plus the second times the residual, at most the third, and at most the residual times the last: those that nearly
+have their colours hardly change."""
 BLOCK_COLUMNS = 1024
 """Spectra processed at a time: their temporary arrays fit into the cache."""
 
@@ -91,7 +92,8 @@ def with_colours(data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, 
         rows = pending[first : first + BLOCK_COLUMNS]
         goal = pulled.scale @ within_solid(data, rgb[rows]).T
         # Near 0 and 1 the linear part is large: the farther it moves, the farther it starts from there.
-        least = np.minimum(LEAST + SLOPE * np.abs(goal - pulled.sensor @ at_sensor[rows].T).max(axis=0), MOST)
+        off = np.abs(goal - pulled.sensor @ at_sensor[rows].T).max(axis=0)
+        least = np.minimum(np.minimum(LEAST + SLOPE * off, STEEP * off), MOST)
         change = _pull(model, pulled, model.from_reflectance(np.clip(at_sensor[rows].T, least, 1 - least)), goal)
         start = model.from_reflectance(np.clip(spectra[rows].T, least, 1 - least))
         moved[rows] = model.to_reflectance(start + shapes.T @ change).T

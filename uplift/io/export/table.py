@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.common.arrays import Array
 from uplift.cube import CubeData
-from uplift.lattice import EntryBoxes
-from uplift.lookup.interpolate import smoothed, weighted_coefficients
-from uplift.lookup.refine import LEAST, MOST, SLOPE, pull
+from uplift.lattice import EntryBoxes, weighted_sum
+from uplift.lookup.interpolate import around, smoothed
+from uplift.lookup.refine import LEAST, MOST, SLOPE, STEEP, pull
 from uplift.models import Moments, Sigmoid, evaluate
 from uplift.models.moments import WARPS, warped
 
@@ -84,21 +85,28 @@ def rounding_error(data: CubeData, mode: str) -> float:
     """Return by how much single precision changes reflectances: the largest change of sampled spectra.
 
     In mode ``spectra`` the samples are nodes that have their own colours, whose mixtures change less. In mode
-    ``moments`` they are realisable colours, many of them dark, and coefficients are rounded as numbers near 1 are: that
-    much is lost in their conversion.
+    ``moments`` they are realisable colours, many of them dark, others in the boxes of entries, and coefficients are
+    rounded as numbers near 1 are: that much is lost in their conversion.
     """
     model, points, unit = data.model, np.flatnonzero(data.points.distance <= data.threshold), 2.0**24
     if mode == "spectra":
         exact = model.from_storage(data.points.coefficients[points[:: len(points) // NODES + 1]])
-        rounded = exact.astype(np.float32).astype(float)
-    else:
-        random = np.random.default_rng(0)
-        rgb = random.uniform(0, 1, (SAMPLES, 3)) ** random.uniform(1, 4, (SAMPLES, 1))
-        stored = weighted_coefficients(data, rgb[data.solid.signed_distance(rgb) < -data.threshold])
-        near_one = np.round(stored * unit) / unit if isinstance(model, Moments) else stored.astype(np.float32)
-        exact, rounded = model.from_storage(stored), model.from_storage(near_one.astype(float))
-    found, expected = (evaluate(model, each, data.sensor.wavelengths) for each in (rounded, exact))
-    return float(np.abs(found - expected).max(initial=0))
+        return float(np.abs(_rounding(data, exact, exact)).max(initial=0))
+    random, (low, high) = np.random.default_rng(0), data.entry_boxes.faces
+    boxes = random.integers(len(low), size=SAMPLES) if len(low) else np.zeros(0, dtype=np.int64)
+    rgb = random.uniform(0, 1, (SAMPLES, 3)) ** random.uniform(1, 4, (SAMPLES, 1))
+    rgb = np.concatenate([rgb, random.uniform(low[boxes], high[boxes])])
+    nodes = around(data, rgb[data.solid.signed_distance(rgb) < -data.threshold])
+    stored = weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
+    near_one = np.round(stored * unit) / unit if isinstance(model, Moments) else stored
+    change = _rounding(data, model.from_storage(near_one.astype(np.float32).astype(float)), model.from_storage(stored))
+    return float(np.abs(nodes.mix(change, np.zeros(1))).max(initial=0))
+
+
+def _rounding(data: CubeData, rounded: Array, exact: Array) -> Array:
+    """Return the change (n, N) of spectra from exact multipliers (n, C) to those in single precision."""
+    found = evaluate(data.model, rounded.astype(np.float32).astype(float), data.sensor.wavelengths)
+    return found - evaluate(data.model, exact, data.sensor.wavelengths)
 
 
 def concatenate(sections: Mapping[str, NDArray[Any]]) -> tuple[Floats, dict[str, int]]:
@@ -153,7 +161,7 @@ def _moving(data: CubeData) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
     }
     first, _, step = sensor.range
     how = {"SAMPLES": len(sensor.wavelengths), "FIRST": first, "STEP": step, "FACET_COUNT": half}
-    return sections, how | {"MARGIN": data.threshold / 2, "LEAST": LEAST, "SLOPE": SLOPE, "MOST": MOST}
+    return sections, how | {"MARGIN": data.threshold / 2, "LEAST": LEAST, "SLOPE": SLOPE, "MOST": MOST, "STEEP": STEEP}
 
 
 def _boxes(boxes: EntryBoxes) -> Floats:

@@ -587,7 +587,9 @@ UP_FUNCTION void up_pull(UP_READS UP_IN float rgb[3], int entry, UP_OUT float pl
         for (int row = 0; row < UP_SAMPLES; ++row) rest -= up_number(UP_TABLE UP_PULL + 6 * row + k) * given[row];
         place[7] = UP_ABS(rest) > place[7] ? UP_ABS(rest) : place[7];
     }
+    float least = 1e-6f + UP_STEEP * place[7];
     place[7] = UP_LEAST + UP_SLOPE * place[7];
+    place[7] = place[7] < least ? place[7] : least;
     place[7] = place[7] < UP_MOST ? place[7] : UP_MOST;
     for (int row = 0; row < UP_SAMPLES; ++row) given[row] = up_linear(given[row], place[7]);
     up_residual(UP_TABLE given, goal, change, found);
