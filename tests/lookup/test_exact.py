@@ -8,7 +8,7 @@ import pytest
 import uplift
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.solid import solid
-from uplift.lookup.refine import within_solid
+from uplift.lookup.refine import with_colours, within_solid
 from uplift.models import evaluate
 
 GREYS = np.linspace(0, 1, 33)[:, None].repeat(3, axis=1)
@@ -41,6 +41,15 @@ def test_realisable_colours_are_exact(wide, colours, mode):
         realisable = realisable[cube.data.solid.contains(realisable)]
         found = cube.data.sensor.rgb(cube.reflectance(realisable, mode=mode))
         np.testing.assert_allclose(found, realisable, rtol=0, atol=1e-4)
+
+
+def test_spectra_that_nearly_have_their_colours_hardly_move(wide):
+    """A step from 1e-5 to 0.9 stays, if its colour is 1e-7 from the requested one."""
+    sensor = wide.data.sensor
+    step = np.where((sensor.wavelengths > 480) & (sensor.wavelengths < 620), 0.9, 1e-5)[None]
+    requested = sensor.rgb(step) + 2e-7 * (0.5 - sensor.rgb(step))
+    moved = with_colours(wide.data, step, step, requested, sensor.wavelengths)
+    assert 0 < np.abs(moved - step).max() < 1e-4
 
 
 def test_coefficients_of_realisable_colours_have_them(wide, colours):
