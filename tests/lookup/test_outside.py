@@ -7,7 +7,7 @@ import pytest
 
 import uplift
 from tests.helpers import near_black, raises, with_absent_points
-from uplift.common.errors import ColourError
+from uplift.common.errors import ColourError, OptionError
 from uplift.lookup import MODES, Cube
 
 RGB = np.random.default_rng(8).random((400, 3))
@@ -53,7 +53,7 @@ def test_only_the_points_that_the_colours_need_are_filled(sparse):
 
 def test_a_cube_of_another_rgb_space_is_refused(plain_cube):
     wide = replace(plain_cube.data, sensor=replace(plain_cube.data.sensor, space="ITU-R BT.2020"))
-    with raises(ColourError, "cubes-of-different-spaces"):
+    with raises(OptionError, "cubes-of-different-spaces"):
         Cube(with_absent_points(wide, near_black(wide))).fill_missing()
 
 

@@ -1,6 +1,6 @@
 """The content of a cube file: everything that a lookup needs, and how the cube was built."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -12,10 +12,14 @@ from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import Solid, solid
 from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.errors import OptionError
 from uplift.lattice import Lattice, PointTable
 from uplift.lattice.entry_boxes import EntryBoxes, OutsideBoxes
 from uplift.models import evaluate
 from uplift.models.model import Model
+
+MAX_SIZE = 500.0
+"""Largest sum of the multipliers' sizes of points that have not their own colours, in mixtures."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -184,3 +188,34 @@ class CubeData:
     def inexact_corners(self) -> Mask | None:
         """(n,) True for the corners of `inexact_cells`. None without any."""
         return None if self.inexact_cells is None else self.lattice.corner_points(self.inexact_cells)
+
+    def missing_points(self, rgb: Array | None = None) -> Indices:
+        """Return the absent points that linear RGB (n, 3) need, or all absent points."""
+        absent = ~self.points.present
+        if rgb is not None:
+            absent &= self.lattice.corner_points(self.lattice.mask(self.entry_boxes.cell(rgb)))
+        return np.flatnonzero(absent)
+
+    def smoothed_multipliers(self, points: Indices) -> Array:
+        """Return multipliers (m, C) of points for mixtures, with less steep steps where colours are not exact.
+
+        Spectra near the boundary of the solid are steps, which single precision cannot place; answers there are moved.
+        """
+        multipliers = self.model.from_storage(self.points.coefficients[points])
+        rows = np.flatnonzero(self.points.distance[points] > self.threshold)
+        multipliers[rows] *= np.minimum(1, MAX_SIZE / np.abs(multipliers[rows]).sum(axis=1))[:, None]
+        return multipliers
+
+
+def common_sensor(cubes: Iterable[CubeData]) -> Sensor:
+    """Return the sensor of cubes that have the same RGB space, illuminant and observer; `OptionError` otherwise."""
+    sensors = [cube.sensor for cube in cubes]
+    spaces = {(each.space, each.illuminant, each.observer) for each in sensors}
+    if len(spaces) > 1:
+        names = " and ".join(", ".join(space) for space in sorted(spaces))
+        raise OptionError(
+            f"cubes that are used together must have one RGB space, illuminant and observer, got {names}",
+            code="cubes-of-different-spaces",
+            hint="build the cube with the settings of the other",
+        )
+    return sensors[0]

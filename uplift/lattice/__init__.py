@@ -1,6 +1,6 @@
 """The lattice over RGB: nodes, cells, neighbours, the boxes around atlas entries, and the table of its points."""
 
-from uplift.lattice.entry_boxes import BoxHits, EntryBoxes, OutsideBoxes
+from uplift.lattice.entry_boxes import BoxHits, EntryBoxes, Nodes, OutsideBoxes
 from uplift.lattice.lattice import CORNERS, Lattice, weighted_sum
 from uplift.lattice.point_table import ABSENT_VALUES, NO_ENTRY, NOT_FITTED, PointTable, Status
 
@@ -12,6 +12,7 @@ __all__ = [
     "BoxHits",
     "EntryBoxes",
     "Lattice",
+    "Nodes",
     "OutsideBoxes",
     "PointTable",
     "Status",

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from uplift.common.arrays import Array, Indices, Mask, Values
-from uplift.lattice.lattice import Lattice
+from uplift.lattice.lattice import Lattice, weighted_sum
 from uplift.lattice.point_table import NO_ENTRY
 
 CORE = 0.1
@@ -36,6 +36,43 @@ class BoxHits(NamedTuple):
     """(k,) weight in the answer, 0 to 1, of the lattice or, outside [0, 1], of what answers without the entry."""
     exit_rgb: Array
     """(k, 3) linear RGB of the point at which that is evaluated."""
+
+    def mix(self, values: Values, entry: Values) -> Values:
+        """Mix values (n, K), in place, with those (k, K) of the entries: t · values + (1 − t) · entry."""
+        if self.rows.size:
+            weight = self.lattice_weight.astype(values.dtype)[:, None]
+            values[self.rows] = weight * values[self.rows] + (1 - weight) * entry
+        return values
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Nodes:
+    """The nodes around n colours: eight corners of a cell each and, for k of them, the entry of a box."""
+
+    points: Indices
+    """(n, 8) lattice points."""
+    weights: Array
+    """(n, 8) their trilinear weights w, summing to 1."""
+    hits: BoxHits
+    """The colours in entry boxes. There the lattice has weight t and is evaluated where the ray leaves the box."""
+
+    def weighted_sum(self, lattice: Values, atlas: Values) -> Values:
+        """Σ w · values of the lattice points (dim³, K), mixed with the entries (E, K): (n, K), in their type."""
+        return self.hits.mix(weighted_sum(lattice, self.points, self.weights), atlas[self.hits.entry])
+
+    def nearest(self) -> tuple[Indices, Indices, Indices]:
+        """Return the nodes of largest weight: lattice points (n,), and rows and entries (m,) where it is an entry."""
+        best = self.weights.argmax(axis=1)[:, None]
+        points = np.take_along_axis(self.points, best, axis=1)[:, 0]
+        weights = np.take_along_axis(self.weights, best, axis=1)[:, 0]
+        is_entry = self.hits.lattice_weight * (1 + weights[self.hits.rows]) <= 1  # 1 − t ≥ t · w
+        return points, self.hits.rows[is_entry], self.hits.entry[is_entry]
+
+    def lattice_rgb(self, rgb: Array) -> Array:
+        """Return the colours (n, 3) at which the lattice is evaluated for linear RGB (n, 3)."""
+        evaluated = rgb.copy()
+        evaluated[self.hits.rows] = self.hits.exit_rgb
+        return evaluated
 
 
 NO_ROWS = np.zeros(0, dtype=np.int64)
@@ -97,6 +134,21 @@ class EntryBoxes:
             if requested[box].any():
                 required[box] = True
         return self.lattice.corner_points(required.ravel())
+
+    def locate(self, rgb: Array) -> tuple[Indices, Array, BoxHits]:
+        """Find the cells (`Lattice.cell`) in which the lattice is evaluated for linear RGB (n, 3), and their boxes.
+
+        In a box the lattice is evaluated on the face, in the cell in which the ray leaves the box.
+        """
+        # x = (1 − t) e + t y in the box of entry e: the lattice answers y, with weight t (8).
+        low, fraction = self.lattice.cell(rgb)
+        hits = self.find(rgb, self.lattice.index(low))
+        low[hits.rows], fraction[hits.rows] = self.lattice.cell(hits.exit_rgb)
+        return low, fraction, hits
+
+    def cell(self, rgb: Array) -> Indices:
+        """Return the numbers (n,) of the cells in which the lattice is evaluated for linear RGB (n, 3)."""
+        return self.lattice.index(self.locate(rgb)[0])
 
     def find(self, rgb: Array, cell: Indices | None = None) -> BoxHits:
         """Find which of the linear RGB (n, 3) lie in boxes. Their ``cell`` (n,) is computed if it is not known."""

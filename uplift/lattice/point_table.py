@@ -1,5 +1,6 @@
 """The arrays that a build computes for every lattice point, and how each point was fitted."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from enum import IntEnum
 from functools import cached_property
@@ -65,27 +66,38 @@ class PointTable:
         """(n,) True where a point has a spectrum: everywhere, unless the cube was built for a scene."""
         return self.status != Status.ABSENT
 
+    @property
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """The arrays by name, without those that are None."""
+        columns = {each.name: getattr(self, each.name) for each in fields(self)}
+        return {name: column for name, column in columns.items() if column is not None}
+
     def spread(self, numbers: Indices, size: int) -> "PointTable":
         """Return the table of ``size`` nodes whose rows, at the nodes ``numbers`` (n,), are those of this one."""
-        columns = {key.name: getattr(self, key.name) for key in fields(self)}
-        for name, rows in columns.items():
-            if rows is not None:
-                shape, absent = (size, *rows.shape[1:]), ABSENT_VALUES.get(name)
-                # Pages of zeros take no memory before they are written.
-                columns[name] = np.zeros(shape, rows.dtype) if absent is None else np.full(shape, absent, rows.dtype)
-                columns[name][numbers] = rows
+        columns = {}
+        for name, rows in self.columns.items():
+            shape, absent = (size, *rows.shape[1:]), ABSENT_VALUES.get(name)
+            # Pages of zeros take no memory before they are written.
+            columns[name] = np.zeros(shape, rows.dtype) if absent is None else np.full(shape, absent, rows.dtype)
+            columns[name][numbers] = rows
         return PointTable(**columns)
 
     def restricted_to(self, points: Indices) -> "PointTable":
         """Return the table with all nodes but some (k,) absent."""
-        absent = np.ones(len(self.status), dtype=bool)
-        absent[points] = False
-        columns = {key.name: getattr(self, key.name) for key in fields(self)}
-        for name, column in columns.items():
-            if column is not None:
-                columns[name] = column.copy()
-                columns[name][absent] = ABSENT_VALUES.get(name, 0)
-        return PointTable(**columns)
+        rows = {name: column[points] for name, column in self.columns.items()}
+        return PointTable(**rows).spread(points, len(self.status))
+
+    def filled(self, points: Indices, rows: Mapping[str, NDArray[Any]]) -> "PointTable":
+        """Return the table with columns of ``rows`` at absent ``points`` (k,), and values of absent points in others.
+
+        Coefficients become float64 if those of the rows are.
+        """
+        columns, present = self.columns, np.flatnonzero(self.present)  # the others take no memory
+        for name, column in self.columns.items():
+            added = rows.get(name, np.full(len(points), ABSENT_VALUES.get(name, 0)))
+            kind = np.result_type(column, added) if name == "coefficients" else column.dtype
+            columns[name] = np.concatenate([column[present], added]).astype(kind)
+        return PointTable(**columns).spread(np.concatenate([present, points]), len(self.status))
 
     def counts(self) -> dict[str, int]:
         """Count the nodes of each status, by `Status.label`."""

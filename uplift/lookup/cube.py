@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
@@ -15,13 +15,13 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.common.arrays import Array, Mask
-from uplift.common.errors import OptionError, unknown_name
+from uplift.common.errors import unknown_name
 from uplift.cube import CubeData, read, write
 from uplift.lookup import blocks
-from uplift.lookup.interpolate import MODES, cells, coefficients, extended_coefficients, node_errors
+from uplift.lookup.interpolate import MODES, coefficients, extended_coefficients, node_errors
 
 if TYPE_CHECKING:
-    from uplift.colorimetry.sensor import Light, Sensor
+    from uplift.colorimetry.sensor import Light
 
 FOLDER = Path(__file__).parent
 DEFAULT = FOLDER / "default.uplift"
@@ -212,7 +212,7 @@ class Cube:
         colours = blocks.as_colours(rgb, self.data.sensor)
         if self.data.complete_cells is None:
             return np.ones(colours.shape[:-1], dtype=bool)
-        return self.data.complete_cells[cells(self.data, colours.reshape(-1, 3))].reshape(colours.shape[:-1])
+        return self.data.complete_cells[self.data.entry_boxes.cell(colours.reshape(-1, 3))].reshape(colours.shape[:-1])
 
     def fill_missing(self, rgb: ArrayLike | None = None, other: Cube | None = None, *, threads: int = 1) -> Cube:
         """Add missing lattice points of a sparse cube: its model, fitted to the spectra of another, with exact colours.
@@ -231,10 +231,10 @@ class Cube:
         Cube
             The filled cube; this cube if no point is missing.
         """
-        from uplift.lookup.outside import fill_missing, missing_points
+        from uplift.lookup.outside import fill_missing
 
         colours = None if rgb is None else blocks.as_colours(rgb, self.data.sensor).reshape(-1, 3)
-        points = missing_points(self.data, colours)
+        points = self.data.missing_points(colours)
         if not points.size:
             return self
         source = load() if other is None else other
@@ -381,17 +381,3 @@ def find_file(path: str | os.PathLike[str], packaged: Mapping[str, Path] = PACKA
     """Return the packaged file that a name, in any case, stands for, or else the path. A file takes precedence."""
     found = packaged.get(os.fsdecode(path).casefold())
     return path if found is None or os.path.lexists(path) else found
-
-
-def common_sensor(cubes: Iterable[Cube]) -> Sensor:
-    """Return the sensor of cubes that have the same RGB space, illuminant and observer; `OptionError` otherwise."""
-    cubes = list(cubes)
-    spaces = {(cube.space, cube.illuminant, cube.observer) for cube in cubes}
-    if len(spaces) > 1:
-        names = " and ".join(", ".join(space) for space in sorted(spaces))
-        raise OptionError(
-            f"cubes that are used together must have one RGB space, illuminant and observer, got {names}",
-            code="cubes-of-different-spaces",
-            hint="build the cube with the settings of the other",
-        )
-    return cubes[0].data.sensor

@@ -15,87 +15,30 @@ All of it in float64: the conversion from moments to multipliers amplifies round
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from uplift.colorimetry.sensor import format_rgb
-from uplift.common.arrays import Array, Indices, Mask, Values
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData
-from uplift.lattice import BoxHits, weighted_sum
+from uplift.lattice import Nodes, weighted_sum
 from uplift.lookup.refine import refine_to_rgb, with_colours
 from uplift.models import evaluate, reflectance
 from uplift.models.model import Model
 
-MAX_SIZE = 500.0
-"""Largest sum of the multipliers' sizes of points that have not their own colours, in mixtures."""
 Mode = Callable[..., Array]
 """From a cube, linear RGB (n, 3) and wavelengths (N,) in nm to reflectance (n, N)."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Nodes:
-    """The nodes around n colours: eight corners of a cell each and, for k of them, the entry of a box."""
-
-    points: Indices
-    """(n, 8) lattice points."""
-    weights: Array
-    """(n, 8) their trilinear weights w, summing to 1."""
-    hits: BoxHits
-    """The colours in entry boxes. There the lattice has weight t and is evaluated where the ray leaves the box."""
-
-    def mix(self, lattice: Values, entry: Values) -> Values:
-        """Mix values (n, K) of the lattice, in place, with those (k, K) of entries: t · lattice + (1 − t) · entry."""
-        if self.hits.rows.size:
-            weight = self.hits.lattice_weight.astype(lattice.dtype)[:, None]
-            lattice[self.hits.rows] = weight * lattice[self.hits.rows] + (1 - weight) * entry
-        return lattice
-
-    def weighted_sum(self, lattice: Values, atlas: Values) -> Values:
-        """Σ w · values of the lattice points (dim³, K), mixed with the entries (E, K): (n, K), in their type."""
-        return self.mix(weighted_sum(lattice, self.points, self.weights), atlas[self.hits.entry])
-
-    def nearest(self) -> tuple[Indices, Indices, Indices]:
-        """Return the nodes of largest weight: lattice points (n,), and rows and entries (m,) where it is an entry."""
-        best = self.weights.argmax(axis=1)[:, None]
-        points = np.take_along_axis(self.points, best, axis=1)[:, 0]
-        weights = np.take_along_axis(self.weights, best, axis=1)[:, 0]
-        is_entry = self.hits.lattice_weight * (1 + weights[self.hits.rows]) <= 1  # 1 − t ≥ t · w
-        return points, self.hits.rows[is_entry], self.hits.entry[is_entry]
-
-    def lattice_rgb(self, rgb: Array) -> Array:
-        """Return the colours (n, 3) at which the lattice is evaluated for linear RGB (n, 3)."""
-        evaluated = rgb.copy()
-        evaluated[self.hits.rows] = self.hits.exit_rgb
-        return evaluated
-
-
 def around(data: CubeData, rgb: Array) -> Nodes:
     """Return the nodes around linear RGB (n, 3) in [0, 1]; `ColourError` if a sparse cube lacks one of them."""
-    lattice, (low, fraction, hits) = data.lattice, _locate(data, rgb)
+    low, fraction, hits = data.entry_boxes.locate(rgb)
     if data.complete_cells is not None:
-        require_covered(data.complete_cells[lattice.index(low)], rgb)
-    points, weights = lattice.cell_corners(low, fraction)
-    return Nodes(points, weights, hits)
-
-
-def cells(data: CubeData, rgb: Array) -> Indices:
-    """Return the numbers (n,) of the cells in which the lattice is evaluated for linear RGB (n, 3) in [0, 1]."""
-    return data.lattice.index(_locate(data, rgb)[0])
-
-
-def _locate(data: CubeData, rgb: Array) -> tuple[Indices, Array, BoxHits]:
-    """Return the lowest corners (n, 3) of cells, fractions (n, 3) of the way across them, and colours in entry boxes.
-
-    In an entry box the lattice is evaluated on the face, in the cell in which the ray leaves the box.
-    """
-    # x = (1 − t) e + t y in the box of entry e: the lattice answers y, with weight t (8).
-    low, fraction = data.lattice.cell(rgb)
-    hits = data.entry_boxes.find(rgb, data.lattice.index(low))
-    low[hits.rows], fraction[hits.rows] = data.lattice.cell(hits.exit_rgb)
-    return low, fraction, hits
+        require_covered(data.complete_cells[data.lattice.index(low)], rgb)
+    return Nodes(*data.lattice.cell_corners(low, fraction), hits)
 
 
 def require_covered(covered: Mask, rgb: Array) -> None:
@@ -124,21 +67,10 @@ def mixed_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     nodes = around(data, rgb)
     # Each lattice point is evaluated once, although neighbouring colours share points.
     points, row = np.unique(nodes.points, return_inverse=True)
-    values = evaluate(data.model, smoothed(data, points), wavelengths)
+    values = evaluate(data.model, data.smoothed_multipliers(points), wavelengths)
     # g = Σ w g_i has the colour W g = Σ w W g_i = Σ w r_i = x, as trilinear weights reproduce x.
     lattice = weighted_sum(values, row.reshape(nodes.points.shape), nodes.weights)
     return _mix_entries(data, nodes, lattice, wavelengths)
-
-
-def smoothed(data: CubeData, points: Indices) -> Array:
-    """Return multipliers (m, C) of lattice points, with less steep steps where points have not their own colours.
-
-    Spectra near the boundary of the solid are steps, which single precision cannot place; answers there are moved.
-    """
-    multipliers = data.model.from_storage(data.points.coefficients[points])
-    rows = np.flatnonzero(data.points.distance[points] > data.threshold)
-    multipliers[rows] *= np.minimum(1, MAX_SIZE / np.abs(multipliers[rows]).sum(axis=1))[:, None]
-    return multipliers
 
 
 def inexact_rows(data: CubeData, rgb: Array) -> Indices:
@@ -149,7 +81,7 @@ def inexact_rows(data: CubeData, rgb: Array) -> Indices:
     """
     if data.inexact_cells is None:
         return np.zeros(0, dtype=np.int64)
-    return np.flatnonzero(data.inexact_cells[cells(data, rgb)])
+    return np.flatnonzero(data.inexact_cells[data.entry_boxes.cell(rgb)])
 
 
 def fading_rows(data: CubeData, rgb: Array) -> tuple[Indices, Array]:
@@ -179,7 +111,7 @@ def mixed_refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     lattice = evaluate(data.model, _exact_lattice(data, nodes, rgb), wavelengths)
     if not nodes.hits.rows.size:
         return lattice
-    return nodes.mix(lattice, evaluate(data.entry_spectra.model, _exact_entries(data, nodes), wavelengths))
+    return nodes.hits.mix(lattice, evaluate(data.entry_spectra.model, _exact_entries(data, nodes), wavelengths))
 
 
 def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
@@ -258,7 +190,7 @@ def extended_multipliers(data: CubeData, rgb: Array) -> Array:
     extended = _append_zeros(data, _exact_lattice(data, nodes, rgb))
     if not nodes.hits.rows.size:
         return extended
-    inside = replace(nodes, hits=nodes.hits._replace(rows=np.arange(len(nodes.hits.rows))))
+    inside = nodes.hits._replace(rows=np.arange(len(nodes.hits.rows)))
     mixed = inside.mix(model.to_storage(extended[nodes.hits.rows]), model.to_storage(_exact_entries(data, nodes)))
     extended[nodes.hits.rows] = refine_to_rgb(data, model, model.from_storage(mixed), rgb[nodes.hits.rows])
     return extended
@@ -271,7 +203,7 @@ def node_errors(data: CubeData, rgb: Array) -> Array:
     entries = np.repeat(data.atlas.error[:, None], 2, axis=1)
     entries[data.atlas.measured_count :] *= factors  # errors of looks are expected ones
     lattice = weighted_sum(errors, nodes.points, nodes.weights) * factors
-    return nodes.mix(lattice, entries[nodes.hits.entry])
+    return nodes.hits.mix(lattice, entries[nodes.hits.entry])
 
 
 def _lattice_coefficients(data: CubeData, nodes: Nodes) -> Array:
@@ -301,4 +233,4 @@ def _mix_entries(data: CubeData, nodes: Nodes, lattice: Array, wavelengths: Arra
     if not nodes.hits.rows.size:
         return lattice
     entries, row = np.unique(nodes.hits.entry, return_inverse=True)
-    return nodes.mix(lattice, data.entry_spectra.reflectance(entries, wavelengths)[row])
+    return nodes.hits.mix(lattice, data.entry_spectra.reflectance(entries, wavelengths)[row])

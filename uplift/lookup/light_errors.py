@@ -44,7 +44,7 @@ class LightErrors:
         squares = self.expected(rgb_to_lab(self.data.sensor, rgb))
         # e² = radius² E[e²] + e₀², with the error e₀ that remains at the entries themselves
         remaining = np.tile(radii * np.sqrt(self.expected.floor), (len(rgb), 1))
-        remaining = nodes.mix(remaining, self.entries[nodes.hits.entry])
+        remaining = nodes.hits.mix(remaining, self.entries[nodes.hits.entry])
         return np.asarray(np.sqrt(radii**2 * squares + remaining**2))
 
 

@@ -1,20 +1,20 @@
 """Colours that a cube does not hold: outside its RGB space (docs/mathematics.md, 9), or not in its scene."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.sensor import format_rgb
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import ColourError
-from uplift.cube import CubeData, digest
+from uplift.cube import CubeData, common_sensor, digest
 from uplift.lattice import Status
-from uplift.lattice.point_table import ABSENT_VALUES, PointTable
 from uplift.lookup.blocks import blockwise
-from uplift.lookup.interpolate import MODES, cells, coefficients, refined
+from uplift.lookup.interpolate import MODES, coefficients, refined
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models import evaluate, reflectance
 
@@ -52,9 +52,8 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
     def spectra(wavelengths: Array) -> Array:
         found = np.zeros((len(rgb), len(wavelengths)))
         found[has_lattice] = evaluate(data.model, multipliers, wavelengths)
-        if entries is not None and own is not None:  # t · answer + (1 − t) · entry
-            weight = hits.lattice_weight[:, None]
-            found[hits.rows] = weight * found[hits.rows] + (1 - weight) * evaluate(entries.model, own, wavelengths)
+        if entries is not None and own is not None:
+            hits.mix(found, evaluate(entries.model, own, wavelengths))
         return found
 
     reached = data.sensor.rgb(spectra(data.sensor.wavelengths))
@@ -77,48 +76,26 @@ def reflectance_anywhere(data: CubeData, rgb: Array, at: Array, mode: str, outsi
     return spectra
 
 
-def missing_points(data: CubeData, rgb: Array | None = None) -> Indices:
-    """Return the absent points that linear RGB (n, 3) need, or all absent points."""
-    absent = ~data.points.present
-    if rgb is not None:
-        absent &= data.lattice.corner_points(data.lattice.mask(cells(data, rgb)))
-    return np.flatnonzero(absent)
-
-
 def fill_missing(data: CubeData, points: Indices, other: CubeData, threads: int = 1) -> CubeData:
     """Return the cube with absent ``points`` (k,) filled by the answers of another cube of the same RGB space.
 
     Their standard error is the largest of the cube, as their distance from measurements is unknown.
     """
-    spaces = [f"{each.space} under {each.illuminant}, {each.observer}" for each in (data.sensor, other.sensor)]
-    if spaces[0] != spaces[1]:
-        raise ColourError(
-            f"a cube can only be filled from one of the same RGB space: {spaces[0]}, got {spaces[1]}",
-            code="cubes-of-different-spaces",
-            hint="build the cube with all colours in its scene, or without a scene",
-        )
+    common_sensor([data, other])
     target, table = data.lattice.target(points), data.points
     multipliers = blockwise(partial(_fit_to_other, data, other), target, data.model.count, threads=threads)
-    stored, kind = data.model.to_storage(multipliers), table.coefficients.dtype
-    rgb = _rgb(data, stored.astype(kind))
+    stored = data.model.to_storage(multipliers)
+    coefficients = stored.astype(table.coefficients.dtype)
+    rgb = _rgb(data, coefficients)
     if (np.abs(target - rgb) > data.threshold).any():  # single precision is not accurate enough
-        kind, rgb = np.dtype(np.float64), _rgb(data, stored)
+        coefficients, rgb = stored, _rgb(data, stored)
     distance = np.abs(target - rgb).max(axis=1)
-    status = np.where(distance > data.threshold, Status.UNFITTED, Status.REGULAR)
-    filled: dict[str, Any] = {"coefficients": stored, "rgb": rgb, "distance": distance, "status": status}
+    rows: dict[str, NDArray[Any]] = {"coefficients": coefficients, "rgb": rgb, "distance": distance}
+    rows["status"] = np.where(distance > data.threshold, Status.UNFITTED, Status.REGULAR)
     if table.standard_error is not None:
-        filled["standard_error"] = np.full(len(points), table.standard_error.max())
-    present = np.flatnonzero(table.present)  # the others take no memory
-    rows: dict[str, Any] = {}
-    for each in fields(table):
-        column = getattr(table, each.name)
-        if column is not None:
-            values = filled.get(each.name, np.full(len(points), ABSENT_VALUES.get(each.name, 0)))
-            dtype = kind if each.name == "coefficients" else column.dtype
-            rows[each.name] = np.concatenate([column[present], values]).astype(dtype)
-    complete = PointTable(**rows).spread(np.concatenate([present, points]), data.lattice.size)
+        rows["standard_error"] = np.full(len(points), table.standard_error.max())
     provenance = {**data.provenance, "filled": {"points": len(points), "cube": digest(other)}}
-    return replace(data, provenance=provenance, points=complete)
+    return replace(data, provenance=provenance, points=table.filled(points, rows))
 
 
 def _rgb(data: CubeData, coefficients: Array) -> Array:

@@ -7,10 +7,9 @@ import numpy as np
 
 from uplift.colorimetry.observer import light
 from uplift.common.arrays import Array, Indices
-from uplift.cube import CubeData
+from uplift.cube import CubeData, common_sensor
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
-from uplift.lookup.cube import common_sensor
 from uplift.report.measures import delta_e_under, mean_p95_max
 
 NODES, ENTRIES = "nodes", "entries"
@@ -125,7 +124,7 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
     Entries are compared by name, each with the spectrum that the cube has for it, even where their colours differ.
     ``images`` are linear RGB (…, 3) in [0, 1]. Raises `OptionError` for cubes of different RGB spaces.
     """
-    sensor = common_sensor(cubes.values())
+    sensor = common_sensor(cube.data for cube in cubes.values())
     first, second = cubes.values()
     under = [light(name, sensor.observer, *sensor.range) for name in lights]
 

@@ -25,10 +25,10 @@ from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OutputError
+from uplift.cube import common_sensor
 from uplift.io.texture.colours import Floats
 from uplift.io.texture.image import read_error, utf8_name
 from uplift.lookup import Cube
-from uplift.lookup.cube import common_sensor
 from uplift.lookup.node_table import prepare_products
 from uplift.report.measures import mean_p95_max
 from uplift.viz.figure import GREY, INK, RAMP, colour_map, figure_text, new_figure, ramp_codes, show_image, write_figure
@@ -104,7 +104,7 @@ def relight(
 
     ``opacity`` (height, width, 1) multiplies them; ``reduction`` is that of the image, along each side.
     """
-    sensor = common_sensor(cubes.values())
+    sensor = common_sensor(cube.data for cube in cubes.values())
     screens = display_sensors(lights, sensor.observer, *sensor.range)
     by_spectra = {method: _by_spectra(cube, rgb, screens, threads) for method, cube in cubes.items()}
     weight = np.float32(1) if opacity is None else opacity

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes, weighted_sum
-from uplift.lookup.interpolate import around, smoothed
+from uplift.lookup.interpolate import around
 from uplift.lookup.refine import LEAST, MOST, SLOPE, STEEP, pull
 from uplift.models import Moments, Sigmoid, evaluate
 from uplift.models.moments import WARPS, warped
@@ -51,7 +51,7 @@ def make_table(data: CubeData, mode: str) -> Table:
     lists, tags = _lists(data, mode)
     stored = [data.points.coefficients, data.atlas.coefficients]
     if mode == "spectra":
-        stored = [smoothed(data, np.arange(size)), model.from_storage(data.atlas.coefficients)]
+        stored = [data.smoothed_multipliers(np.arange(size)), model.from_storage(data.atlas.coefficients)]
     rows = np.zeros((size + len(data.atlas.names), stride), dtype=np.float32)
     rows[:, : model.count] = np.concatenate(stored)
     rows[:size, model.count] = tags
@@ -100,7 +100,7 @@ def rounding_error(data: CubeData, mode: str) -> float:
     stored = weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
     near_one = np.round(stored * unit) / unit if isinstance(model, Moments) else stored
     change = _rounding(data, model.from_storage(near_one.astype(np.float32).astype(float)), model.from_storage(stored))
-    return float(np.abs(nodes.mix(change, np.zeros(1))).max(initial=0))
+    return float(np.abs(nodes.hits.mix(change, np.zeros(1))).max(initial=0))
 
 
 def _rounding(data: CubeData, rounded: Array, exact: Array) -> Array:

@@ -18,11 +18,11 @@ import numpy as np
 from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import ColourError, OptionError, TextureError
 from uplift.common.files import file_digest
+from uplift.cube import common_sensor
 from uplift.io.texture.colours import Counts, Floats, colour_channels, coloured_parts
 from uplift.io.texture.image import Image, Part, Values, open_image
 from uplift.io.texture.uplifter import Converted, Converter, ConvertRows, Uplifter
 from uplift.lattice.entry_boxes import OutsideBoxes
-from uplift.lookup.cube import common_sensor
 from uplift.lookup.refine import refine_to_rgb
 
 MIN_WHITE = 0.5
@@ -180,7 +180,7 @@ def prepare_masked(uplifters: Sequence[Uplifter], mask: Path) -> MaskedUplifter:
             hint="name the cubes in the order of the numbers in the mask",
         )
     first = uplifters[0]
-    common_sensor(each.cube for each in uplifters)
+    common_sensor(each.cube.data for each in uplifters)
     is_model_stored = first.channels[0][:1].islower()
     models = {json.dumps(each.cube.data.model.describe(), sort_keys=True) for each in uplifters}
     if len({each.channels for each in uplifters}) > 1 or (is_model_stored and len(models) > 1):
