@@ -92,10 +92,11 @@ def rounding_error(data: CubeData, mode: str) -> float:
     if mode == "spectra":
         exact = model.from_storage(data.points.coefficients[points[:: len(points) // NODES + 1]])
         return float(np.abs(_rounding(data, exact, exact)).max(initial=0))
-    random, (low, high) = np.random.default_rng(0), data.entry_boxes.faces
-    boxes = random.integers(len(low), size=SAMPLES) if len(low) else np.zeros(0, dtype=np.int64)
+    random, faces = np.random.default_rng(0), np.stack(data.entry_boxes.faces, axis=1).clip(0, 1)
     rgb = random.uniform(0, 1, (SAMPLES, 3)) ** random.uniform(1, 4, (SAMPLES, 1))
-    rgb = np.concatenate([rgb, random.uniform(low[boxes], high[boxes])])
+    if len(faces):
+        low, high = random.choice(faces, SAMPLES).swapaxes(0, 1)
+        rgb = np.concatenate([rgb, low + (high - low) * random.random((SAMPLES, 3))])
     nodes = around(data, rgb[data.solid.signed_distance(rgb) < -data.threshold])
     stored = weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
     near_one = np.round(stored * unit) / unit if isinstance(model, Moments) else stored
