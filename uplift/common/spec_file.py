@@ -25,7 +25,9 @@ MAX_BYTES = 16 << 20
 HINT = "check the format of the file"
 INVALID = "invalid-file"
 """Code of errors in the text of a file: its syntax, its keys, or a value."""
-TEXTS = {"missing": "required key is missing", "extra_forbidden": "unknown key"} | dict.fromkeys(
+UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
+"""Types of errors: of models, and of dataclasses."""
+TEXTS = {"missing": "required key is missing", **dict.fromkeys(UNKNOWN_KEY, "unknown key")} | dict.fromkeys(
     ("dict_type", "dataclass_type", "model_type"), "must be a table"
 )
 """Problems by the type of an error of pydantic, in place of its message."""
@@ -62,15 +64,16 @@ def resolves(look_up: Callable[[Any], Any]) -> AfterValidator:
     return AfterValidator(check)
 
 
-def _check_inside(name: str) -> str:
+def check_inside(name: str) -> str:
+    """Check that a path lies within the folder of its spec file, which may come from a stranger."""
     if PureWindowsPath(name).anchor or ".." in PureWindowsPath(name).parts:  # of POSIX, too
         hint = "move the file there, or this file to a folder above both"
         raise problem(f"must lie in the folder of this file, got {format_value(name)}", hint)
     return name
 
 
-InsidePath = Annotated[str, AfterValidator(_check_inside)]
-"""A path within the folder of the spec file, which may come from a stranger."""
+InsidePath = Annotated[str, AfterValidator(check_inside)]
+"""A path within the folder of the spec file."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +91,7 @@ class SpecFile:
         except ValidationError as caught:
             errors = caught.errors(include_url=False)
             # An unknown key may be a misspelt one, which is missing.
-            error = next((each for each in errors if each["type"] == "extra_forbidden"), errors[0])
+            error = next((each for each in errors if each["type"] in UNKNOWN_KEY), errors[0])
             context, kind = error.get("ctx", {}), error["type"]
             text = TEXTS.get(kind) or re.sub(r"^\w+ should", "must", error["msg"])
             if kind != "uplift" and text.startswith("must"):

@@ -10,7 +10,6 @@ from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.errors import TextureError, UpliftWarning
 from uplift.io.scene_colours import Images, sample_colours
 from uplift.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet
-from uplift.scene.plan.renderings import fit_matrices
 
 LIGHTS = ("D65", "FL11")
 ROWS = {"textures": slice(0, 40), "materials": slice(40, 47)}
@@ -126,7 +125,7 @@ def test_the_best_matrices_map_rgb_under_the_light_of_the_space_exactly(sensor):
     rgb = spectra @ sensor.matrix.T
     lights = tuple(observer.light(name) for name in ("D65", "A"))
     tests = EvaluationSet(rgb, spectra, np.full(30, 1 / 30), {"textures": slice(0, 30)}, lights, 0.9)
-    matrices = fit_matrices(tests)
+    matrices = tests.matrices()
     np.testing.assert_allclose(matrices[0], np.linalg.inv(sensor.xyz_to_rgb), atol=1e-9)
     fitted = tests.error(rgb @ matrices.mT)
     plain = tests.error(rgb @ np.stack([matrices[0], matrices[0]]).mT)

@@ -20,7 +20,6 @@ from uplift.scene import plan
 from uplift.scene.plan.page import notes
 from uplift.scene.plan.plan_file import read_plan, to_json
 from uplift.scene.plan.planning import no_candidate
-from uplift.scene.plan.space import WITHOUT_SPECTRA
 
 
 def test_the_choice_is_the_cheapest_within_the_tolerance(planned):
@@ -60,14 +59,14 @@ def test_an_independent_computation_on_every_pixel_agrees(planned, kitchen):
     options = {"lights": found.options["lights"]}
     best = uplift.build(atlas, scene=scene, dim=SMALL.reference, coefficients=9, **options)
     cube = uplift.build(atlas, scene=scene, **found.options)
-    spectra = cube.reflectance(rgb, found.rendering.sampling.wavelengths)
+    sampling = found.chosen.rendering.sampling
+    spectra = cube.reflectance(rgb, sampling.wavelengths)
     if found.chosen.pixel.form == "moments":
         stored = cube.coefficients(rgb).astype(np.float16 if found.chosen.pixel.depth == "half" else np.float32)
-        spectra = models.reflectance(cube.data.model, stored.astype(float), found.rendering.sampling.wavelengths)
+        spectra = models.reflectance(cube.data.model, stored.astype(float), sampling.wavelengths)
     for light in LIGHTS:
         white = colour.XYZ_to_xy(integrated(np.ones((1, 81)), light)[0])
-        place = found.rendering.sampling.lights.index(light)
-        planned_xyz = spectra * found.rendering.sampling.powers[place] @ found.rendering.sampling.to_xyz
+        planned_xyz = spectra * sampling.powers[sampling.lights.index(light)] @ sampling.to_xyz
         reference_xyz = integrated(best.reflectance(rgb), light)
         delta_e = colour.delta_E(
             *(colour.XYZ_to_Lab(xyz, white) for xyz in (reference_xyz, planned_xyz)), method="CIE 2000"
@@ -102,7 +101,7 @@ def planned_for(tmp_path, rgb, lights=LIGHTS, **values):
 
 def test_a_scene_under_the_light_of_its_space_needs_no_spectra(tmp_path):
     found = planned_for(tmp_path, painted(), ("D65",))
-    assert found.chosen.rendering == WITHOUT_SPECTRA
+    assert found.chosen.rendering is None
     assert found.confirmed.quantile < 1e-3
     assert "no spectra" in " ".join(notes(found))
     path = tmp_path / "a.plan.json"

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import product
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -9,10 +10,10 @@ import pytest
 from tests.scene.plan.conftest import SMALL
 from uplift.scene import plan
 from uplift.scene.plan.candidates import (
-    MINIMISE,
     Candidate,
     Cost,
     CubeChoice,
+    Minimised,
     Pixel,
     explore,
     pareto_front,
@@ -47,7 +48,7 @@ def small_space(errors, seed, looseness=1.0):
         memory = count * dim**3 / 10 + 100 * (samples if pixel.depth else 3)
         cost = Cost(memory, samples * 7 + (not pixel.depth) * count, samples)
         error = errors(rng, choice, samples)
-        candidate = Candidate(str(samples), pixel, cost, choice, bound=error * rng.uniform(0.5, 1) * looseness)
+        candidate = Candidate(pixel, cost, None, choice, bound=error * rng.uniform(0.5, 1) * looseness)
         truth[candidate] = measured(candidate, error)
     return truth
 
@@ -61,6 +62,7 @@ def explored(truth):
     return explore(truth, lambda choice, batch: [truth[each] for each in batch], 0.0)
 
 
+MINIMISE = get_args(Minimised)
 CHOICES = list(product((0.4, 0.8, 1.2, 2.0), MINIMISE, LIMITS))
 
 
@@ -88,7 +90,7 @@ def test_the_check_can_fail():
 
 def test_the_front_has_what_nothing_dominates():
     rows = np.random.default_rng(0).integers(0, 4, (60, 4))
-    candidates = [measured(Candidate(str(row), PIXELS[0], Cost(*row[:3])), float(row[3])) for row in rows]
+    candidates = [measured(Candidate(PIXELS[0], Cost(*row[:3])), float(row[3])) for row in rows]
     front = positions(pareto_front(candidates))
     for row in rows:
         assert any((kept <= row).all() for kept in front)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from math import prod
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import refined_multipliers
 from uplift.models import Sigmoid, evaluate, reflectance
-from uplift.scene.plan.evaluation import ErrorSummary
+from uplift.scene.plan.evaluation import ErrorSummary, Rendering
 
 MODELS: Mapping[str, tuple[int, ...]] = {
     "none": (3, 5, 7, 9, 11, 13, 15, 17),
@@ -31,17 +31,15 @@ MODELS: Mapping[str, tuple[int, ...]] = {
 class SearchGrid:
     """Candidates, in ascending order, and sizes of the pixel samples.
 
-    ``models`` are numbers of coefficients of moments by warp. ``samples`` are numbers of wavelengths, which other
-    representations are compared with if ``others``. The reference has the last number of coefficients without a warp,
-    and ``reference`` nodes along each axis. Candidates are chosen by ``predicting`` pixels and verified on
-    ``confirming`` ones.
+    ``models`` are numbers of coefficients of moments by warp, ``samples`` numbers of wavelengths. The reference has the
+    last number of coefficients without a warp, and ``reference`` nodes along each axis. Candidates are chosen by
+    ``predicting`` pixels and verified on ``confirming`` ones.
     """
 
     models: Mapping[str, tuple[int, ...]] = field(default_factory=lambda: MODELS)
     dims: tuple[int, ...] = (8, 12, 16, 24, 32, 48, 64, 96)
     axes: tuple[str, ...] = AXES
     samples: tuple[int, ...] = (3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20)
-    others: bool = True
     reference: int = 96
     predicting: int = 1500
     confirming: int = 4000
@@ -50,11 +48,12 @@ class SearchGrid:
     def quick(cls) -> "SearchGrid":
         """Fewer candidates and pixels: seconds."""
         models, dims, samples = {"none": (5, 9, 13, 17)}, (8, 16, 32, 48), (3, 5, 6, 7, 8, 10)
-        return cls(models, dims, AXES[:1], samples, others=False, reference=64, predicting=400, confirming=1000)
+        return cls(models, dims, AXES[:1], samples, reference=64, predicting=400, confirming=1000)
 
 
-MINIMISE = ("balance", "memory", "time", "samples")
-"""What the choice minimises: the product of the costs, or one of them."""
+CostName = Literal["memory", "time", "samples"]
+Minimised = Literal["balance", CostName]
+"""Cost that the choice minimises; the balance is the product of all three."""
 DEPTHS: dict[str, np.dtype[Any]] = {"half": np.dtype(np.float16), "float": np.dtype(np.float32)}
 RGB, INDEX = "rgb", "index"
 """Forms of pixels without a pixel encoding: colours, and numbers of a list of spectra."""
@@ -73,10 +72,10 @@ class Cost(NamedTuple):
     time: float
     samples: float
 
-    def ranked(self, minimise: str) -> tuple[float, ...]:
+    def ranked(self, minimise: Minimised) -> tuple[float, ...]:
         """Sort key: the minimised cost, and the product of all three where that is equal."""
         product = prod(self)
-        return (product,) if minimise == MINIMISE[0] else (getattr(self, minimise), product)
+        return (product,) if minimise == "balance" else (getattr(self, minimise), product)
 
 
 @dataclass(frozen=True)
@@ -171,20 +170,22 @@ PIXELS = (
 """Pixels that need a cube."""
 
 
+WITHOUT_SPECTRA = "RGB × light"
+"""What a renderer traces without spectra: RGB, by a matrix for each light."""
 UNMEASURED = ErrorSummary(())
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A complete choice: a cube, with all cells or those of the textures, pixels, and the name of a `Rendering`.
+    """A complete choice: pixels, wavelengths or None for RGB × light, a cube with all cells or those of the textures.
 
     Without a cube, pixels are RGB or an index. ``bound`` is a lower bound of its ΔE00, ``error`` that of the test
     colours once it is measured.
     """
 
-    rendering: str
     pixel: Pixel
     cost: Cost
+    rendering: Rendering | None = None
     cube: CubeChoice | None = None
     sparse: bool = False
     bound: float = 0.0
@@ -196,9 +197,14 @@ class Candidate:
         return f"{self.cube.name}{' sparse' * self.sparse}" if self.cube else ""
 
     @property
+    def traced(self) -> str:
+        """Short text."""
+        return self.rendering.name if self.rendering else WITHOUT_SPECTRA
+
+    @property
     def name(self) -> str:
         """Short text."""
-        return "; ".join(filter(None, (self.cube_name, self.rendering, self.pixel.name)))
+        return "; ".join(filter(None, (self.cube_name, self.traced, self.pixel.name)))
 
 
 Measure = Callable[[CubeChoice | None, Sequence[Candidate]], list[Candidate]]
@@ -249,13 +255,13 @@ def pareto_front(measured: Sequence[Candidate]) -> list[Candidate]:
     return sorted((measured[row] for row in front(positions(measured))), key=lambda each: each.error.quantile)
 
 
-def cheapest_first(measured: Iterable[Candidate], minimise: str) -> list[Candidate]:
+def cheapest_first(measured: Iterable[Candidate], minimise: Minimised) -> list[Candidate]:
     """Candidates by cost, then by error."""
     return sorted(measured, key=lambda each: (each.cost.ranked(minimise), each.error.quantile))
 
 
 def sufficient(
-    measured: Iterable[Candidate], tolerance: float, minimise: str, limits: Mapping[str, float]
+    measured: Iterable[Candidate], tolerance: float, minimise: Minimised, limits: Mapping[CostName, float]
 ) -> list[Candidate]:
     """Candidates within the tolerance and the limits of costs, cheapest first."""
     found = (each for each in measured if each.error.quantile <= tolerance)

@@ -1,17 +1,25 @@
-"""Colour errors of candidates on test colours, under the lights of the scene."""
+"""Colour errors on test colours under the lights of the scene: of any XYZ, of few wavelengths, of RGB times light."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from uplift.colorimetry import Light, delta_e_2000, lab
+from uplift.colorimetry import Light, Sensor, delta_e_2000, lab
+from uplift.colorimetry.delta_e import delta_e_2000_weights, lab_jacobian
 from uplift.common.arrays import Array, Indices
+from uplift.common.progress import Progress, ProgressCallback
+from uplift.lookup import Cube
+from uplift.scene.wavelengths import Sampling, choose, make_setup
 
 TEXTURES, MATERIALS = "textures", "materials"
 WORST_DELTA_E = 100.0
 """ΔE00 of colours that are not finite: the difference between black and white."""
+FEW = 200
+"""Colours of each group that wavelengths are fitted to."""
+DIGITS = 2
+"""Decimals of a wavelength in nm, so that the measured wavelengths are those of the command line."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +48,19 @@ class ErrorSummary:
     def quantile(self) -> float:
         """Quantile of the worst part, ΔE00."""
         return self.worst.quantile
+
+
+@dataclass(frozen=True, eq=False)
+class Rendering:
+    """Wavelengths that a renderer traces, and the ``error`` of the spectra of the reference there."""
+
+    sampling: Sampling
+    error: ErrorSummary
+
+    @property
+    def name(self) -> str:
+        """Short text."""
+        return f"{len(self.sampling)} wavelengths"
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,3 +110,52 @@ class EvaluationSet:
                 mean, largest = float(errors @ weights), float(errors.max())
                 parts.append(GroupError(name, light.name, mean, float(quantile), largest))
         return ErrorSummary(tuple(parts))
+
+    def matrices(self) -> Array:
+        """Matrices (K, 3, 3) from linear RGB to XYZ under each light: least squares of small differences in ΔE00."""
+        weight = np.sqrt(self.weights)[:, None, None]
+        found = []
+        for light, reference, xyz in zip(self.lights, self.lab, self.xyz(self.reflectances), strict=True):
+            # ΔE00 ≈ |F (M r − x)|
+            factor = weight * (delta_e_2000_weights(reference) @ lab_jacobian(xyz, light.white))
+            design = np.einsum("nij,nl->nijl", factor, self.rgb).reshape(-1, 9)
+            target = np.einsum("nij,nj->ni", factor, xyz).ravel()
+            found.append(np.linalg.lstsq(design, target, rcond=None)[0].reshape(3, 3))
+        return np.stack(found)
+
+
+def renderings(
+    counts: Sequence[int],
+    sensor: Sensor,
+    tests: EvaluationSet,
+    reference: Cube,
+    floor: float,
+    progress: ProgressCallback,
+) -> list[Rendering]:
+    """Fit wavelengths, of ``counts`` in ascending order, up to an error of ``floor``; without it, all wavelengths.
+
+    Those that do not lower the error are left out.
+    """
+    fitted, lights = tests.reflectances[tests.subsample(FEW)], [light.name for light in tests.lights]
+    setup = make_setup(fitted, lights, wavelengths=sensor.wavelengths, observer_name=sensor.observer)
+    found, smallest = list[Rendering](), np.inf
+    for done, count in enumerate((*counts, None)):
+        progress(Progress("wavelengths", done, len(counts)))
+        if count is None:
+            sampling = Sampling(setup.wavelengths, setup.cmfs, setup.lights, setup.powers)
+        else:
+            sampling = _rounded(choose(setup, count=count).sampling)
+        error = tests.error(sampling.xyz(reference.reflectance(tests.rgb, sampling.wavelengths)))
+        if error.quantile < smallest:
+            found.append(Rendering(sampling, error))
+            smallest = error.quantile
+        if smallest <= floor:
+            break
+    return found
+
+
+def _rounded(sampling: Sampling) -> Sampling:
+    """Round wavelengths to `DIGITS`, all distinct."""
+    steps = np.arange(len(sampling)) / 10**DIGITS
+    distinct = np.maximum.accumulate(np.round(sampling.wavelengths, DIGITS) - steps) + steps
+    return replace(sampling, wavelengths=np.round(distinct, DIGITS))

@@ -44,7 +44,7 @@ def front_rows(plan: Plan) -> list[Candidate]:
 
 def front_row(measured: Candidate) -> tuple[str, ...]:
     """Texts of a candidate in the order of `HEADINGS`."""
-    cost, words = measured.cost, (measured.cube_name, measured.rendering, measured.pixel.name)
+    cost, words = measured.cost, (measured.cube_name, measured.traced, measured.pixel.name)
     costs = (format_size(cost.memory), f"{cost.time:,.0f}", f"{cost.samples:g}")
     return format_error(measured.error.quantile), *costs, *words
 
@@ -64,7 +64,7 @@ def notes(plan: Plan) -> list[str]:
     shared = f" for {pluralise(len(plan.scene.textures), 'texture')}" if len(plan.scene.textures) > 1 else ""
     cube = f", of which one cube{shared} {format_size(final.size)}" if final else ""
     found = [f"It costs {format_size(cost.memory)}{cube}, {cost_text(cost, 'time')} and {cost_text(cost, 'samples')}."]
-    if plan.rendering is None:
+    if plan.chosen.rendering is None:
         found.append("This scene needs no spectra: RGB and a 3 × 3 matrix per light suffice.")
     else:
         rgb = format_error(plan.without_spectra.quantile)

@@ -29,7 +29,6 @@ FORMAT: Literal["uplift plan 1"] = "uplift plan 1"
 HINT = "plan the scene again"
 MAX_FILES = 10_000
 SUFFIX = ".plan.json"
-CANDIDATE_KEYS = ("rendering", "pixel", "cube", "sparse")
 SCENE_KEYS = ("lights", "tolerance", "quantile", "encoding", "minimise", "limits")
 
 
@@ -64,18 +63,12 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
             "without_spectra": plan.without_spectra.quantile,
             "expected_of_measurements": plan.expected_error,
         },
-        "cost": {
-            **chosen.cost._asdict(),
-            **(
-                {"points": int(final.cube.data.points.present.sum()), "bytes": final.size, "cpu_seconds": final.seconds}
-                if final
-                else {}
-            ),
-        },
+        "cost": chosen.cost._asdict() | ({"bytes": final.size} if final else {}),
         "search": {"considered": plan.considered, "measured": len(plan.measured)},
         "front": [
-            {"name": each.name, **{key: asdict(each)[key] for key in CANDIDATE_KEYS}, **each.cost._asdict()}
-            | {"error": asdict(each.error.worst)}
+            {"name": each.name, "rendering": each.traced, "pixel": asdict(each.pixel)}
+            | {"cube": each.cube and asdict(each.cube), "sparse": each.sparse}
+            | {**each.cost._asdict(), "error": asdict(each.error.worst)}
             for each in plan.front
         ],
         "lines": list(commands(plan, path)),
@@ -83,12 +76,10 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
 
 
 def _rendering_json(plan: Plan) -> dict[str, Any]:
-    """Wavelengths and their weights, the name of a representation, or matrices of RGB."""
-    rendering = plan.rendering
-    if rendering is None:
+    """Wavelengths and their weights, or matrices of RGB."""
+    if plan.chosen.rendering is None:
         return {"rgb_to_xyz": dict(zip(plan.scene.lights, plan.matrices.tolist(), strict=True))}
-    if (sampling := rendering.sampling) is None:
-        return {"representation": rendering.name}
+    sampling = plan.chosen.rendering.sampling
     powers = dict(zip(sampling.lights, sampling.powers.tolist(), strict=True))
     return {"wavelengths": sampling.wavelengths.tolist(), "to_xyz": sampling.to_xyz.tolist(), "powers": powers}
 
@@ -115,8 +106,8 @@ def commands(plan: Plan, path: Path) -> tuple[str, ...]:
         return build, shlex.join(["uplift", "export", cube, "--format", "c", "--mode", pixel.mode])
     target = f"{scene.textures[0].stem}-uplifted.exr" if len(scene.textures) == 1 else "uplifted"
     words = ["uplift", "texture", *map(str, scene.textures), "-o", target, "--cube", cube, *pixel.cli_args.split()]
-    if pixel.form == Spectrum.name and plan.rendering is not None and plan.rendering.sampling is not None:
-        words += ["--wavelengths", ",".join(f"{each:g}" for each in plan.rendering.wavelengths)]
+    if pixel.form == Spectrum.name and plan.chosen.rendering is not None:
+        words += ["--wavelengths", ",".join(f"{each:g}" for each in plan.chosen.rendering.sampling.wavelengths)]
     if scene.encoding != SceneFile.encoding:
         words += ["--encoding", scene.encoding]
     return build, shlex.join(words)

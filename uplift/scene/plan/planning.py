@@ -1,7 +1,6 @@
 """Plans: components are measured, cubes that may suffice are built, the choice is confirmed on other pixels."""
 
 import tempfile
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +15,6 @@ from uplift.lookup import Cube
 from uplift.pipeline.build import build
 from uplift.scene.plan.candidates import INDEX, Candidate, Cost, SearchGrid, explore, pareto_front, sufficient
 from uplift.scene.plan.evaluation import ErrorSummary
-from uplift.scene.plan.renderings import Rendering
 from uplift.scene.plan.scene_file import SceneFile
 from uplift.scene.plan.space import CandidateSpace
 from uplift.viz.format import format_error, format_size
@@ -29,11 +27,10 @@ CLEARLY_SMALLER = 0.97
 
 @dataclass(frozen=True, eq=False)
 class FinalBuild:
-    """The planned cube, the bytes of its file, and the CPU time of the build."""
+    """The planned cube, and the bytes of its file."""
 
     cube: Cube
     size: int
-    seconds: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,8 +49,6 @@ class Plan:
         The cheapest candidate within the tolerance and the limits that was confirmed.
     confirmed : ErrorSummary
         Its error on other pixels.
-    rendering : Rendering or None
-        What is traced for the choice; None for RGB.
     matrices : ndarray, shape (K, 3, 3)
         From linear RGB to XYZ under each light, the best without spectra.
     without_spectra : ErrorSummary
@@ -74,7 +69,6 @@ class Plan:
     considered: int
     chosen: Candidate
     confirmed: ErrorSummary
-    rendering: Rendering | None
     matrices: Array
     without_spectra: ErrorSummary
     options: Mapping[str, Any]
@@ -84,7 +78,7 @@ class Plan:
 
     @property
     def front(self) -> list[Candidate]:
-        """Candidate candidates that no other dominates in memory, time, samples, and error."""
+        """Candidates that no other dominates in memory, time, samples, and error."""
         return pareto_front(self.measured)
 
     @property
@@ -139,13 +133,11 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     if not finalists:
         raise no_candidate(scene, measured)
     chosen, confirmed = _confirm(space, finalists)
-    rendering = space.renderings.get(chosen.rendering)
-    textures = space.colours.predicting
+    textures, few = space.colours.predicting, space.colours.few
     spectra = None
-    if chosen.pixel.form == INDEX and rendering is not None and space.colours.few is not None:
-        colours = space.colours.few
-        cube = space.cube(colours, space.reference)
-        spectra = colours, cube.reflectance(colours, rendering.wavelengths)
+    if chosen.pixel.form == INDEX and chosen.rendering is not None and few is not None:
+        wavelengths = chosen.rendering.sampling.wavelengths
+        spectra = few, space.cube(few, space.reference).reflectance(few, wavelengths)
     options = {} if chosen.cube is None else {**space.options, **chosen.cube.options}
     progress(Progress("final build", 0, 1))
     return Plan(
@@ -154,7 +146,6 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         considered=space.considered,
         chosen=chosen,
         confirmed=confirmed,
-        rendering=rendering,
         matrices=space.matrices,
         without_spectra=space.without_spectra,
         options=options,
@@ -222,10 +213,8 @@ def _expected_error(reference: Cube, scene: SceneFile, rgb: Array, weights: Arra
 def _build(space: CandidateSpace, options: Mapping[str, Any], *, sparse: bool) -> FinalBuild:
     """Build the cube with all cells, or with those of the textures."""
     scene = space.images if sparse else None
-    begin = time.process_time()
     cube = build(space.atlas, scene=scene, **options)
-    seconds = time.process_time() - begin
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "cube.uplift"
         cube.save(path)
-        return FinalBuild(cube, path.stat().st_size, seconds)
+        return FinalBuild(cube, path.stat().st_size)

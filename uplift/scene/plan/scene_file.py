@@ -2,21 +2,20 @@
 
 import glob
 import os
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field
 
 from uplift.colorimetry import Light, Sensor, observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PlanFileError
-from uplift.common.spec_file import InsidePath, SpecFile, SpecModel, problem, read_toml, resolves
+from uplift.common.spec_file import SpecFile, check_inside, problem, read_toml, resolves
 from uplift.common.text import format_value
 from uplift.io.texture.colours import check_encoding
-from uplift.scene.plan.candidates import MINIMISE
+from uplift.scene.plan.candidates import CostName, Minimised
 
 MIN_TOLERANCE, MAX_TOLERANCE = 0.01, 100.0
 """ΔE00."""
@@ -24,9 +23,40 @@ MAX_PATH = 4096
 """Characters of a path. Matching longer patterns takes minutes."""
 
 
+def _check_path(name: Any) -> str:
+    if not isinstance(name, str) or not 0 < len(name) <= MAX_PATH or "\0" in name:
+        text = f"must be a path of 1 to {MAX_PATH} characters without null bytes, got {format_value(name)}"
+        raise problem(text, "name a file, or a pattern")
+    return check_inside(name)
+
+
+def _as_list(value: Any) -> Any:
+    return [value] if isinstance(value, str) else value
+
+
+def _light_names(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Each light once, as colour-science spells it."""
+    return tuple(dict.fromkeys(observer.light(name).name for name in names))
+
+
+Paths = Annotated[
+    tuple[Annotated[Path, BeforeValidator(_check_path)], ...], BeforeValidator(_as_list), Field(min_length=1)
+]
+Lights = Annotated[
+    tuple[Annotated[str, resolves(observer.light)], ...],
+    BeforeValidator(_as_list),
+    Field(min_length=1),
+    AfterValidator(_light_names),
+]
+Observer = Annotated[str, resolves(observer.matching_functions)]
+Limit = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Tolerance = Annotated[float, Field(strict=True, ge=MIN_TOLERANCE, le=MAX_TOLERANCE, allow_inf_nan=False)]
+Quantile = Annotated[float, Field(strict=True, ge=0.5, le=1, allow_inf_nan=False)]
+
+
 @dataclass(frozen=True)
 class SceneFile:
-    """Contents of a scene file. Paths are relative to the working directory, not to the file.
+    """Contents of a scene file, by its keys. Paths are relative to the working directory, not to the file.
 
     Parameters
     ----------
@@ -44,7 +74,7 @@ class SceneFile:
         Share of the textures' pixels and of the atlas's entries that must stay within the tolerance under every
         light, in [0.5, 1].
     minimise : str
-        One of `uplift.scene.plan.candidates.MINIMISE`.
+        Cost that the choice minimises: "memory", "time", "samples", or "balance", the product of all three.
     limits : mapping
         Largest cost by name: "memory" in bytes, "time" in operations, "samples".
     sparse : bool
@@ -55,19 +85,21 @@ class SceneFile:
         RGB space of the textures.
     """
 
-    path: Path
-    textures: tuple[Path, ...]
-    atlases: tuple[Path, ...] = ()
-    lights: tuple[str, ...] = SCENE_LIGHTS
-    tolerance: float = 1.0
-    quantile: float = 0.975
-    minimise: str = MINIMISE[0]
-    limits: Mapping[str, float] = field(default_factory=dict)
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
+    path: Annotated[Path, Field(strict=True)]
+    textures: Paths
+    atlases: Paths = ()
+    lights: Lights = SCENE_LIGHTS
+    tolerance: Tolerance = 1.0
+    quantile: Quantile = 0.975
+    minimise: Minimised = "balance"
+    limits: dict[CostName, Limit] = field(default_factory=dict)
     sparse: bool = True
-    encoding: str = "auto"
-    space: str = "sRGB"
-    illuminant: str = DEFAULT_ILLUMINANT
-    observer: str = observer.DEFAULT_OBSERVER
+    encoding: Annotated[str, resolves(check_encoding)] = "auto"
+    space: Annotated[str, resolves(observer.sensor)] = "sRGB"
+    illuminant: Annotated[str, resolves(observer.illuminant_spd)] = DEFAULT_ILLUMINANT
+    observer: Observer = observer.DEFAULT_OBSERVER
 
     def sensor(self) -> Sensor:
         """Look up the RGB space of the textures.
@@ -90,50 +122,6 @@ class SceneFile:
         return tuple(observer.light(name, self.observer) for name in self.lights)
 
 
-def _check_path(name: str) -> str:
-    if not name or len(name) > MAX_PATH or "\0" in name:
-        text = f"must be a path of 1 to {MAX_PATH} characters without null bytes, got {format_value(name)}"
-        raise problem(text, "name a file, or a pattern")
-    return name
-
-
-def _as_list(value: object) -> object:
-    return [value] if isinstance(value, str) else value
-
-
-def _canonical_light(name: str) -> str:
-    return observer.light(name).name
-
-
-Paths = Annotated[
-    list[Annotated[InsidePath, AfterValidator(_check_path)]], BeforeValidator(_as_list), Field(min_length=1)
-]
-Lights = Annotated[
-    list[Annotated[str, resolves(observer.light), AfterValidator(_canonical_light)]],
-    BeforeValidator(_as_list),
-    Field(min_length=1),
-]
-Limit = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Observer = Annotated[str, resolves(observer.matching_functions)]
-
-
-class _SceneTable(SpecModel):
-    """The keys of SCENE.toml."""
-
-    textures: Paths
-    atlases: Paths = Field(default_factory=list)
-    lights: Lights = Field(default_factory=lambda: list(SceneFile.lights))
-    tolerance: float = Field(SceneFile.tolerance, strict=True, ge=MIN_TOLERANCE, le=MAX_TOLERANCE, allow_inf_nan=False)
-    quantile: float = Field(SceneFile.quantile, strict=True, ge=0.5, le=1, allow_inf_nan=False)
-    minimise: Literal["balance", "memory", "time", "samples"] = "balance"
-    limits: dict[Literal["memory", "time", "samples"], Limit] = Field(default_factory=dict)
-    sparse: bool = SceneFile.sparse
-    encoding: Annotated[str, resolves(check_encoding)] = SceneFile.encoding
-    space: Annotated[str, resolves(observer.sensor)] = SceneFile.space
-    illuminant: Annotated[str, resolves(observer.illuminant_spd)] = SceneFile.illuminant
-    observer: Observer = SceneFile.observer
-
-
 def read_scene_file(path: StrPath) -> SceneFile:
     """Read a scene file.
 
@@ -153,22 +141,21 @@ def read_scene_file(path: StrPath) -> SceneFile:
         If the file cannot be read or a value does not fit, with the line and the key.
     """
     file = read_toml(path, PlanFileError)
-    table = file.validate(_SceneTable)
-    values = {key: getattr(table, key) for key in table.model_fields_set}
-    values |= {key: _expand(file, key, values[key]) for key in ("textures", "atlases") if key in values}
-    values["lights"] = tuple(dict.fromkeys(table.lights))
-    return SceneFile(file.path, **values)
+    # No value of a TOML file is a path: the key is refused there.
+    scene = replace(file, values={"path": file.path, **file.values}).validate(SceneFile)
+    textures, atlases = _expand(file, "textures", scene.textures), _expand(file, "atlases", scene.atlases)
+    return replace(scene, textures=textures, atlases=atlases)
 
 
-def _expand(file: SpecFile, key: str, names: list[str]) -> tuple[Path, ...]:
+def _expand(file: SpecFile, key: str, names: tuple[Path, ...]) -> tuple[Path, ...]:
     """Expand patterns in the folder of the scene file. Raises `PlanFileError` for names of no file."""
-    folder, found = file.path.parent, []
-    for number, name in enumerate(names):
+    folder, found = file.path.parent, list[Path]()
+    for number, name in enumerate(map(str, names)):
         is_pattern = glob.has_magic(name) and not os.path.exists(folder / name)
-        paths = [folder / each for each in sorted(glob.glob(name, root_dir=folder))] if is_pattern else [folder / name]
-        if not paths or not all(map(os.path.isfile, paths)):
+        paths = sorted(glob.glob(name, root_dir=folder)) if is_pattern else [name]
+        if not paths or not all(os.path.isfile(folder / each) for each in paths):
             text = f"no file named {format_value(name)}"
             hint = "paths start in the folder of the scene file"
             file.fail((key, number), text, code="file-not-found", hint=hint)
-        found += paths
+        found += (folder / each for each in paths)
     return tuple(found)

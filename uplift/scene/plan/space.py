@@ -1,7 +1,7 @@
 """The candidates for a scene: their costs, lower bounds of their errors, and their measurement.
 
-What a model of spectra, a lattice, and a rendering change is measured once each. Changes of XYZ by a model and by a
-lattice add, to predict the error of a cube. The squares of the errors of a cube and of a rendering add.
+What a model of spectra, a lattice, and few wavelengths change is measured once each. Changes of XYZ by a model and by
+a lattice add, to predict the error of a cube. The squares of the errors of a cube and of the wavelengths add.
 """
 
 import warnings
@@ -28,8 +28,7 @@ from uplift.models.model import Model
 from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
 from uplift.pipeline.options import Options
 from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, CubeChoice, Pixel, SearchGrid
-from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ErrorSummary, EvaluationSet
-from uplift.scene.plan.renderings import Rendering, fit_matrices, renderings
+from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ErrorSummary, EvaluationSet, Rendering, renderings
 from uplift.scene.plan.scene_file import SceneFile
 
 FLOOR, CEILING = 0.5, 2.0
@@ -42,8 +41,8 @@ PROBE = 9
 """Coefficients of the cubes that measure lattices."""
 LEAST_BYTES, POINT_NUMBER = 4, 4
 """Bytes of a coefficient, unless colours need 8, and of the number of a point in a sparse file."""
-WITHOUT_SPECTRA = "RGB × light"
-"""Name of the rendering of RGB, by a matrix for each light."""
+SAMPLE_OPERATIONS = 7
+"""Operations for a product of light and surface at one wavelength, and its share in the sum to XYZ."""
 
 
 class CandidateSpace:
@@ -66,9 +65,9 @@ class CandidateSpace:
         self.floor, self.ceiling = (share * scene.tolerance for share in (FLOOR, CEILING))
         progress(Progress("reference cube", 0, 1))
         tests, reference = self.evaluation_set(self.colours.predicting)
-        found = renderings(grid, self.sensor, tests, reference, self.floor, progress)
+        self.renderings = renderings(grid.samples, self.sensor, tests, reference, self.floor, progress)
         self.cubes = {self.reference: reference}
-        self.tests, self.renderings, self.matrices = tests, {each.name: each for each in found}, fit_matrices(tests)
+        self.tests, self.matrices = tests, tests.matrices()
         self.base = tests.xyz(reference.reflectance(tests.rgb))
         arrays = contents(reference.data)[0]
         rows = {name: array for name, array in arrays.items() if name in POINTS}
@@ -119,13 +118,13 @@ class CandidateSpace:
         Cubes are left out where they cannot save anything: where RGB have no error, or colours are few.
         """
         colours = self.colours
-        found = [Candidate(WITHOUT_SPECTRA, Pixel(RGB), Cost(colours.size, 21, 3))]
+        found = [Candidate(Pixel(RGB), Cost(colours.size, 3 * SAMPLE_OPERATIONS, 3))]
         (self.without_spectra,) = (each.error for each in self.measure(None, found))
         if colours.few is not None:
-            for each in self.renderings.values():
-                if each.sampling is not None:
-                    cost = Cost(colours.pixels + 2 * len(colours.few) * each.surface, each.operations, each.samples)
-                    found.append(Candidate(each.name, Pixel(INDEX, "half"), cost))
+            for each in self.renderings:
+                count = len(each.sampling)
+                cost = Cost(colours.pixels + 2 * len(colours.few) * count, SAMPLE_OPERATIONS * count, count)
+                found.append(Candidate(Pixel(INDEX, "half"), cost, each))
         self.considered = len(found)
         if colours.few is None and self.without_spectra.quantile > self.floor:
             found += self._with_cubes()
@@ -144,33 +143,33 @@ class CandidateSpace:
         self, cube: Cube | None, candidates: Sequence[Candidate], tests: EvaluationSet, reference: Cube
     ) -> list[Candidate]:
         """Measure the errors of candidates that share a cube, on test colours with the reference cube of these."""
-        names = dict.fromkeys(each.rendering for each in candidates if each.rendering != WITHOUT_SPECTRA)
-        needed = [self.renderings[name].wavelengths for name in names]
+        traced = list(dict.fromkeys(each.rendering for each in candidates if each.rendering))
+        needed = [each.sampling.wavelengths for each in traced]
         nm, ends = np.concatenate([[], *needed]), np.cumsum([0, *map(len, needed)])
-        columns = dict(zip(names, map(slice, ends, ends[1:]), strict=False))
+        columns = dict(zip(traced, map(slice, ends, ends[1:]), strict=False))
         spectra: dict[Pixel, Array] = {}
         found = []
         for each in candidates:
-            if each.rendering == WITHOUT_SPECTRA:
+            if each.rendering is None:
                 xyz = tests.rgb @ self.matrices.mT
             else:
                 if each.pixel not in spectra:
                     pixel = Pixel(texture.Spectrum.name, each.pixel.depth) if cube is None else each.pixel
                     spectra[each.pixel] = pixel.decoded(cube or reference, tests.rgb, nm)
-                xyz = self.renderings[each.rendering].xyz(spectra[each.pixel][:, columns[each.rendering]])
+                xyz = each.rendering.sampling.xyz(spectra[each.pixel][:, columns[each.rendering]])
             found.append(replace(each, error=tests.error(xyz)))
         return found
 
     def _with_cubes(self) -> Iterator[Candidate]:
         """Candidates that need a cube and whose bounds are below the ceiling."""
-        tests, renderings = self.tests, self.renderings.values()
+        tests = self.tests
         base = _quantiles(tests.error(self.base))
         lattices, models = self._lattices(), self._models()
-        points = {name: self._points(*name) for name in lattices}
+        points = {lattice: self._points(lattice) for lattice in lattices}
         for (model, by_model), (lattice, by_lattice) in product(models.items(), lattices.items()):
-            choice = CubeChoice(*model, *lattice)
+            choice = replace(model, dim=lattice.dim, axis=lattice.axis)
             of_cube = _quantiles(tests.error(self.base + by_model + by_lattice))
-            for rendering in renderings:
+            for rendering in self.renderings:
                 # Errors of independent choices add in squares; both include that of the reference.
                 squares = of_cube**2 + _quantiles(rendering.error) ** 2 - base**2
                 bound = MARGIN * float(np.sqrt(squares.max()))
@@ -182,49 +181,48 @@ class CandidateSpace:
     def _with_pixels(
         self, choice: CubeChoice, points: tuple[int, int], rendering: Rendering, bound: float
     ) -> Iterator[Candidate]:
-        """Candidates of a cube, of ``points`` with all cells and with those of the textures, and a rendering."""
-        colours, count = self.colours, round(rendering.surface)
+        """Candidates of a cube, of ``points`` with all cells and with those of the textures, and of wavelengths."""
+        colours, count = self.colours, len(rendering.sampling)
         for sparse, pixel in product((False, True)[: 1 + self.scene.sparse], PIXELS):
             if choice.model == Sigmoid.name and pixel.form == texture.Moments.name:
                 continue
-            if rendering.sampling is None and pixel.form != texture.Spectrum.name:
-                continue  # a texture has the numbers of the representation
             row = self.row_bytes + POINT_NUMBER * sparse + LEAST_BYTES * choice.coefficients
             texels = colours.pixels * pixel.size(choice.coefficients, count) if pixel.depth else colours.size
             memory = self.other_bytes + points[sparse] * row + texels
-            time = pixel.operations(choice, count) + rendering.operations
-            yield Candidate(rendering.name, pixel, Cost(memory, time, rendering.samples), choice, sparse, bound)
+            time = pixel.operations(choice, count) + SAMPLE_OPERATIONS * count
+            yield Candidate(pixel, Cost(memory, time, count), rendering, choice, sparse, bound)
 
-    def _models(self) -> dict[tuple[str, int, str], Array]:
-        """Changes of XYZ (K, n, 3) by models of spectra, on a fine lattice: of each warp up to one without error."""
-        grid, plain = self.grid, "none"
-        dim = min(FINE, grid.reference)
-        finest = self._xyz(dim, Moments.name, grid.models[plain][-1], plain)
-        names = [(Sigmoid.name, 3, plain)]
-        names += [(Moments.name, count, warp) for warp, counts in grid.models.items() for count in counts]
-        return self._changes("models of spectra", [(name, name[2], (dim, *name)) for name in names], finest)
+    def _models(self) -> dict[CubeChoice, Array]:
+        """Changes of XYZ (K, n, 3) by models of spectra, on a fine lattice: the sigmoid, and moments of each warp."""
+        fine = replace(self.reference, dim=min(FINE, self.grid.reference))
+        series = {
+            warp: [replace(fine, coefficients=count, warp=warp) for count in counts]
+            for warp, counts in self.grid.models.items()
+        }
+        series[fine.warp].insert(0, replace(fine, model=Sigmoid.name, coefficients=3))
+        return self._changes("models of spectra", list(series.values()), fine)
 
-    def _lattices(self) -> dict[tuple[int, str], Array]:
-        """Changes of XYZ (K, n, 3) by lattices, with a usual model: of each axis up to one without error."""
-        grid, model = self.grid, (Moments.name, PROBE, "none")
-        names = product(grid.dims, grid.axes)
-        steps = [((dim, axis), axis, (dim, *model, axis)) for dim, axis in names]
-        return self._changes("lattices", steps, self._xyz(grid.reference, *model))
+    def _lattices(self) -> dict[CubeChoice, Array]:
+        """Changes of XYZ (K, n, 3) by lattices, with a usual model: more and more nodes along each axis."""
+        probe = replace(self.reference, coefficients=PROBE)
+        series = [[replace(probe, dim=dim, axis=axis) for dim in self.grid.dims] for axis in self.grid.axes]
+        return self._changes("lattices", series, probe)
 
-    def _changes(self, stage: str, steps: Sequence[tuple[Any, str, Any]], finest: Array) -> dict[Any, Array]:
-        """Changes of XYZ from the ``finest``, by name, of each series up to the first below the floor."""
-        found, done = dict[Any, Array](), set[str]()
-        for number, (name, series, cube) in enumerate(steps):
-            self.progress(Progress(stage, number, len(steps)))
-            if series not in done:
-                found[name] = self._xyz(*cube) - finest
-                if self.tests.error(self.base + found[name]).quantile <= self.floor:
-                    done.add(series)
+    def _changes(
+        self, stage: str, series: Sequence[Sequence[CubeChoice]], finest: CubeChoice
+    ) -> dict[CubeChoice, Array]:
+        """Changes of XYZ from the ``finest``, of each series up to the first below the floor."""
+        found, reference = dict[CubeChoice, Array](), self._xyz(finest)
+        for done, choices in enumerate(series):
+            self.progress(Progress(stage, done, len(series)))
+            for choice in choices:
+                found[choice] = self._xyz(choice) - reference
+                if self.tests.error(self.base + found[choice]).quantile <= self.floor:
+                    break
         return found
 
-    def _xyz(self, dim: int, model: str, count: int, warp: str, axis: str = "srgb") -> Array:
-        tests = self.tests
-        return tests.xyz(self._cube(CubeChoice(model, count, warp, dim, axis)).reflectance(tests.rgb))
+    def _xyz(self, choice: CubeChoice) -> Array:
+        return self.tests.xyz(self._cube(choice).reflectance(self.tests.rgb))
 
     def _cube(self, choice: CubeChoice) -> Cube:
         """Cube for the test colours, built once."""
@@ -232,9 +230,9 @@ class CandidateSpace:
             self.cubes[choice] = self.cube(self.tests.rgb, choice)
         return self.cubes[choice]
 
-    def _points(self, dim: int, axis: str) -> tuple[int, int]:
+    def _points(self, choice: CubeChoice) -> tuple[int, int]:
         """Points of a lattice, and those around one colour of every bin of the textures."""
-        lattice = Lattice(observer.axis_nodes(axis, dim))
+        lattice = Lattice(observer.axis_nodes(choice.axis, choice.dim))
         needed = lattice.corner_points(lattice.mask(cells_touched(lattice, self.colours.colour_bins)))
         return lattice.size, int(needed.sum())
 
