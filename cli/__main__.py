@@ -21,7 +21,8 @@ def run() -> None:
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
     finally:
-        gc.freeze()  # Python would search them again as it ends
+        if "OpenImageIO" not in sys.modules:  # which lists all that is left on the standard error stream
+            gc.freeze()  # Python would search them again as it ends
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from uplift.fit.kriging import DEFAULT, Kernel, posterior
 from uplift.io.scene_colours import BINS, Images, PixelSample, bin_index
 from uplift.lookup import Cube
 from uplift.lookup.light_errors import light_errors
-from uplift.viz.figure import ACCENT, colour_map, figure_text, new_figure, write_figure
+from uplift.viz.figure import ACCENT, colour_map, figure_text, new_figure, show_image, write_figure
 
 STEPS = (1, 2, 4, 8)
 """Bins along each channel that are joined; the first that leave few colours are taken."""
@@ -174,12 +174,11 @@ def plot_advice(
     chips, panels = last.subplots(1, max(len(swatches), MIN_CHIPS)), {}
     for row, (name, rgb) in zip(rows, pictures.items(), strict=True):
         panels[name], errors = row.subplots(1, 2)
-        panels[name].imshow(to_display_codes(rgb, sensor) / 255)
+        show_image(panels[name], to_display_codes(rgb, sensor) / 255)
         panels[name].set_title(figure_text(Path(name).name), fontsize=9, loc="left")
-        shown = errors.imshow(maps[name].reshape(rgb.shape[:2]), cmap=colour_map(), vmin=0, vmax=largest)
+        shown = show_image(errors, maps[name].reshape(rgb.shape[:2]), cmap=colour_map(), vmin=0, vmax=largest)
         errors.set_title(f"expected ΔE00, {', '.join(light.name for light in lights)}", fontsize=9, loc="left")
         row.colorbar(shown, ax=errors, format="%.1f")
-        errors.set(xticks=(), yticks=())
     box = {"boxstyle": "circle", "facecolor": "white", "edgecolor": ACCENT}
     labs = {name: rgb_to_lab(sensor, rgb) for name, rgb in flat.items()}
     for number, (text, rgb) in enumerate(swatches):
@@ -188,11 +187,9 @@ def plot_advice(
         like = np.flatnonzero(away[name] <= away[name].min() + ALIKE)
         y, x = divmod(int(like[len(like) // 2]), pictures[name].shape[1])
         panels[name].text(x, y, str(number + 1), ha="center", va="center", fontsize=7, bbox=box)
-        chips[number].imshow(to_display_codes(rgb[None, None], sensor) / 255)
+        show_image(chips[number], to_display_codes(rgb[None, None], sensor) / 255)
         chips[number].set_title(f"{number + 1}", fontsize=8, pad=2)
         chips[number].set_xlabel(text, fontsize=7)
-    for each in (*chips, *panels.values()):
-        each.set(xticks=(), yticks=())
-    for each in chips:
-        each.spines[:].set_visible(False)
+    for unused in chips[len(swatches) :]:
+        unused.set_axis_off()
     write_figure(figure, path, force=force)

@@ -6,7 +6,9 @@ import numpy as np
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices
+from uplift.fit.entries import Marquardt
+from uplift.fit.solver import iterate_rows
 from uplift.models import Moments, Sigmoid
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import cosine_basis
@@ -17,9 +19,7 @@ from uplift.scene.representations.samples import Representation
 
 SHAPE_WEIGHT = 1e-4
 """Weight of the residual of a sigmoid at one wavelength relative to that of the colour."""
-ITERATIONS = 20
-FIRST_DAMPING, INCREASE, DECREASE = 1e-3, 10.0, 0.3
-"""Damping of the first iteration, and its factors after a rejected and after an accepted step."""
+MAX_STEPS = 60
 WAVELENGTHS_PER_PATH = 4
 SEED = 7
 STEEPNESS, CENTRE = 0.0072, 538.0
@@ -77,22 +77,14 @@ def fit_sigmoids(model: Sigmoid, table: Array) -> Array:
     light, basis = observer.light(DEFAULT_ILLUMINANT), model.basis(observer.grid())
     measurement = np.concatenate([light.xyz / light.white[:, None], SHAPE_WEIGHT * np.eye(len(basis))])
 
-    def residuals(coefficients: Array) -> Array:
-        return (evaluate(model, coefficients, observer.grid()) - table) @ measurement.T
+    def residuals(coefficients: Array, rows: Indices) -> tuple[Array, None]:
+        return (evaluate(model, coefficients, observer.grid()) - table[rows]) @ measurement.T, None
 
-    coefficients = np.zeros((len(table), model.count))
-    damping = np.full((len(table), 1, 1), FIRST_DAMPING)
-    residual = residuals(coefficients)
-    for _ in range(ITERATIONS):
-        jacobian = measurement @ (model.derivative(coefficients @ basis.T)[:, :, None] * basis)
-        gram = jacobian.mT @ jacobian
-        scale = damping * np.einsum("nii->ni", gram)[:, :, None] * np.eye(model.count)
-        trial = coefficients - np.linalg.solve(gram + scale, jacobian.mT @ residual[:, :, None])[:, :, 0]
-        trial_residual = residuals(trial)
-        accepted = (trial_residual**2).sum(axis=1) < (residual**2).sum(axis=1)
-        coefficients[accepted], residual[accepted] = trial[accepted], trial_residual[accepted]
-        damping *= np.where(accepted, DECREASE, INCREASE)[:, None, None]
-    return coefficients
+    def jacobian(coefficients: Array) -> Array:
+        return measurement @ (model.derivative(coefficients @ basis.T)[:, :, None] * basis)
+
+    start = np.zeros((len(table), model.count))
+    return iterate_rows(Marquardt(), residuals, start, lambda _: {"jacobian": jacobian}, MAX_STEPS)
 
 
 def principal_components(count: int, lights: Array, surfaces: Array) -> Array:
