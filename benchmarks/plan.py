@@ -45,6 +45,13 @@ class Case:
         textures, lights = json.dumps(self.pictures), json.dumps(self.lights)
         return f"textures = {textures}\n{atlas}lights = {lights}\ntolerance = {self.tolerance}\n"
 
+    def options_before(self) -> str:
+        """Return the options of the cube that 0.2.0 chose."""
+        dim, count, sparse, _ = self.before
+        lights = [f"--light {name}" for name in dict.fromkeys(("D65", *self.lights))]
+        scene = [f"--scene {name}" for name in self.pictures if sparse]
+        return f"--atlas {self.atlas} {' '.join(lights + scene)} --dim {dim} --coefficients {count}"
+
 
 CASES = (
     Case(("still-life.png", "wood.png"), "paints.csv", ("D65", "A", "FL11"), 1.0, (24, 13, False, 7), quick=False),
@@ -89,7 +96,8 @@ def run(folder: Path, case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
     call(folder, f"uplift plan scene.toml --force {'--quick' if case.quick else ''}")
     seconds = cpu() - begin
     plan = json.loads((folder / "scene.plan.json").read_text(encoding="utf-8"))
-    before, size = bytes_before(folder, case), plan["cost"].get("bytes")
+    size = built_bytes(folder, "--plan scene.plan.json") if plan["build"] else None
+    before = built_bytes(folder, case.options_before()) if case.before else None
     error = plan["error"]
     return {
         "textures": case.pictures,
@@ -113,16 +121,10 @@ def run(folder: Path, case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
     }, plan
 
 
-def bytes_before(folder: Path, case: Case) -> int | None:
-    """Return the bytes of the cube file that 0.2.0 chose, built today."""
-    if case.before is None:
-        return None
-    dim, count, sparse, _ = case.before
-    lights = [f"--light {name}" for name in dict.fromkeys(("D65", *case.lights))]
-    scene = [f"--scene {name}" for name in case.pictures if sparse]
-    size = f"--dim {dim} --coefficients {count}"
-    call(folder, f"uplift build --atlas {case.atlas} {' '.join(lights + scene)} {size} -o before.uplift --force")
-    return (folder / "before.uplift").stat().st_size
+def built_bytes(folder: Path, options: str) -> int:
+    """Return the bytes of the cube file that is built with these options."""
+    call(folder, f"uplift build {options} -o built.uplift --force")
+    return (folder / "built.uplift").stat().st_size
 
 
 def cpu() -> float:

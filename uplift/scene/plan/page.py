@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from uplift.scene.plan.candidates import INDEX, Candidate, cheapest_first
+from uplift.scene.plan.candidates import INDEX, Candidate, Cost, cheapest_first
 from uplift.scene.plan.plan_file import commands
 from uplift.scene.plan.planning import Plan, cost_text
 from uplift.viz.format import format_error, format_size, pluralise
@@ -60,10 +60,7 @@ def verdict(plan: Plan) -> str:
 
 def notes(plan: Plan) -> list[str]:
     """What the choice costs, whether the scene needs spectra, and what its colours are worth."""
-    cost, final = plan.chosen.cost, plan.final_build
-    shared = f" for {pluralise(len(plan.scene.textures), 'texture')}" if len(plan.scene.textures) > 1 else ""
-    cube = f", of which one cube{shared} {format_size(final.size)}" if final else ""
-    found = [f"It costs {format_size(cost.memory)}{cube}, {cost_text(cost, 'time')} and {cost_text(cost, 'samples')}."]
+    found = [f"It costs {_costs(plan.chosen)}."]
     if plan.chosen.rendering is None:
         found.append("This scene needs no spectra: RGB and a 3 × 3 matrix per light suffice.")
     else:
@@ -82,9 +79,12 @@ def _yardstick(plan: Plan, expected: float) -> str:
     cheaper = plan.cheapest(expected)
     if plan.confirmed.quantile > SHARE * expected or cheaper is None:
         return f"{text}."
-    cost = cheaper.cost
-    needs = f"{format_size(cost.memory)}, {cost_text(cost, 'time')} and {cost_text(cost, 'samples')}"
-    return f"{text}. With tolerance {expected:.2g} it would need {needs}."
+    return f"{text}. With tolerance {expected:.2g} it would need {_costs(cheaper)}."
+
+
+def _costs(candidate: Candidate) -> str:
+    memory, time, samples = (cost_text(candidate.cost, key) for key in Cost._fields)
+    return f"{memory}, {time} and {samples}"
 
 
 def describe_error(plan: Plan) -> str:

@@ -37,7 +37,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
 
     ``path`` is the file to write them to: paths of textures and atlases are relative to its folder.
     """
-    scene, final, chosen = plan.scene, plan.final_build, plan.chosen
+    scene, chosen = plan.scene, plan.chosen
     # All options, so that later defaults do not change the build.
     options = asdict(Options(**plan.options))
     return {
@@ -50,7 +50,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
             "atlases": _sources(scene.atlases, path),
         },
         "name": chosen.name,
-        "build": options if final else None,
+        "build": options if plan.options else None,
         "cells": "sparse" if chosen.sparse else "whole",
         "texture": asdict(chosen.pixel),
         "rendering": _rendering_json(plan),
@@ -63,7 +63,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
             "without_spectra": plan.without_spectra.quantile,
             "expected_of_measurements": plan.expected_error,
         },
-        "cost": chosen.cost._asdict() | ({"bytes": final.size} if final else {}),
+        "cost": chosen.cost._asdict(),
         "search": {"considered": plan.considered, "measured": len(plan.measured)},
         "front": [
             {"name": each.name, "rendering": each.traced, "pixel": asdict(each.pixel)}
@@ -99,7 +99,7 @@ def cube_name(plan_path: StrPath) -> str:
 def commands(plan: Plan, path: Path) -> tuple[str, ...]:
     """Command lines for a plan at ``path``: its build, and its textures or the program that looks colours up."""
     scene, pixel = plan.scene, plan.chosen.pixel
-    if plan.final_build is None:
+    if not plan.options:
         return ()
     build, cube = f"uplift build --plan {shlex.quote(str(path))}", cube_name(path)
     if pixel.mode:

@@ -1,9 +1,7 @@
 """Plans: components are measured, cubes that may suffice are built, the choice is confirmed on other pixels."""
 
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +10,6 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.lookup import Cube
-from uplift.pipeline.build import build
 from uplift.scene.plan.candidates import INDEX, Candidate, Cost, SearchGrid, explore, pareto_front, sufficient
 from uplift.scene.plan.evaluation import ErrorSummary
 from uplift.scene.plan.scene_file import SceneFile
@@ -23,14 +20,6 @@ FINALISTS = 6
 """Candidates that are confirmed, at most."""
 CLEARLY_SMALLER = 0.97
 """Share of the error of a candidate that was not confirmed; the next finalist has a smaller one."""
-
-
-@dataclass(frozen=True, eq=False)
-class FinalBuild:
-    """The planned cube, and the bytes of its file."""
-
-    cube: Cube
-    size: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,8 +44,6 @@ class Plan:
         Error of RGB with these matrices.
     options : mapping
         Options of `uplift.build`; empty without a cube.
-    final_build : FinalBuild or None
-        The cube.
     spectra : tuple of ndarray, or None
         Colours (n, 3) and reflectances (n, W) of a list of spectra.
     expected_error : float or None
@@ -72,7 +59,6 @@ class Plan:
     matrices: Array
     without_spectra: ErrorSummary
     options: Mapping[str, Any]
-    final_build: FinalBuild | None
     spectra: tuple[Array, Array] | None
     expected_error: float | None
 
@@ -139,7 +125,6 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         wavelengths = chosen.rendering.sampling.wavelengths
         spectra = few, space.cube(few, space.reference).reflectance(few, wavelengths)
     options = {} if chosen.cube is None else {**space.options, **chosen.cube.options}
-    progress(Progress("final build", 0, 1))
     return Plan(
         scene=scene,
         measured=tuple(measured),
@@ -149,7 +134,6 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         matrices=space.matrices,
         without_spectra=space.without_spectra,
         options=options,
-        final_build=_build(space, options, sparse=chosen.sparse) if options else None,
         spectra=spectra,
         expected_error=_expected_error(space.cubes[space.reference], scene, textures.rgb, textures.share),
     )
@@ -208,13 +192,3 @@ def _expected_error(reference: Cube, scene: SceneFile, rgb: Array, weights: Arra
             errors = reference.standard_error(rgb)
         found += [] if errors is None else [float(errors @ weights)]
     return max(found, default=None)
-
-
-def _build(space: CandidateSpace, options: Mapping[str, Any], *, sparse: bool) -> FinalBuild:
-    """Build the cube with all cells, or with those of the textures."""
-    scene = space.images if sparse else None
-    cube = build(space.atlas, scene=scene, **options)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "cube.uplift"
-        cube.save(path)
-        return FinalBuild(cube, path.stat().st_size)

@@ -95,7 +95,7 @@ class CandidateSpace:
                 self.learnt[models] = learn(problem, entry_model, *rest)
             return self.learnt[models]
 
-        # The final build repeats the warnings of trial builds.
+        # `uplift build --plan` repeats the warnings of trial builds.
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
             options = Options(**self.options, **choice.options)
             options, problem = problem_of(options, options.observer, options.solver)
