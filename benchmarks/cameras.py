@@ -15,7 +15,7 @@ from uplift.colorimetry.solid import solid
 from uplift.common.arrays import Array, Indices
 from uplift.fit.families import families_with, shipped_library
 from uplift.lab.study.held_out import random_halves
-from uplift.lattice import Lattice
+from uplift.lattice import Lattice, axis_nodes
 from uplift.lookup import Cube
 from uplift.pipeline.build import build
 
@@ -86,7 +86,7 @@ def _build(entries: Atlas | None, sensor: Sensor, measured: Array) -> Cube:
 
 def realisable_share(sensor: Sensor, dim: int = DIM) -> float:
     """Return the share of raw values in [0, 1]³ that a reflectance has, from the nodes of a lattice."""
-    nodes = Lattice(observer.axis_nodes("srgb", dim)).points
+    nodes = Lattice(axis_nodes("srgb", dim)).points
     return float(solid(sensor.matrix).contains(nodes).mean())
 
 

@@ -23,7 +23,7 @@ from uplift.colorimetry import Sensor, observer
 from uplift.common.arrays import Array
 from uplift.common.processes import call_in_child
 from uplift.lab.timing import Spread, spread, time_calls
-from uplift.lattice import Lattice
+from uplift.lattice import Lattice, axis_nodes
 from uplift.models import Moments, Sigmoid, evaluate, reflectance
 
 THRESHOLD = 1e-4
@@ -68,7 +68,7 @@ def sensor() -> Sensor:
 @cache
 def lattice() -> Lattice:
     """Return the lattice of the other tools, with nodes spaced as sRGB."""
-    return Lattice(observer.axis_nodes("srgb", DIM))
+    return Lattice(axis_nodes("srgb", DIM))
 
 
 def judge(rgb: ArrayLike, target: ArrayLike, *, least: float) -> dict[str, float]:

@@ -52,8 +52,8 @@ GROUPS = {
 }
 """Summaries of the commands by headings of the help."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
-QUICK = ("query", "help")
-"""Commands that should start fast."""
+QUICK = ("build", "query", "help")
+"""Commands that start without what drawing needs."""
 CLOSED_PIPE = 1
 """Exit code of a command whose reader closed the pipe."""
 

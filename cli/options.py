@@ -36,19 +36,13 @@ class Command(click.Command):
     def __init__(self, *args: Any, everyday: Collection[str], **settings: Any) -> None:
         super().__init__(*args, **settings)
         self.everyday = everyday
-        self.params.append(
-            click.Option(
-                ["--help-all"],
-                is_flag=True,
-                is_eager=True,
-                expose_value=False,
-                callback=_print_all,
-                help="Show all options.",
-            )
-        )
+        self.params.append(click.Option(["--help-all"], is_flag=True, expose_value=False, help="Show all options."))
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Mark negative numbers by a leading space before parsing."""
+        if "--help-all" in args:
+            ctx.meta[HELP_ALL] = True
+            args = ["--help"]
         return super().parse_args(ctx, [f" {arg}" if NEGATIVE_NUMBER.match(arg) else arg for arg in args])
 
     def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -65,13 +59,6 @@ class Command(click.Command):
         records = (each.get_help_record(ctx) for each in (*shown, help_all, help_option))
         with formatter.section("Options"):
             formatter.write_dl([record for record in records if record is not None])
-
-
-def _print_all(ctx: click.Context, param: click.Parameter, value: bool) -> None:
-    if value:
-        ctx.meta[HELP_ALL] = True
-        click.echo(ctx.get_help())
-        ctx.exit()
 
 
 class Number(click.ParamType):  # type: ignore[type-arg]
@@ -91,14 +78,21 @@ class Number(click.ParamType):  # type: ignore[type-arg]
 
 
 class Whole(click.IntRange):
-    """A whole number in ASCII digits that fits into 64 bits, in a range."""
+    """A whole number in ASCII digits that fits into 64 bits, in a range, or a ``word`` in place of it."""
+
+    def __init__(self, min: int | None = None, max: int | None = None, *, word: str = "") -> None:
+        super().__init__(min, max)
+        self.word = word
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return a whole number."""
+        """Return a whole number, or the word."""
+        if self.word and value == self.word:
+            return value
         try:
             number = parse_whole(value) if isinstance(value, str) else value
         except ValueError:
-            self.fail(f"{format_value(value)} is not a whole number.", param, ctx)
+            known = f"neither a whole number nor '{self.word}'" if self.word else "not a whole number"
+            self.fail(f"{format_value(value)} is {known}.", param, ctx)
         return super().convert(number, param, ctx)
 
     def _describe_range(self) -> str:
@@ -197,6 +191,10 @@ def input_space(subject: str, default: str = "as the file states", name: str = "
     )
 
 
+PIXELS = "clip", "as images often have a few, which are counted"
+"""Default of ``--out-of-gamut`` of images, and the reason."""
+
+
 def out_of_gamut(default: str, why: str, subject: str = "colours", name: str = "method") -> Decorator:
     """``--out-of-gamut``: names of `uplift.colorimetry.gamut.METHODS`, which is not imported here."""
     methods = ("error", "clip", "scale", "desaturate", "desaturate-oklab")
@@ -207,15 +205,10 @@ def out_of_gamut(default: str, why: str, subject: str = "colours", name: str = "
     return choice("--out-of-gamut", *methods, name=name, default=default, help=text, show_default=False)
 
 
-def out_of_gamut_pixels(subject: str = "pixels", name: str = "method") -> Decorator:
-    """``--out-of-gamut`` of images."""
-    return out_of_gamut("clip", "as images often have a few, which are counted", subject, name)
-
-
 def pixels() -> Decorator:
     """``--encoding``, ``--input-space`` and ``--out-of-gamut`` of images, as `uplift.io.texture` names them."""
     return stacked(
-        encoding("the images"), input_space("the images", name="space"), out_of_gamut_pixels(name="out_of_gamut")
+        encoding("the images"), input_space("the images", name="space"), out_of_gamut(*PIXELS, "pixels", "out_of_gamut")
     )
 
 

@@ -13,7 +13,7 @@ import click
 from click.core import ParameterSource
 
 from uplift.common.errors import OptionError
-from uplift.common.text import format_value, parse_float, parse_whole
+from uplift.common.text import format_value, parse_float
 
 from .. import options
 from ..inputs import expand_patterns
@@ -28,14 +28,6 @@ ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet", "verbose"
 """Parameters that may accompany --plan."""
 OF_IMAGES = ("encoding", "method", "input_space")
 """Parameters of --scene images, in the order of `uplift.io.scene_colours.Images`."""
-
-
-def parse_dim(ctx: click.Context, param: click.Parameter, value: str) -> int | str:
-    """Parse a whole number or 'auto'."""
-    try:
-        return value if value == "auto" else parse_whole(value)
-    except ValueError as error:
-        raise click.BadParameter(f"{format_value(value)} is neither a whole number nor 'auto'") from error
 
 
 def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple[float, float]:
@@ -54,8 +46,8 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 @options.output("Cube to write. [default: named after atlas and dim, in the current folder]")
 @click.option(
     "--dim",
-    default="32",
-    callback=parse_dim,
+    default=32,
+    type=options.Whole(word="auto"),
     metavar="N",
     help="Lattice nodes along each axis. 'auto' chooses the smallest dim, and its axis, that resolves every entry.",
 )
@@ -132,7 +124,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 @options.encoding("--scene images")
 @options.input_space("--scene images")
 @click.option("--plan", "plan_path", metavar="PLAN", help="Build the cube of a plan by 'uplift plan'.")
-@options.out_of_gamut_pixels("pixels of --scene images")
+@options.out_of_gamut(*options.PIXELS, "pixels of --scene images")
 @click.option(
     "--seed-corners",
     is_flag=True,
@@ -203,12 +195,12 @@ def command(
 
         plan = read_plan(plan_path)
         make: Callable[..., Cube] = partial(plan.build, debug=settings["debug"])
-        name = cube_name(plan_path)
+        name = cube_name(plan_path) if output is None else output
         inputs = [plan_path, *plan.images.paths, *plan.atlases]
     else:
         if not images and (useless := [given[name] for name in OF_IMAGES if name in given]):
             raise click.UsageError(f"{', '.join(useless)}: no --scene image is given to which this applies.")
-        name = _default_name(files, images, settings)
+        name = _default_name(files, images, settings) if output is None else output
         inputs = [*files, *settings["library"], settings["looks"], settings["observer"]]
         settings["shortest"], settings["longest"] = settings.pop("limits")
         pixels = [settings.pop(name) for name in OF_IMAGES]
@@ -222,7 +214,7 @@ def command(
 
         stated = {name: value for name, value in settings.items() if value not in (None, ())}
         make = partial(build, read_atlas(*files, measured=scale) if files else None, **stated)
-    path = check_output(name if output is None else output, inputs=inputs, force=force)
+    path = check_output(name, inputs=inputs, force=force)
     slices = path.with_suffix(".exr") if settings["debug"] else None
     if slices is not None:
         check_output(slices, inputs=inputs, force=force)

@@ -71,7 +71,8 @@ class Answers:
         self.source = find_colours(**colours)
         self.single = self.source.path is None
         self.cube = load(cube_path)
-        check_range(wavelengths, self.cube.wavelengths)
+        if wavelengths is not None:
+            check_range(wavelengths, self.cube.wavelengths)
         self.wavelengths, self.mode, self.method, self.fill_missing = wavelengths, mode, method, fill_missing
         data = self.cube.data
         atlases = [source["name"] for source in data.provenance.get("atlases", ())]
@@ -324,14 +325,15 @@ def _print_lines(answers: Answers, results: Iterable[QueryResult]) -> None:
         errors = {f"± {light}": f"{error:.2f}" for light, error, _ in _errors(cube, result)}
         if number == 0:
             names = list(errors) or [f"{'spectrum':<16}"]
-            swatch = " " * 5 * has_colours()
+            indent = " " * 5 * has_colours()
             say(f"cube     {answers}")
-            say(f"{swatch}hex      {'linear RGB':<17}  {'ΔE00':<7}  {'  '.join(names)}  atlas entry")
+            say(f"{indent}hex      {'linear RGB':<17}  {'ΔE00':<7}  {'  '.join(names)}  atlas entry")
         last = [f"{error:>{len(name)}}" for name, error in errors.items()] or [sparkline(result.reflectance, 16)]
         rgb = " ".join(f"{value:.3f}" for value in result.rgb)
         entry = result.entry or ("unlike the atlas" if errors and result.unlike_atlas else "")
         line = f"{hex_code(cube, result.rgb)}  {rgb}  {result.delta_e_2000:<7.2g}  {'  '.join(last)}  {entry}"
-        emit((f"{patch(cube, result.rgb, 3)}  " if has_colours() else "") + printable(line.rstrip()))
+        swatch = patch(cube, result.rgb, 3)
+        emit((swatch and f"{swatch}  ") + printable(line.rstrip()))
 
 
 def _errors(cube: Cube, result: QueryResult) -> list[tuple[str, float, float]]:

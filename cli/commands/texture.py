@@ -115,8 +115,9 @@ def command(
     if len(cube_paths) > 1 and mask is None:
         raise click.UsageError("Several cubes need --mask, an image of which cube a pixel belongs to.")
     cubes = tuple(os.path.abspath(find_file(path)) for path in cube_paths) or (None,)
-    for path in cubes if wavelengths is not None else ():
-        check_range(wavelengths, load(path).wavelengths)
+    if wavelengths is not None:
+        for path in cubes:
+            check_range(wavelengths, load(path).wavelengths)
     pixels = texture.Spectrum(as_tuple(wavelengths)) if encode is texture.Spectrum else encode()
     convert(cubes, pixels, mask=None if mask is None else os.path.abspath(mask), **settings)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .console import columns, print_fields, say
+from .console import columns, has_colours, print_fields, say
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
@@ -46,7 +46,9 @@ def print_spectrum(
 
 
 def patch(cube: Cube, rgb: Array, width: int = 8) -> str:
-    """Return a patch of colour for a terminal, ``width`` characters wide."""
+    """Return a patch of colour, ``width`` characters wide; empty where standard output shows no colours."""
+    if not has_colours():
+        return ""
     from uplift.colorimetry.srgb import to_display_codes
 
     return click.style(" " * width, bg=to_display_codes(rgb, cube.data.sensor).astype(int).tolist())

@@ -66,13 +66,12 @@ def paragraph(text: str, indent: int = 0, prefix: str = "", suffix: str = "") ->
 
 
 def print_fields(fields: Mapping[str, str], patches: Mapping[str, str] | None = None) -> None:
-    """Print names and values in two columns, and on a terminal the patches of colour that belong to a value."""
-    patches = patches if patches and has_colours() else {}
+    """Print names and values in two columns, and the patches of colour that belong to a value."""
     names = {name: printable(name) for name in fields}
     width = max(12, *(len(name) + 1 for name in names.values()))
     for name, text in fields.items():
-        patch = f"  {patches[name]}" if patches.get(name) else ""
-        paragraph(text, width, f"{names[name]:<{width}}", patch)
+        patch = patches.get(name, "") if patches else ""
+        paragraph(text, width, f"{names[name]:<{width}}", patch and f"  {patch}")
 
 
 def json_text(values: Any, indent: int | None = 2, *, ascii_only: bool = False) -> str:

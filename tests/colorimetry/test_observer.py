@@ -10,12 +10,13 @@ import pytest
 import uplift
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
-from uplift.colorimetry import observer
+from uplift.colorimetry import observer, tables
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.observer import COMMON_SPACES, smallest_space
 from uplift.colorimetry.spaces import BUILT_IN, find_space, look_up_space, primaries_of
 from uplift.colorimetry.srgb import decode, encode, to_display_codes
 from uplift.common.errors import OptionError, UnknownNameError
+from uplift.lattice import axis_nodes
 from uplift.lights.lamps import known_lamps
 
 SPACES = ("sRGB", "P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
@@ -54,13 +55,13 @@ def test_colours_agree_with_colour_science(sensor):
 @pytest.mark.parametrize("dim", [2, 3, 8, 16, 33, 128])
 def test_srgb_nodes_agree_with_colour_science(dim):
     expected = colour.models.eotf_sRGB(np.linspace(0, 1, dim))
-    np.testing.assert_allclose(observer.axis_nodes("srgb", dim), expected, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(axis_nodes("srgb", dim), expected, rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize("name", ["moments-8", "moments-16"])
 def test_stored_nodes_are_reproduced_exactly(name, repository):
     nodes = uplift.load(repository / "cubes" / f"{name}.uplift").data.lattice.nodes
-    np.testing.assert_array_equal(observer.axis_nodes("srgb", len(nodes)), nodes)
+    np.testing.assert_array_equal(axis_nodes("srgb", len(nodes)), nodes)
 
 
 @pytest.mark.parametrize(
@@ -69,7 +70,7 @@ def test_stored_nodes_are_reproduced_exactly(name, repository):
         (lambda: observer.sensor("sRBG"), "unknown-name", "'sRGB'"),
         (lambda: observer.light("tungten"), "unknown-name", "'tungsten'"),
         (lambda: observer.light("D65", "CIE 1931 2 Degree"), "unknown-name", "'CIE 1931 2 Degree Standard"),
-        (lambda: observer.axis_nodes("srgbb", 4), "unknown-name", "'srgb'"),
+        (lambda: axis_nodes("srgbb", 4), "unknown-name", "'srgb'"),
         (lambda: known_lamps().without(("A", "D66")), "unknown-name", "'D65'"),
         *((lambda name=name: find_space(name), "unknown-name", "") for name in ("raw", "", "a\0b", "a\n")),
     ],
@@ -86,7 +87,9 @@ def test_other_ranges_agree_with_colour_science(limits, sensor):
     assert found.range == limits
     np.testing.assert_allclose(found.rgb(np.ones(len(found.wavelengths))), 1, rtol=0, atol=1e-14)
     steep = colour.SpectralDistribution(np.linspace(0.1, 0.9, len(found.wavelengths)), found.wavelengths)
-    expected = colour.sd_to_XYZ(steep, *observer.aligned(sensor, *limits), method="Integration") / 100
+    shape, named = colour.SpectralShape(*limits), (("observer", sensor.observer), ("illuminant", sensor.illuminant))
+    aligned = (tables.look_up(*each).copy().align(shape) for each in named)
+    expected = colour.sd_to_XYZ(steep, *aligned, method="Integration") / 100
     np.testing.assert_allclose(found.xyz(found.rgb(steep.values)), expected, rtol=1e-9)
     displays = observer.display_sensors(["D65", "A", "D65"], sensor.observer, *limits)
     assert [each.range for each in displays] == [limits] * 2
@@ -160,7 +163,7 @@ def test_black_bodies_are_those_of_colour_science(kelvin):
     theirs = colour.sd_blackbody(kelvin, colour.SpectralShape(380, 780, 5)).values
     ours = observer.illuminant_spd(f"{kelvin} k")
     np.testing.assert_allclose(ours / ours[36], theirs / theirs[36], rtol=5e-4)  # theirs has a rounded constant
-    objects = observer.aligned(observer.sensor("sRGB", f"{kelvin}K"))[1]
+    objects = tables.look_up("illuminant", f"{kelvin}K").align(colour.SpectralShape(380, 780, 5))
     np.testing.assert_allclose(objects.values / objects.values[36], ours / ours[36], rtol=1e-9)
 
 

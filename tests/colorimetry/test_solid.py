@@ -7,7 +7,7 @@ from scipy.spatial import ConvexHull
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid, solid_volume, toward_grey
-from uplift.lattice import Lattice
+from uplift.lattice import Lattice, axis_nodes
 
 
 def best_residual(sensor, rgb):
@@ -21,7 +21,7 @@ def test_solid_contains_the_colours_that_a_solver_reaches(space):
     """On a small lattice, and on the points of a large one nearest to the boundary."""
     sensor = observer.sensor(space)
     limits = solid(sensor.matrix)
-    large = Lattice(observer.axis_nodes("srgb", 17)).points
+    large = Lattice(axis_nodes("srgb", 17)).points
     nearest = large[np.argsort(np.abs(limits.signed_distance(large)))[:20]]
     colours = np.concatenate([Lattice(np.linspace(0, 1, 5)).points, nearest])
     np.testing.assert_array_equal(limits.contains(colours), best_residual(sensor, colours) <= 1e-8)

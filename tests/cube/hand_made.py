@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from tests.helpers import with_points
-from uplift.colorimetry.observer import axis_nodes, sensor
+from uplift.colorimetry.observer import sensor
 from uplift.cube import AtlasTable, CubeData
 from uplift.cube.file import POINTS
-from uplift.lattice import Lattice, PointTable, Status
+from uplift.lattice import Lattice, PointTable, Status, axis_nodes
 from uplift.models import Moments
 
 

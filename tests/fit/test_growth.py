@@ -19,11 +19,11 @@ from uplift.fit.prior import Prior
 from uplift.fit.problem import Nodes, Problem, nodes_of
 from uplift.fit.seeds import FULL_ENTRY, initial_guess, seed
 from uplift.fit.store import MAX_LOSS, store
-from uplift.lattice import NOT_FITTED, Lattice, Status
+from uplift.lattice import NOT_FITTED, Lattice, Status, axis_nodes
 from uplift.models import Moments, Sigmoid, reflectance
 
 MODEL = Moments(9)
-LATTICE = Lattice(observer.axis_nodes("srgb", 7))
+LATTICE = Lattice(axis_nodes("srgb", 7))
 NO_COLOURS = np.zeros((0, 3))
 NO_SEEDS = np.zeros(0, dtype=np.int64)
 
@@ -65,7 +65,7 @@ def test_any_set_of_seeds_fits_the_lattice(sensor, rgb):
 
 @pytest.mark.parametrize(("dim", "model"), [(2, MODEL), (3, Moments(3)), (2, Sigmoid())], ids=str)
 def test_tiny_lattices_are_fitted_to_their_corners(model, dim, sensor):
-    lattice = Lattice(observer.axis_nodes("srgb", dim))
+    lattice = Lattice(axis_nodes("srgb", dim))
     points, _ = fitted(model, sensor, lattice)
     assert missed(model, sensor, lattice, points.coefficients).max() <= 1e-4
 
@@ -89,7 +89,7 @@ def test_points_that_fail_from_their_start_are_fitted_from_their_neighbours(sens
 
 
 def test_growth_proceeds_from_a_coarse_lattice_to_finer_ones(sensor):
-    lattice = Lattice(observer.axis_nodes("srgb", 17))
+    lattice = Lattice(axis_nodes("srgb", 17))
     assert strides(lattice.dim) == [4, 2, 1]
     points, improvements = fitted(MODEL, sensor, lattice, grow=grow_coarse_to_fine)
     position = lattice.position(np.arange(lattice.size))
@@ -100,7 +100,7 @@ def test_growth_proceeds_from_a_coarse_lattice_to_finer_ones(sensor):
 
 def test_growth_proceeds_outward_in_shells(sensor):
     """Distances are those to the nearest seed, and most nodes have a nearer one on their way."""
-    lattice = Lattice(observer.axis_nodes("srgb", 9))
+    lattice = Lattice(axis_nodes("srgb", 9))
     seeds = np.array([4, 300, 700])
     distance, toward = shells(lattice, seeds)
     position = lattice.position(np.arange(lattice.size))
@@ -117,7 +117,7 @@ def test_growth_proceeds_outward_in_shells(sensor):
 @pytest.mark.parametrize("rgb", [NO_COLOURS, np.array([[0.2, 0.3, 0.4]])], ids=["no seeds", "seeds"])
 def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch, rgb):
     """Outward, all at once, and from coarse lattices to finer ones; few points differ."""
-    lattice = Lattice(observer.axis_nodes("srgb", 17))
+    lattice = Lattice(axis_nodes("srgb", 17))
     spectra = [reflectance(MODEL, fitted(MODEL, sensor, lattice, rgb)[0].coefficients, sensor.wavelengths)]
     for order in ([1], [4, 2, 1]):
         monkeypatch.setattr("uplift.fit.growth_coarse.strides", lambda dim, order=order: order)
@@ -187,7 +187,7 @@ def test_seeds_are_the_entries_with_the_coefficients_of_the_nodes(repository):
     assert np.median(moved) < 0.03
 
 
-STORED = Lattice(observer.axis_nodes("srgb", 9))
+STORED = Lattice(axis_nodes("srgb", 9))
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ import uplift
 from uplift.colorimetry import observer
 from uplift.colorimetry.solid import solid
 from uplift.fit.problem import MARGIN, nodes_of
-from uplift.lattice import Lattice, Status
+from uplift.lattice import Lattice, Status, axis_nodes
 from uplift.models import reflectance
 
 SPACES = ("P3-D65", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
@@ -45,7 +45,7 @@ def test_every_realisable_colour_is_fitted(space, model, count):
 
 def test_the_nearest_colour_has_the_same_hue_and_luminance(sensor):
     wide = observer.sensor("ITU-R BT.2020")
-    lattice = Lattice(observer.axis_nodes("srgb", 9))
+    lattice = Lattice(axis_nodes("srgb", 9))
     beyond = nodes_of(lattice, wide)
     target, nearest = lattice.target(beyond.unrealisable), beyond.nearest
     luminance = wide.xyz(target)[:, 1:2]

@@ -24,7 +24,7 @@ from uplift.fit.families import shipped_library
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem
 from uplift.fit.seeds import DIMS, FAR, FULL_ENTRY, HALF_ENTRY, NEAR, choose_lattice, initial_guess, lattice_error, seed
-from uplift.lattice import Lattice
+from uplift.lattice import AXES, Lattice, axis_nodes
 from uplift.models import Moments, reflectance
 
 LATTICE = Lattice(np.linspace(0, 1, 6))
@@ -118,8 +118,8 @@ def test_the_smallest_lattice_that_keeps_all_entries_is_chosen(stage):
     problem, prior, entries = stage
     _, dim, lost = choose_lattice(problem, prior, HALF_ENTRY, entries, 0.5)
     assert lost == 0
-    for axis in observer.AXES:
-        smaller = Lattice(observer.axis_nodes(axis, DIMS[DIMS.index(dim) - 1]))
+    for axis in AXES:
+        smaller = Lattice(axis_nodes(axis, DIMS[DIMS.index(dim) - 1]))
         assert lattice_error(problem, smaller, prior, HALF_ENTRY, entries).max() > 0.5
 
 

@@ -4,8 +4,6 @@ Modules that must not import colour-science use this implementation too. The tes
 the published pairs.
 """
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -41,15 +39,9 @@ def lab(xyz: ArrayLike, white: ArrayLike) -> Array:
     >>> lab([0.95, 1.0, 1.09], [0.95, 1.0, 1.09]).tolist()
     [100.0, 0.0, 0.0]
     """
-    return np.asarray(lab_of(np.asarray(xyz, dtype=float), np.asarray(white, dtype=float)))
-
-
-def lab_of(xyz: Any, white: Any) -> Any:
-    """Compute `lab` of arrays of numpy or JAX."""
-    xp = xyz.__array_namespace__()
-    t = xyz / white
-    compressed = xp.where(t > (6 / 29) ** 3, xp.cbrt(t), xp.minimum(t, 1.0) * (29 / 6) ** 2 / 3 + 4 / 29)
-    return compressed @ OPPONENTS.T - np.array([16.0, 0.0, 0.0])
+    t = np.asarray(xyz, dtype=float) / np.asarray(white, dtype=float)
+    compressed = np.where(t > (6 / 29) ** 3, np.cbrt(t), np.minimum(t, 1.0) * (29 / 6) ** 2 / 3 + 4 / 29)
+    return np.asarray(compressed @ OPPONENTS.T - np.array([16.0, 0.0, 0.0]))
 
 
 def lab_to_xyz(lab: ArrayLike, white: ArrayLike) -> Array:
@@ -69,7 +61,7 @@ def lab_jacobian(xyz: ArrayLike, white: ArrayLike) -> Array:
 
 def rgb_to_lab(sensor: Sensor, rgb: ArrayLike) -> Array:
     """Convert linear RGB to CIE L*a*b* under the build illuminant. Shapes: ``rgb`` (…, 3) → (…, 3)."""
-    return np.asarray(lab_of(sensor.xyz(rgb), sensor.light.white))
+    return lab(sensor.xyz(rgb), sensor.light.white)
 
 
 def delta_e_1976(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:

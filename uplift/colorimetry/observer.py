@@ -6,7 +6,6 @@ Names that are unknown raise `UnknownNameError`, whose hint gives the nearest on
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,20 +14,15 @@ from uplift.colorimetry import tables
 from uplift.colorimetry.camera import CAMERA, Camera, camera_sensor, read_camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.colorimetry.sensor import Light, Sensor
-from uplift.colorimetry.spaces import look_up_space
-from uplift.colorimetry.srgb import decode_portably
 from uplift.colorimetry.tables import WAVELENGTHS, samples
 from uplift.common.arrays import Array
-from uplift.common.colour_science import colour_science
-from uplift.common.errors import OptionError, unknown_name
+from uplift.common.errors import OptionError
 
 DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
 COMMON_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 """Names of colour-science, by the area of the gamut in CIE 1976 u′, v′."""
 START, END, STEP = WAVELENGTHS
 """Range and step in nm that every table of the CIE covers."""
-AXES = ("srgb", "linear")
-"""Spacings of `axis_nodes`."""
 
 
 def grid() -> Array:
@@ -82,7 +76,11 @@ def sensor(
             "a camera in place of an observer has its own RGB space",
             hint=f'use space="{CAMERA}"',
         )
-    rgb_space = look_up_space(space)
+    rgb_space = tables.rgb_space(space)
+    if rgb_space is None:
+        from uplift.colorimetry.spaces import look_up_space  # names of OpenColorIO
+
+        rgb_space = look_up_space(space)
     build_light = light(illuminant, observer)
     # XYZ to RGB is M_space · M_Bradford: the white of the illuminant becomes the white of the space.
     x, y = rgb_space.whitepoint
@@ -177,28 +175,6 @@ def light(
     power = samples("illuminant", illuminant, start, end, step)
     weights = samples("observer", observer, start, end, step) * power[:, None]
     return Light(tables.stated_name("illuminant", illuminant), (weights / weights[:, 1].sum()).T)
-
-
-def aligned(sensor: Sensor, start: float = START, end: float = END, step: float = STEP) -> tuple[Any, Any]:
-    """Return the observer and illuminant of a sensor as objects of colour-science."""
-    shape = colour_science().SpectralShape(start, end, step)
-    found = tables.look_up("observer", sensor.observer), tables.look_up("illuminant", sensor.illuminant)
-    return found[0].copy().align(shape), found[1].copy().align(shape)
-
-
-def axis_nodes(spacing: str, dim: int) -> Array:
-    """Return the positions of the nodes of a lattice axis in linear RGB.
-
-    They are the same doubles on every CPU, so cubes of one dim and spacing have equal nodes wherever they were built.
-
-    Shape (dim,).
-    """
-    even = np.linspace(0.0, 1.0, dim)
-    if spacing == "linear":
-        return even
-    if spacing == "srgb":
-        return decode_portably(even)
-    raise unknown_name(spacing, AXES, "axis spacing")
 
 
 def matching_functions(

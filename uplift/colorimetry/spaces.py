@@ -26,11 +26,6 @@ BUILT_IN = "ocio://studio-config-latest"
 REFERENCE = "ACES2065-1"
 AP0 = Primaries((0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.077), (0.32168, 0.33767))
 """Primaries of the reference (SMPTE ST 2065-1)."""
-SHORT_NAMES = {
-    "ap0": "ACES2065-1", "ap1": "ACEScg", "p3": "Display P3", "prophoto": "ProPhoto RGB",
-    "rec709": "ITU-R BT.709", "bt709": "ITU-R BT.709", "rec2020": "ITU-R BT.2020", "bt2020": "ITU-R BT.2020",
-}  # fmt: skip
-"""Short names, in lower case and without punctuation."""
 FIRST_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "Adobe RGB (1998)")
 """Spaces of colour-science that stand for others with the same primaries."""
 MAX_MATRIX_DIFFERENCE = 1e-3
@@ -137,9 +132,7 @@ def find_space(text: str) -> ImageSpace:
 
 def look_up_space(name: str, *, ocio: bool = True) -> RgbSpace:
     """Find an RGB space of colour-science, also by the name of OpenColorIO of a space with the same primaries."""
-    short = SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name)
-    found = tables.rgb_space(short) or tables.rgb_space(name)
-    if found is not None:
+    if (found := tables.rgb_space(name)) is not None:
         return found
     if ocio and (space := find_ocio_space(name)) is not None:
         for each in map(tables.rgb_space, (*FIRST_SPACES, *tables.names("RGB space"))):

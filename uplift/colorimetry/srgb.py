@@ -3,7 +3,6 @@
 Image viewers show a PNG as sRGB for every space of the cube, so this is separate from the encoding of a cube.
 """
 
-import decimal
 import re
 from dataclasses import dataclass
 from typing import Any
@@ -17,8 +16,6 @@ from uplift.common.arrays import Array
 from uplift.common.errors import ColourError
 from uplift.common.text import format_value
 
-POWER_DIGITS = 40
-"""Decimal digits of the powers in `decode_portably`: more than twice those of a double."""
 DISPLAY_MAPPING = "desaturate"
 """Gamut mapping of swatches: it keeps luminance and dominant wavelength."""
 HEX = re.compile("#[0-9a-fA-F]{6}")
@@ -29,22 +26,6 @@ MAX_NUMBER = 1e6
 def decode(codes: Array) -> Array:
     """Convert encoded sRGB to linear values, both in [0, 1]."""
     return np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
-
-
-def decode_portably(codes: Array) -> Array:
-    """Convert encoded sRGB to linear values, with the same doubles on every CPU.
-
-    The powers of numpy differ in the last bit between instruction sets (AVX-512 and others). Here they are computed in
-    decimal arithmetic and rounded once, which is slow; IEEE 754 defines how every other operation rounds.
-
-    >>> import numpy as np
-    >>> decode_portably(np.array([0.0, 0.5, 1.0])).tolist()
-    [0.0, 0.21404114048223255, 1.0]
-    """
-    context, exponent = decimal.Context(prec=POWER_DIGITS), decimal.Decimal.from_float(2.4)
-    bases = ((codes + 0.055) / 1.055).tolist()
-    powers = [float(context.power(decimal.Decimal(base), exponent)) for base in bases]
-    return np.where(codes <= 0.04045, codes / 12.92, powers)
 
 
 def encode(linear: ArrayLike) -> Array:

@@ -6,6 +6,7 @@ Copyright 2013 Colour Developers, BSD-3-Clause, as part of colour-science.
 """
 
 import functools
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +14,15 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry import lights
+from uplift.colorimetry.lights import (
+    COMMON_NAMES,
+    DAYLIGHT_FROM,
+    NOMINAL,
+    TEMPERATURES,
+    black_body,
+    standard_name,
+    temperature,
+)
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import unknown_name
@@ -31,6 +40,11 @@ TABLES = {
     "RGB space": "RGB_COLOURSPACES",
 }
 """All tables of colour-science that are used."""
+SHORT_NAMES = {
+    "ap0": "ACES2065-1", "ap1": "ACEScg", "p3": "Display P3", "prophoto": "ProPhoto RGB",
+    "rec709": "ITU-R BT.709", "bt709": "ITU-R BT.709", "rec2020": "ITU-R BT.2020", "bt2020": "ITU-R BT.2020",
+}  # fmt: skip
+"""RGB spaces by short names, in lower case and without punctuation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,16 +82,11 @@ def names(kind: str) -> tuple[str, ...]:
     return tuple(_file()[f"{kind}: names"].tolist())
 
 
-@functools.cache
-def _rows(kind: str) -> dict[str, int]:
-    return {name: row for row, name in enumerate(names(kind))}
-
-
 def stated_name(kind: str, name: str) -> str:
     """Return the name that colour-science states for a name, which may be an alias or have other capitals."""
-    name = lights.standard_name(name) if kind == "illuminant" else name
-    if name in _rows(kind):
-        return str(_file()[f"{kind}: stated"][_rows(kind)[name]])
+    name = standard_name(name) if kind == "illuminant" else name
+    if name in names(kind):
+        return str(_file()[f"{kind}: stated"][names(kind).index(name)])
     return str(look_up(kind, name).name)
 
 
@@ -87,12 +96,12 @@ def samples(kind: str, name: str, start: float = START, end: float = END, step: 
 
     ``kind`` is one of the keys of `TABLES`, such as ``"display"`` for the power of the primaries of a display.
     """
-    name = lights.standard_name(name) if kind == "illuminant" else name
-    kelvin = lights.temperature(name) if kind == "illuminant" else None
-    if kelvin is not None and kelvin < lights.DAYLIGHT_FROM:
-        values = lights.black_body(kelvin, np.arange(start, end + step / 2, step))
-    elif kind in SPECTRA and (start, end, step) == WAVELENGTHS and name in _rows(kind):
-        values = _file()[f"{kind}: samples"][_rows(kind)[name]]
+    name = standard_name(name) if kind == "illuminant" else name
+    kelvin = temperature(name) if kind == "illuminant" else None
+    if kelvin is not None and kelvin < DAYLIGHT_FROM:
+        values = black_body(kelvin, np.arange(start, end + step / 2, step))
+    elif kind in SPECTRA and (start, end, step) == WAVELENGTHS and name in names(kind):
+        values = _file()[f"{kind}: samples"][names(kind).index(name)]
     else:
         shape = colour_science().SpectralShape(start, end, step)
         values = np.array(look_up(kind, name).copy().align(shape).values, dtype=float)
@@ -101,11 +110,14 @@ def samples(kind: str, name: str, start: float = START, end: float = END, step: 
 
 
 def rgb_space(name: str) -> RgbSpace | None:
-    """Return an RGB space by a name of colour-science, None if it has none of the name."""
-    rows = _rows("RGB space")
-    if name not in rows and name not in (table := colour_science().RGB_COLOURSPACES):
-        return None
-    row = rows[name] if name in rows else rows[table[name].name]
+    """Return an RGB space by a name of colour-science or one of `SHORT_NAMES`, None if it has none of the name."""
+    known, name = names("RGB space"), SHORT_NAMES.get(re.sub(r"[ ._-]", "", name.casefold()), name)
+    if name not in known:
+        table = colour_science().RGB_COLOURSPACES
+        if name not in table:
+            return None
+        name = table[name].name
+    row = known.index(name)
     parts = (_file()[f"RGB space: {part}"][row] for part in ("primaries", "whitepoint", "matrix", "decoding"))
     return RgbSpace(stated_name("RGB space", name), *parts)
 
@@ -122,8 +134,8 @@ def look_up(kind: str, name: str) -> Any:
     table = getattr(colour_science(), TABLES[kind])
     known = list(table)
     if kind == "illuminant":
-        name, known = lights.standard_name(name), [*known, *lights.COMMON_NAMES, "3200K"]
-        if (kelvin := lights.temperature(name)) is not None:
+        name, known = standard_name(name), [*known, *COMMON_NAMES, "3200K"]
+        if (kelvin := temperature(name)) is not None:
             return _of_temperature(kelvin, name)
     try:
         return table[name]
@@ -134,10 +146,10 @@ def look_up(kind: str, name: str) -> Any:
 def _of_temperature(kelvin: float, name: str) -> Any:
     """Return a black body or CIE daylight as an object of colour-science."""
     colour = colour_science()
-    if kelvin < lights.DAYLIGHT_FROM:
+    if kelvin < DAYLIGHT_FROM:
         wavelengths = np.arange(300.0, 1001.0)
-        return colour.SpectralDistribution(lights.black_body(kelvin, wavelengths), wavelengths, name=name)
-    kelvin = min(kelvin * lights.NOMINAL, lights.TEMPERATURES[1])
+        return colour.SpectralDistribution(black_body(kelvin, wavelengths), wavelengths, name=name)
+    kelvin = min(kelvin * NOMINAL, TEMPERATURES[1])
     found = colour.sd_CIE_illuminant_D_series(colour.temperature.CCT_to_xy_CIE_D(kelvin))
     found.name = name
     return found

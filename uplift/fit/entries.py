@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_spectra, lab_jacobian, lab_of
+from uplift.colorimetry.delta_e import delta_e_spectra, lab, lab_jacobian
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.fit.problem import Problem
@@ -49,15 +49,15 @@ class Objective:
     weight: float
     multipliers: Array
 
-    def colours(self, spectra: Any) -> Any:
+    def colours(self, spectra: Array) -> Array:
         """CIE L*a*b* (…, L, 3) of spectra (…, N) under the lights."""
-        return lab_of((self.lights @ spectra[..., None, :, None])[..., 0], self.whites)
+        return lab((self.lights @ spectra[..., None, :, None])[..., 0], self.whites)
 
-    def residuals(self, multipliers: Any, measured: Any, colours: Any) -> Any:
-        """Residuals (…, N + 3 L + C) for measurements (…, N) with their `colours`; all of numpy or of JAX."""
+    def residuals(self, multipliers: Array, measured: Array, colours: Array) -> Array:
+        """Residuals (…, N + 3 L + C) for measurements (…, N) with their `colours`."""
         spectra = self.model.to_reflectance(multipliers @ self.basis.T)
         colour_difference = self.colours(spectra) - colours
-        return multipliers.__array_namespace__().concat(
+        return np.concatenate(
             [
                 self.values * (spectra - measured),
                 self.weight * colour_difference.reshape(*measured.shape[:-1], -1),

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
-from uplift.colorimetry.observer import AXES, axis_nodes
 from uplift.common.arrays import Array, Indices, Mask, blocks
 from uplift.fit.entries import FittedEntries
 from uplift.fit.prior import Prior, blended
 from uplift.fit.problem import Problem
-from uplift.lattice import CORNERS, Lattice, weighted_sum
+from uplift.lattice import AXES, CORNERS, Lattice, axis_nodes, weighted_sum
 from uplift.models import evaluate
 
 NEAR, FAR = 8.0, 16.0

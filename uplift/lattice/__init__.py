@@ -1,11 +1,12 @@
 """The lattice over RGB: nodes, cells, neighbours, the boxes around atlas entries, and the table of its points."""
 
 from uplift.lattice.entry_boxes import BoxHits, EntryBoxes, Nodes, OutsideBoxes
-from uplift.lattice.lattice import CORNERS, Lattice, weighted_sum
+from uplift.lattice.lattice import AXES, CORNERS, Lattice, axis_nodes, weighted_sum
 from uplift.lattice.point_table import ABSENT_VALUES, NO_ENTRY, NOT_FITTED, PointTable, Status
 
 __all__ = [
     "ABSENT_VALUES",
+    "AXES",
     "CORNERS",
     "NOT_FITTED",
     "NO_ENTRY",
@@ -16,5 +17,6 @@ __all__ = [
     "OutsideBoxes",
     "PointTable",
     "Status",
+    "axis_nodes",
     "weighted_sum",
 ]

@@ -1,5 +1,6 @@
 """The regular grid over RGB: axis nodes, node numbers, cells and neighbours. Nodes are numbered blue fastest."""
 
+import decimal
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -7,10 +8,14 @@ from itertools import product
 import numpy as np
 
 from uplift.common.arrays import Array, Indices, Mask, Values
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, unknown_name
 
 CORNERS = np.array(list(product((0, 1), repeat=3)))
 """(8, 3) steps from the lowest corner of a cell to all its corners."""
+AXES = ("srgb", "linear")
+"""Spacings of `axis_nodes`: equal steps of the sRGB encoding, or of linear RGB."""
+POWER_DIGITS = 40
+"""Decimal digits of the powers in `axis_nodes`: more than twice those of a double."""
 NEIGHBOURS = np.array([step for step in product((-1, 0, 1), repeat=3) if any(step)])
 """(26, 3) steps from a node to its neighbours."""
 
@@ -143,3 +148,25 @@ def weighted_sum(values: Values, points: Indices, weights: Array) -> Values:
     # The indices are valid. mode="clip" skips numpy's check and the copy that it needs.
     corners = values.take(points, axis=0, mode="clip")
     return (weights.astype(values.dtype, copy=False)[:, None, :] @ corners)[:, 0, :]
+
+
+def axis_nodes(spacing: str, dim: int) -> Array:
+    """Return the positions (dim,) of the nodes of an axis in linear RGB, the same doubles on every CPU.
+
+    So cubes of one dim and spacing have equal nodes wherever they were built. The powers of numpy differ in the last
+    bit between instruction sets. Here they are computed in decimal arithmetic and rounded once, which is slow; IEEE 754
+    defines how every other operation rounds.
+
+    >>> axis_nodes("srgb", 3).tolist()
+    [0.0, 0.21404114048223255, 1.0]
+    """
+    if spacing not in AXES:
+        raise unknown_name(spacing, AXES, "axis spacing")
+    even = np.linspace(0.0, 1.0, dim)
+    if spacing == "linear":
+        return even
+    # The transfer curve of IEC 61966-2-1: c / 12.92 near black, else ((c + 0.055) / 1.055)^2.4
+    context, exponent = decimal.Context(prec=POWER_DIGITS), decimal.Decimal.from_float(2.4)
+    bases = ((even + 0.055) / 1.055).tolist()
+    powers = [float(context.power(decimal.Decimal(base), exponent)) for base in bases]
+    return np.where(even <= 0.04045, even / 12.92, powers)

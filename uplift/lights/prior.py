@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from uplift.colorimetry.delta_e import delta_e_2000, lab_of
+from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.arrays import Array
 from uplift.lights.fit import nearest_lights
 from uplift.lights.lattice import DENOMINATOR, chromaticity
@@ -125,4 +125,4 @@ def _relit_lab(power: Array, reflectances: Array, radiometry: Array) -> Array:
     xyz = (power @ weights).reshape(len(power), -1, 3)
     white = (power @ radiometry)[:, None]
     missing = white <= 0
-    return np.asarray(lab_of(np.where(missing, xyz[..., 1:2], xyz), np.where(missing, white[..., 1:2], white)))
+    return lab(np.where(missing, xyz[..., 1:2], xyz), np.where(missing, white[..., 1:2], white))

@@ -133,14 +133,16 @@ def _block(
     delta_e = delta_e_rgb(sensor, answered, round_trip)
     relit = {light.name: at_sensor @ light.xyz.T for light in lights}
     # Outside the RGB space a colour is that of an entry where its spectrum alone answers.
-    found = data.outside_boxes.find(answered)
-    exact, outside_names = found.lattice_weight == 0, data.atlas.outside.names if data.atlas.outside else ()
-    entries = dict(zip(found.rows[exact].tolist(), found.entry[exact].tolist(), strict=True))
+    entries: dict[int, int] = {}
+    if data.atlas.outside is not None:
+        found = data.outside_boxes.find(answered)
+        alone = found.lattice_weight == 0
+        entries = dict(zip(found.rows[alone].tolist(), found.entry[alone].tolist(), strict=True))
     # Standard errors and error bounds (n, 2) under the light of the cube's errors and under each light, by name.
     wanted = [(None, None), *((light.name, light) for light in lights)]
     has_errors = data.points.standard_error is not None
     errors = {name: _errors(cube, rgb, outside, entries, light) for name, light in wanted if has_errors}
-    unlike = cube.unlike_atlas(rgb) & has_errors
+    unlike = cube.unlike_atlas(rgb) & ~outside if has_errors else np.zeros(len(rgb), dtype=bool)
     # A colour is that of an entry if their 8-bit codes are close.
     codes, entry_codes = cube.encode(rgb), cube.encode(data.atlas.rgb)
     low, fraction = data.lattice.cell(rgb)
@@ -152,8 +154,8 @@ def _block(
         difference = np.abs(entry_codes - codes[row]).max(axis=1)
         is_entry = difference.min(initial=np.inf) <= CODE_TOLERANCE and not outside[row]
         entry = data.atlas.names[difference.argmin()] if is_entry else None
-        if row in entries:
-            entry = outside_names[entries[row]]
+        if data.atlas.outside is not None and row in entries:
+            entry = data.atlas.outside.names[entries[row]]
         yield QueryResult(
             rgb=answered[row],
             requested_rgb=requested[row],
@@ -170,7 +172,7 @@ def _block(
             standard_errors={name: each[0] for name, each in known.items() if name is not None},
             error_bounds={name: each[1] for name, each in known.items() if name is not None},
             light_xyz={name: each[row] for name, each in relit.items()},
-            unlike_atlas=bool(unlike[row] and not outside[row]),
+            unlike_atlas=bool(unlike[row]),
             realisable=bool(realisable[row]),
         )
 

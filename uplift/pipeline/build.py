@@ -41,7 +41,7 @@ from uplift.fit.seeds import (
     seed,
 )
 from uplift.fit.store import store
-from uplift.lattice import EntryBoxes, Lattice
+from uplift.lattice import EntryBoxes, Lattice, axis_nodes
 from uplift.lookup import Cube
 from uplift.models.model import Model
 from uplift.models.moments import MAX_COUNT
@@ -326,7 +326,7 @@ def build_stages(
     blend = FULL_ENTRY if options.seed_corners or neighbours else HALF_ENTRY
     if options.dim == AUTO:
         options = _choose_lattice(options, problem, constraints, prior, blend)
-    lattice, rgb = Lattice(observers.axis_nodes(options.axis, int(options.dim))), constraints.at_nodes.rgb
+    lattice, rgb = Lattice(axis_nodes(options.axis, int(options.dim))), constraints.at_nodes.rgb
     boxes, seeds = EntryBoxes(lattice, rgb, half_widths(lattice.to_steps(rgb))), seed(lattice, rgb)
     spectra.warn_of_close(constraints.names, boxes.half_width, seeds.crowded)
     own = constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, resample
-from uplift.colorimetry import Light, Sensor, delta_e_spectra, map_to_gamut
+from uplift.colorimetry import Light, Sensor, delta_e_spectra
+from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.observer import light, on_range
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Indices

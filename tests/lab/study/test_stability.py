@@ -22,12 +22,12 @@ from uplift.lab.study.stability import (
     run,
     study_stability,
 )
-from uplift.lattice import Lattice
+from uplift.lattice import Lattice, axis_nodes
 
 
 def test_build_is_evaluated_over_its_realisable_nodes():
     result = run(RunConfig(dim=4, space="ITU-R BT.2020"), {})
-    sensor, lattice = observer.sensor("ITU-R BT.2020"), Lattice(observer.axis_nodes("srgb", 4))
+    sensor, lattice = observer.sensor("ITU-R BT.2020"), Lattice(axis_nodes("srgb", 4))
     assert result["points"] == 64
     assert result["realisable"] == solid(sensor.matrix).contains(lattice.points).sum() < 64
     assert (result["unfitted"], result["stand_ins"], result["success"]) == (0, 0, 1)

@@ -9,10 +9,10 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from uplift.colorimetry.observer import AXES
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import UpliftError
 from uplift.io import texture
+from uplift.lattice import AXES
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import refined_multipliers

@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas import Atlas, read_atlas, resample
-from uplift.colorimetry import observer
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback
@@ -21,7 +20,7 @@ from uplift.cube.file import POINTS, contents
 from uplift.fit.problem import Problem
 from uplift.io import texture
 from uplift.io.scene_colours import ColourSet, Images, PixelSample, cells_touched, sample_colours
-from uplift.lattice import Lattice
+from uplift.lattice import Lattice, axis_nodes
 from uplift.lookup import Cube
 from uplift.models import Moments, Sigmoid
 from uplift.models.model import Model
@@ -232,7 +231,7 @@ class CandidateSpace:
 
     def _points(self, choice: CubeChoice) -> tuple[int, int]:
         """Points of a lattice, and those around one colour of every bin of the textures."""
-        lattice = Lattice(observer.axis_nodes(choice.axis, choice.dim))
+        lattice = Lattice(axis_nodes(choice.axis, choice.dim))
         needed = lattice.corner_points(lattice.mask(cells_touched(lattice, self.colours.colour_bins)))
         return lattice.size, int(needed.sum())
 
