@@ -6,10 +6,18 @@ import numpy as np
 
 from tests.helpers import with_points
 from uplift.colorimetry.observer import sensor
-from uplift.cube import AtlasTable, CubeData
+from uplift.common.arrays import Array
+from uplift.cube import AtlasTable, CubeData, EntrySpectra
 from uplift.cube.file import POINTS
 from uplift.lattice import Lattice, PointTable, Status, axis_nodes
 from uplift.models import Moments
+from uplift.models.model import Model
+
+
+def table(names: tuple[str, ...], rgb: Array, model: Model, coefficients: Array, half_width: Array) -> AtlasTable:
+    """Entries with as many coefficients as the nodes."""
+    error = np.full(len(names), 0.1)
+    return AtlasTable(names, rgb, coefficients, half_width, error, EntrySpectra(model, coefficients))
 
 
 def hand_made(dim: int = 4, **changes: object) -> CubeData:
@@ -23,9 +31,7 @@ def hand_made(dim: int = 4, **changes: object) -> CubeData:
         lattice=lattice,
         sensor=sensor(),
         threshold=1e-4,
-        atlas=AtlasTable(
-            ("grey", "über"), np.full((2, 3), 0.5), np.full((2, 3), 0.25), np.array([0.5, 0.0]), np.full(2, 0.1)
-        ),
+        atlas=table(("grey", "über"), np.full((2, 3), 0.5), Moments(3), np.full((2, 3), 0.25), np.array([0.5, 0.0])),
         points=PointTable(
             coefficients=rng.normal(size=(lattice.size, 3)),
             rgb=rgb,
@@ -46,7 +52,7 @@ def with_outside(data: CubeData, name: str = "cyan") -> CubeData:
     """The cube with its first entry as one outside the RGB space, too."""
     atlas = data.atlas
     measured = None if atlas.measured is None else atlas.measured[:1]
-    spectra = None if atlas.spectra is None else replace(atlas.spectra, coefficients=atlas.spectra.coefficients[:1])
+    spectra = replace(atlas.spectra, coefficients=atlas.spectra.coefficients[:1])
     outside = AtlasTable(
         *((name,), np.array([[-0.03, 0.25, 1.5]]), atlas.coefficients[:1]),
         *(np.array([0.25]), np.array([0.1]), spectra, measured),

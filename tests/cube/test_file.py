@@ -270,8 +270,8 @@ def test_unknown_provenance_of_later_versions_is_kept(data, tmp_path):
 def test_a_cube_of_format_3_is_read_and_written_in_the_present_format(tmp_path):
     """Its entries have as many coefficients as its nodes."""
     data = read(FORMAT_3)
-    assert data.entry_spectra.model == data.model == Moments(9, 380.0, 780.0)
-    assert data.entry_spectra.coefficients is data.atlas.coefficients
+    assert data.atlas.spectra.model == data.model == Moments(9, 380.0, 780.0)
+    assert data.atlas.spectra.coefficients is data.atlas.coefficients
     assert len(data.atlas.names) == 23
     write(data, tmp_path / "cube.uplift")
     assert_same(read(tmp_path / "cube.uplift"), data)

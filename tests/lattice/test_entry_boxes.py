@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from uplift.cube import AtlasTable
+from tests.cube.hand_made import table
 from uplift.fit.seeds import MAX_HALF_WIDTH, half_widths, outside_half_widths
 from uplift.lattice import Lattice
 from uplift.lattice.entry_boxes import MARGIN, EntryBoxes, OutsideBoxes
@@ -147,7 +147,7 @@ def test_required_points_answer_every_colour_of_a_cell(request, name):
 @pytest.mark.parametrize("node", [0, 3, 7])
 def test_required_points_allow_for_rounding_across_faces_on_nodes(plain_cube, node):
     data = plain_cube.data
-    one = AtlasTable(("one",), np.full((1, 3), data.lattice.nodes[node]), np.zeros((1, 9)), np.ones(1), np.ones(1))
+    one = table(("one",), np.full((1, 3), data.lattice.nodes[node]), data.model, np.zeros((1, 9)), np.ones(1))
     data = replace(data, atlas=one)
     assert data.entry_boxes.cells[0].size
     assert missing(data, data.entry_boxes.required_points) == 0

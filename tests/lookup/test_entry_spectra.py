@@ -20,7 +20,7 @@ def data(small_cube):
 def extended(data, rgb):
     """Reflectances of `extended_multipliers`, of which Mitsuba's textures consist."""
     multipliers = extended_multipliers(data, rgb)
-    return evaluate(data.entry_spectra.model, multipliers, data.sensor.wavelengths)
+    return evaluate(data.atlas.spectra.model, multipliers, data.sensor.wavelengths)
 
 
 def lookups(cube):
@@ -42,7 +42,7 @@ def in_boxes(data, count=20):
 
 @pytest.mark.parametrize("mode", MODES)
 def test_an_entry_is_answered_with_all_its_coefficients(small_cube, data, mode):
-    own = reflectance(data.entry_spectra.model, data.entry_spectra.coefficients, data.sensor.wavelengths)
+    own = reflectance(data.atlas.spectra.model, data.atlas.spectra.coefficients, data.sensor.wavelengths)
     few = reflectance(data.model, data.atlas.coefficients, data.sensor.wavelengths)
     assert np.abs(own - few).max() > 0.1
     found = small_cube.reflectance(data.atlas.rgb, mode=mode)
@@ -52,7 +52,7 @@ def test_an_entry_is_answered_with_all_its_coefficients(small_cube, data, mode):
 
 def test_spectra_in_boxes_mix_entry_and_lattice(small_cube, data):
     """One colour at a time, by the definition of docs/mathematics.md, 8."""
-    at, own = data.sensor.wavelengths, data.entry_spectra
+    at, own = data.sensor.wavelengths, data.atlas.spectra
     for colour in in_boxes(data, 1):
         hit = data.entry_boxes.find(colour[None])
         corners, weights = data.lattice.corners(hit.exit_rgb)

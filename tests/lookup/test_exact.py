@@ -110,5 +110,5 @@ def test_an_entry_in_an_inexact_cell_keeps_its_spectrum():
     near = np.clip(rgb + np.random.default_rng(0).uniform(-0.05, 0.05, (40, 3)), 0, 1)
     assert delta_e(cube, near, cube.reflectance(near)).max() <= 0.001
     np.testing.assert_allclose(
-        cube.reflectance(rgb), cube.data.entry_spectra.reflectance([0], cube.wavelengths), atol=1e-5
+        cube.reflectance(rgb), cube.data.atlas.spectra.reflectance([0], cube.wavelengths), atol=1e-5
     )

@@ -80,7 +80,7 @@ def test_the_nearest_lattice_point_answers_where_no_entry_is_near(plain_cube):
 
 def test_nearest_is_the_entry_or_the_point_of_larger_weight(small_cube):
     data = small_cube.data
-    own = reflectance(data.entry_spectra.model, data.entry_spectra.coefficients, data.sensor.wavelengths)
+    own = reflectance(data.atlas.spectra.model, data.atlas.spectra.coefficients, data.sensor.wavelengths)
     _, high = data.entry_boxes.faces
     near, far = (data.atlas.rgb + share * (high - data.atlas.rgb) for share in (0.1, 0.95))
     np.testing.assert_allclose(small_cube.reflectance(near, mode="nearest"), own, rtol=0, atol=1e-12)

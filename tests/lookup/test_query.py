@@ -121,11 +121,11 @@ def test_an_entry_outside_the_space_has_its_spectrum_and_its_colour(cyan_cube, d
     assert (answer.entry, answer.standard_error, answer.error_bound) == ("cyan", *table.error, *table.error)
     np.testing.assert_allclose(xyz(cyan_cube, answer.reflectance), colour, rtol=0, atol=1e-7)
     for name in (cyan_cube.data.error_illuminant, "FL11"):
-        stored = cyan_cube.data.outside_spectra.reflectance(np.array([0]), cyan_cube.wavelengths)
+        stored = cyan_cube.data.atlas.outside.spectra.reflectance(np.array([0]), cyan_cube.wavelengths)
         own, found = (delta_e_spectra(light(name), each, measured)[0] for each in (stored, answer.reflectance[None]))
         assert found == pytest.approx(own, abs=1e-5 if digits == 16 else 0.1)
     assert answer.standard_errors == answer.error_bounds == {"FL11": pytest.approx(own, abs=1e-6)}
-    assert without_outside(cyan_cube).data.outside_spectra is None
+    assert without_outside(cyan_cube).data.atlas.outside is None
 
 
 def test_files_without_its_measurement_have_its_error_under_their_own_light(cyan_cube, tmp_path):

@@ -113,19 +113,19 @@ def test_duplicate_entries_are_warned_about_and_the_first_is_used():
     with warns("entry-duplicate") as caught:
         cube = uplift.build(twins, dim=4)
     assert "'second'" in caught[0].problem
-    own = cube.data.entry_spectra.reflectance(np.array([0]), GRID)
+    own = cube.data.atlas.spectra.reflectance(np.array([0]), GRID)
     np.testing.assert_allclose(cube.reflectance(colour), own[0], atol=1e-5)
 
 
 def test_entries_have_more_coefficients_than_nodes():
     """The nodes, and interpolated coefficients, are those of a build with as many."""
     more, same = (quietly(MACBETH, dim=4, entry_coefficients=count).data for count in (17, 9))
-    assert (more.entry_spectra.model.count, more.model.count) == (17, 9)
-    assert same.atlas.spectra is None
+    assert (more.atlas.spectra.model.count, more.model.count) == (17, 9)
+    assert same.atlas.spectra.model == same.model
     np.testing.assert_array_equal(more.points.coefficients, same.points.coefficients)
     np.testing.assert_array_equal(more.atlas.coefficients, same.atlas.coefficients)
     assert more.atlas.error.mean() < same.atlas.error.mean() / 3
-    spectra = more.entry_spectra.reflectance(np.arange(23), GRID)
+    spectra = more.atlas.spectra.reflectance(np.arange(23), GRID)
     np.testing.assert_allclose(more.sensor.rgb(spectra), more.atlas.rgb, atol=1e-6)
 
 

@@ -98,7 +98,7 @@ def test_impossible_look_is_reported_and_recorded():
 
 def test_look_that_few_coefficients_miss_is_reported(small_cube):
     screens = display_sensors(["FL11", "A"], small_cube.observer)
-    entry = small_cube.data.entry_spectra.reflectance(np.array([3]), small_cube.data.sensor.wavelengths)[0]
+    entry = small_cube.data.atlas.spectra.reflectance(np.array([3]), small_cube.data.sensor.wavelengths)[0]
     look = Look(small_cube.data.atlas.rgb[3].tolist(), {each.illuminant: each.rgb(entry).tolist() for each in screens})
     with warns("look-not-reached"):
         cube = uplift.build(dim=2, prior="smooth", coefficients=4, entry_coefficients=4, looks=look)

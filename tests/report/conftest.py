@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import uplift
+from tests.cube.hand_made import table
 from tests.helpers import with_points
 from uplift.atlas import Atlas, Entry, read_atlas
-from uplift.cube import AtlasTable
 from uplift.lattice import Status
 from uplift.lookup import Cube
 from uplift.report.assessment import assess
@@ -38,11 +38,9 @@ def crowded_cube(macbeth):
 @pytest.fixture(scope="session")
 def lossy_cube(small_cube):
     """Cube of two entries of one colour: no colour returns the second."""
-    atlas = small_cube.data.atlas
-    table = AtlasTable(
-        ("grey", "über"), atlas.rgb[[0, 0]], atlas.coefficients[:2], np.array([0.5, 0.0]), atlas.error[:2]
-    )
-    return Cube(dataclasses.replace(small_cube.data, atlas=table))
+    data, atlas = small_cube.data, small_cube.data.atlas
+    pair = table(("grey", "über"), atlas.rgb[[0, 0]], data.model, atlas.coefficients[:2], np.array([0.5, 0.0]))
+    return Cube(dataclasses.replace(data, atlas=pair))
 
 
 @pytest.fixture(scope="session")

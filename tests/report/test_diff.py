@@ -70,7 +70,7 @@ def test_entries_are_compared_by_name(small_cube, plain_cube):
     found = diff_cubes({"a": small_cube, "b": renamed}, LIGHTS)
     assert found.pairs.names[-1] == "cyan"  # outside the space, and not renamed
     nm = small_cube.data.sensor.wavelengths
-    spectra = small_cube.data.entry_spectra.reflectance(np.arange(len(names)), nm)
+    spectra = small_cube.data.atlas.spectra.reflectance(np.arange(len(names)), nm)
     np.testing.assert_allclose(found.entries.delta_e[:-1, 0], delta_e_spectra(light("D65"), spectra, spectra[::-1]))
 
 

@@ -60,8 +60,8 @@ class AtlasTable:
     """(E,) half the width of each entry box in lattice steps, 0 to 1. 0 if an earlier entry has the colour."""
     error: Array
     """(E,) ΔE00 between fitted and measured spectrum; for looks the standard error at their colours."""
-    spectra: EntrySpectra | None = None
-    """The entries with more coefficients than the nodes; None if they have as many."""
+    spectra: EntrySpectra
+    """The spectra that answer the colours of the entries, in the model of the nodes or with more coefficients."""
     measured: NDArray[np.float32] | None = None
     """(M, N) measured reflectances at the wavelengths of the sensor; None for a small atlas and in earlier files."""
     left_out: NDArray[np.float32] | None = None
@@ -85,15 +85,10 @@ class AtlasTable:
         def both(name: str) -> Array:
             return np.concatenate([getattr(self, name), getattr(more, name)])
 
-        spectra = self.spectra
-        if spectra is not None and more.spectra is not None:
-            spectra = EntrySpectra(spectra.model, np.concatenate([spectra.coefficients, more.spectra.coefficients]))
+        stored = [table.spectra.coefficients for table in (self, more)]
+        spectra = EntrySpectra(self.spectra.model, np.concatenate(stored))
         names = (*self.names, *more.names)
         return AtlasTable(names, both("rgb"), both("coefficients"), both("half_width"), both("error"), spectra)
-
-    def spectra_in(self, model: Model) -> EntrySpectra:
-        """Return the spectra that answer the colours of the entries; ``model`` is that of the nodes."""
-        return self.spectra or EntrySpectra(model, self.coefficients)
 
     def __repr__(self) -> str:
         return f"AtlasTable({len(self.names)} entries)"
@@ -116,22 +111,12 @@ class CubeData:
     """How the cube was built: version, options, names and digests of the atlas files. JSON values."""
 
     def __repr__(self) -> str:
-        sensor, spectra = self.sensor, self.atlas.spectra
-        more = "" if spectra is None else f" with {spectra.model.count} coefficients"
+        sensor, own = self.sensor, self.atlas.spectra.model
+        more = "" if own == self.model else f" with {own.count} coefficients"
         return (
             f"CubeData({self.model.name} with {self.model.count} coefficients, dim {self.lattice.dim}, "
             f"{sensor.space} under {sensor.illuminant}, {len(self.atlas.names)} entries{more})"
         )
-
-    @cached_property
-    def entry_spectra(self) -> EntrySpectra:
-        """The spectra that answer the colours of the entries, in the model of the nodes or with more coefficients."""
-        return self.atlas.spectra_in(self.model)
-
-    @cached_property
-    def outside_spectra(self) -> EntrySpectra | None:
-        """The spectra of the entries outside the RGB space; None without any."""
-        return None if self.atlas.outside is None else self.atlas.outside.spectra_in(self.model)
 
     @cached_property
     def entry_lab(self) -> Array:

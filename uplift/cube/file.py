@@ -23,6 +23,7 @@ from uplift.cube.container import (
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
 from uplift.lattice import CORNERS, Lattice, PointTable, Status
 from uplift.models import from_description
+from uplift.models.model import Model
 
 FORMAT = "uplift cube"
 VERSION = 4
@@ -148,8 +149,8 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
     arrays = {
         "nodes": data.lattice.nodes,
         **{f"sensor.{name}": getattr(data.sensor, name) for name in SENSOR},
-        **_table_arrays(atlas, "atlas"),
-        **({} if atlas.outside is None else _table_arrays(atlas.outside, "outside")),
+        **_table_arrays(atlas, "atlas", data.model),
+        **({} if atlas.outside is None else _table_arrays(atlas.outside, "outside", data.model)),
         "atlas.left_out": atlas.left_out,
         **{name: getattr(data.points, name) for name in POINTS},
     }
@@ -169,7 +170,7 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
         "version": VERSION,
         "features": [feature for feature in FEATURES if feature in announced],
         "model": data.model.describe(),
-        "entry_model": data.entry_spectra.model.describe(),
+        "entry_model": atlas.spectra.model.describe(),
         "dim": data.lattice.dim,
         "space": data.sensor.space,
         "illuminant": data.sensor.illuminant,
@@ -182,8 +183,8 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
     return tensors, metadata
 
 
-def _table_arrays(table: AtlasTable, prefix: str) -> dict[str, Any]:
-    spectra = None if table.spectra is None else table.spectra.coefficients
+def _table_arrays(table: AtlasTable, prefix: str, model: Model) -> dict[str, Any]:
+    spectra = None if table.spectra.model == model else table.spectra.coefficients
     arrays = table.rgb, table.coefficients, table.half_width, table.error, spectra, table.measured
     return {f"{prefix}.{name}": array for name, array in zip((*TABLE, "measured"), arrays, strict=True)}
 
@@ -210,8 +211,7 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
 
     def table(names: tuple[str, ...], prefix: str, **others: Any) -> AtlasTable:
         rgb, coefficients, half_width, error = (arrays[f"{prefix}.{name}"] for name in list(TABLE)[:-1])
-        entries = arrays.get(f"{prefix}.{ENTRY_COEFFICIENTS}")
-        spectra = None if entries is None else EntrySpectra(entry_model, entries)
+        spectra = EntrySpectra(entry_model, arrays.get(f"{prefix}.{ENTRY_COEFFICIENTS}", coefficients))
         measured = arrays.get(f"{prefix}.measured")
         return AtlasTable(names, rgb, coefficients, half_width, error, spectra, measured, **others)
 
@@ -289,7 +289,7 @@ def summarise(data: CubeData) -> dict[str, Any]:
     return {
         "model": data.model.describe(),
         "coefficients": data.model.count,
-        "entry_coefficients": data.entry_spectra.model.count,
+        "entry_coefficients": data.atlas.spectra.model.count,
         "dim": data.lattice.dim,
         "points": int(np.count_nonzero(present)),
         "lattice_points": data.lattice.size,

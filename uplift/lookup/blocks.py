@@ -85,7 +85,7 @@ def as_thread_count(threads: int) -> int:
 
 def as_coefficient_count(count: int | None, data: CubeData) -> int:
     """Return the number of coefficients of nodes, the default, or of entries; `OptionError` for other numbers."""
-    counts = (data.model.count, data.entry_spectra.model.count)
+    counts = (data.model.count, data.atlas.spectra.model.count)
     if count is None:
         return counts[0]
     if isinstance(count, bool) or count not in counts:

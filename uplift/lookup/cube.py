@@ -99,7 +99,7 @@ class Cube:
     @property
     def entry_coefficient_count(self) -> int:
         """Coefficients per spectrum of an atlas entry: as many as a lattice point has, or more."""
-        return self.data.entry_spectra.model.count
+        return self.data.atlas.spectra.model.count
 
     @property
     def atlas_names(self) -> tuple[str, ...]:

@@ -111,7 +111,7 @@ def mixed_refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     lattice = evaluate(data.model, _exact_lattice(data, nodes, rgb), wavelengths)
     if not nodes.hits.rows.size:
         return lattice
-    return nodes.hits.mix(lattice, evaluate(data.entry_spectra.model, _exact_entries(data, nodes), wavelengths))
+    return nodes.hits.mix(lattice, evaluate(data.atlas.spectra.model, _exact_entries(data, nodes), wavelengths))
 
 
 def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
@@ -119,7 +119,7 @@ def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     points, rows, entry = around(data, rgb).nearest()
     values = reflectance(data.model, data.points.coefficients[points], wavelengths)
     if rows.size:
-        values[rows] = data.entry_spectra.reflectance(entry, wavelengths)
+        values[rows] = data.atlas.spectra.reflectance(entry, wavelengths)
     return values
 
 
@@ -146,8 +146,8 @@ def extended_coefficients(data: CubeData, rgb: Array) -> Array:
     points, row = np.unique(nodes.points, return_inverse=True)
     lattice = extend_coefficients(data, data.points.coefficients[points])
     nodes = replace(nodes, points=row.reshape(nodes.points.shape))
-    weighted = nodes.weighted_sum(lattice, data.entry_spectra.coefficients)
-    return exact_coefficients(data, data.entry_spectra.model, rgb, weighted, extended_multipliers)
+    weighted = nodes.weighted_sum(lattice, data.atlas.spectra.coefficients)
+    return exact_coefficients(data, data.atlas.spectra.model, rgb, weighted, extended_multipliers)
 
 
 def exact_coefficients(
@@ -171,7 +171,7 @@ def extend_coefficients(data: CubeData, coefficients: Array) -> Array:
     Multipliers followed by zeros are those of the same spectrum, which has more moments.
     """
     # B p is the same with zeros for further multipliers; the moments c_j = (1/π) ∫ g cos jφ dφ of g follow for any j.
-    extended = data.entry_spectra.model.to_storage(_append_zeros(data, data.model.from_storage(coefficients)))
+    extended = data.atlas.spectra.model.to_storage(_append_zeros(data, data.model.from_storage(coefficients)))
     extended[:, : data.model.count] = coefficients
     return extended
 
@@ -186,7 +186,7 @@ def extended_multipliers(data: CubeData, rgb: Array) -> Array:
 
     Outside entry boxes they have the spectra of mode ``refined``, inside the same coefficients.
     """
-    nodes, model = around(data, rgb), data.entry_spectra.model
+    nodes, model = around(data, rgb), data.atlas.spectra.model
     extended = _append_zeros(data, _exact_lattice(data, nodes, rgb))
     if not nodes.hits.rows.size:
         return extended
@@ -219,13 +219,13 @@ def _exact_lattice(data: CubeData, nodes: Nodes, rgb: Array) -> Array:
 
 def _exact_entries(data: CubeData, nodes: Nodes) -> Array:
     """Multipliers (k, K) of the entry of each colour in a box, that have exactly the colour of the entry."""
-    entry_spectra, (entries, row) = data.entry_spectra, np.unique(nodes.hits.entry, return_inverse=True)
-    return refine_to_rgb(data, entry_spectra.model, entry_spectra.multipliers[entries], data.atlas.rgb[entries])[row]
+    atlas, (entries, row) = data.atlas, np.unique(nodes.hits.entry, return_inverse=True)
+    return refine_to_rgb(data, atlas.spectra.model, atlas.spectra.multipliers[entries], atlas.rgb[entries])[row]
 
 
 def _append_zeros(data: CubeData, multipliers: Array) -> Array:
     """Multipliers (m, K) in the model of the entries of the spectra with multipliers (m, C)."""
-    return np.pad(multipliers, ((0, 0), (0, data.entry_spectra.model.count - data.model.count)))
+    return np.pad(multipliers, ((0, 0), (0, data.atlas.spectra.model.count - data.model.count)))
 
 
 def _mix_entries(data: CubeData, nodes: Nodes, lattice: Array, wavelengths: Array) -> Array:
@@ -233,4 +233,4 @@ def _mix_entries(data: CubeData, nodes: Nodes, lattice: Array, wavelengths: Arra
     if not nodes.hits.rows.size:
         return lattice
     entries, row = np.unique(nodes.hits.entry, return_inverse=True)
-    return nodes.hits.mix(lattice, data.entry_spectra.reflectance(entries, wavelengths)[row])
+    return nodes.hits.mix(lattice, data.atlas.spectra.reflectance(entries, wavelengths)[row])

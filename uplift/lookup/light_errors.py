@@ -54,7 +54,7 @@ def light_errors(data: CubeData, light: Light) -> LightErrors:
     at, rows = data.sensor.wavelengths, np.arange(len(measured))
     missed = delta_e_spectra(light, left_out, measured)
     plain = delta_e_spectra(light, reflectance(data.model, data.atlas.coefficients[rows], at), measured)
-    stored = delta_e_spectra(light, data.entry_spectra.reflectance(rows, at), measured)
+    stored = delta_e_spectra(light, data.atlas.spectra.reflectance(rows, at), measured)
     expected = expected_error(data.entry_lab, missed, plain)
     entries = np.tile(np.array(expected.radii) * np.sqrt(expected.floor), (len(data.atlas.names), 1))
     entries[rows] = stored[:, None]
@@ -63,14 +63,14 @@ def light_errors(data: CubeData, light: Light) -> LightErrors:
 
 def outside_errors(data: CubeData, light: Light | None) -> Array:
     """ΔE00 (O,) between stored and measured spectrum of the entries outside the RGB space, NaN if it is not known."""
-    table, spectra = data.atlas.outside, data.outside_spectra
-    if table is None or spectra is None:
+    table = data.atlas.outside
+    if table is None:
         return np.zeros(0)
     if light is None or light.name == data.error_illuminant:
         return table.error
     if table.measured is None:
         return np.full(len(table.names), np.nan)
-    stored = spectra.reflectance(np.arange(len(table.names)), data.sensor.wavelengths)
+    stored = table.spectra.reflectance(np.arange(len(table.names)), data.sensor.wavelengths)
     return delta_e_spectra(light, stored, table.measured)
 
 

@@ -108,7 +108,7 @@ def tabulate(data: CubeData, wavelengths: Array, dtype: DTypeLike = np.float64, 
     evaluate_rows = partial(reflectance, data.model, wavelengths=wavelengths)
     stored = data.points.coefficients[data.points.present]
     present = blockwise(evaluate_rows, stored, len(wavelengths), dtype, threads)
-    entries = data.entry_spectra.reflectance(np.arange(len(data.atlas.names)), wavelengths)
+    entries = data.atlas.spectra.reflectance(np.arange(len(data.atlas.names)), wavelengths)
     exact = partial(_exact_spectra, data, wavelengths)
     return NodeTable.of_present_points(data, present, entries.astype(dtype, copy=False), exact)
 
@@ -119,7 +119,7 @@ def tabulate_coefficients(data: CubeData, count: int, dtype: DTypeLike = np.floa
     entries, exact = data.atlas.coefficients, partial(_exact_coefficients, coefficients, data)
     if count != data.model.count:
         present = blockwise(partial(extend_coefficients, data), present, count, dtype, threads)
-        entries = data.entry_spectra.coefficients
+        entries = data.atlas.spectra.coefficients
         exact = partial(_exact_coefficients, extended_coefficients, data)
     present, entries = (each.astype(dtype, copy=False) for each in (present, entries))
     return NodeTable.of_present_points(data, present, entries, exact)

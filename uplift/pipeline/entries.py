@@ -60,13 +60,14 @@ class Constraints:
 
     def table(self, model: Model, half_width: Array) -> AtlasTable:
         """Return the part of a cube that records the constraints; entries with more coefficients have them there."""
-        spectra = None
+        coefficients = model.to_storage(self.at_nodes.multipliers)
+        spectra = EntrySpectra(model, coefficients)
         if self.at_entries is not self.at_nodes and len(self.names):
             spectra = EntrySpectra(self.entry_model, self.entry_model.to_storage(self.at_entries.multipliers))
         return AtlasTable(
             self.names,
             self.at_nodes.rgb,
-            model.to_storage(self.at_nodes.multipliers),
+            coefficients,
             half_width,
             self.at_entries.error,
             spectra,

@@ -72,7 +72,7 @@ class LookTargets:
 
     def describe(self, table: AtlasTable, model: Model, sensor: Sensor) -> dict[str, Any]:
         """Return what a cube records of its looks, in JSON values, and warn of those that its answers miss."""
-        stored = table.spectra_in(model)
+        stored = table.spectra
         answers = stored.reflectance(np.arange(table.measured_count, len(table.names)), sensor.wavelengths)
         records = []
         for look, screens, goal, design, answer in zip(

@@ -72,8 +72,8 @@ def pair_entries(first: CubeData, second: CubeData) -> EntryPairs:
         names=shared,
         rgb=tables[0].rgb[rows[0]],
         spectra=(
-            tables[0].spectra_in(first.model).reflectance(rows[0], wavelengths),
-            tables[1].spectra_in(second.model).reflectance(rows[1], wavelengths),
+            tables[0].spectra.reflectance(rows[0], wavelengths),
+            tables[1].spectra.reflectance(rows[1], wavelengths),
         ),
         removed=tuple(name for name in row_of[0] if name not in row_of[1]),
         added=tuple(name for name in row_of[1] if name not in row_of[0]),

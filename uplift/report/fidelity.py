@@ -116,7 +116,7 @@ def from_other_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
 def from_stored_entries(data: CubeData) -> EntryQuery:
     """Query the cube's own entries; without measurements, targets are the stored spectra."""
     table = data.atlas.with_outside
-    rows, spectra = np.arange(len(table.names)), table.spectra_in(data.model)
+    rows, spectra = np.arange(len(table.names)), table.spectra
     return EntryQuery(table.names, table.rgb, spectra.reflectance(rows, data.sensor.wavelengths), rows)
 
 

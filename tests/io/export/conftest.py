@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tests.helpers import with_points
+from uplift.cube import EntrySpectra
 from uplift.lookup import Cube, load
 from uplift.models import Moments
 
@@ -13,8 +14,8 @@ from uplift.models import Moments
 def warped_cube(small_cube, request) -> Cube:
     """Cube of five of nine moments, reinterpreted with another wavelength range and warp."""
     data = small_cube.data
-    atlas = replace(data.atlas, coefficients=data.atlas.coefficients[:, :5], spectra=None)
-    model = Moments(5, 400, 700, request.param)
+    model, coefficients = Moments(5, 400, 700, request.param), data.atlas.coefficients[:, :5]
+    atlas = replace(data.atlas, coefficients=coefficients, spectra=EntrySpectra(model, coefficients))
     return Cube(with_points(replace(data, model=model, atlas=atlas), coefficients=data.points.coefficients[:, :5]))
 
 

@@ -33,7 +33,7 @@ def test_npz_has_all_arrays_and_multipliers_of_the_spectra(small_cube, tmp_path)
         assert tuple(arrays["atlas.names"]) == data.atlas.names
         assert json.loads(str(arrays["metadata"]))["model"] == data.model.describe()
         lattice = evaluate(data.model, arrays["multipliers"], [450, 650])
-        atlas = evaluate(data.entry_spectra.model, arrays["atlas.multipliers"], [450, 650])
+        atlas = evaluate(data.atlas.spectra.model, arrays["atlas.multipliers"], [450, 650])
     np.testing.assert_allclose(lattice, reflectance(data.model, data.points.coefficients, [450, 650]), atol=1e-9)
     np.testing.assert_allclose(atlas, small_cube.reflectance(data.atlas.rgb, [450, 650]), atol=1e-9)
 
@@ -43,8 +43,10 @@ def test_npz_has_the_entries_outside_the_space(cyan_cube, tmp_path):
     with np.load(tmp_path / "cube.npz", allow_pickle=False) as arrays:
         assert arrays["outside.names"].tolist() == ["cyan"]
         np.testing.assert_array_equal(arrays["outside.rgb"], cyan_cube.data.atlas.outside.rgb)
-        found = evaluate(cyan_cube.data.entry_spectra.model, arrays["outside.multipliers"], [450, 650])
-    np.testing.assert_allclose(found, cyan_cube.data.outside_spectra.reflectance(np.array([0]), [450, 650]), atol=1e-9)
+        found = evaluate(cyan_cube.data.atlas.spectra.model, arrays["outside.multipliers"], [450, 650])
+    np.testing.assert_allclose(
+        found, cyan_cube.data.atlas.outside.spectra.reflectance(np.array([0]), [450, 650]), atol=1e-9
+    )
 
 
 def read(path):

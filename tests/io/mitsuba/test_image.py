@@ -56,7 +56,7 @@ def test_a_texel_of_an_entry_s_colour_has_the_entry_s_spectrum(texture, spectrum
     atlas = small_cube.data.atlas
     image = np.array([[atlas.rgb[3], [0.01, 0.01, 0.2]]], dtype=np.float32)
     found = texture(image, filter_type="nearest")
-    entry = small_cube.data.entry_spectra.reflectance(np.array([3]), np.array([450.0, 650.0]))[0]
+    entry = small_cube.data.atlas.spectra.reflectance(np.array([3]), np.array([450.0, 650.0]))[0]
     np.testing.assert_allclose(spectrum(found, (0.25, 0.5), [450, 650]), entry, atol=1e-5)
     other = small_cube.reflectance(image[0, 1], [450, 650], mode="refined")
     np.testing.assert_allclose(spectrum(found, (0.75, 0.5), [450, 650]), other, atol=1e-5)
@@ -66,7 +66,7 @@ def test_texels_of_an_entry_outside_the_space_have_its_spectrum(mi, spectrum, cy
     """A bitmap, an OpenEXR file and a colour; beyond the entry a colour is mapped."""
     cyan_cube.save(tmp_path / "cyan.uplift")
     at, rgb = np.array([450.0, 650.0]), cyan_cube.data.atlas.outside.rgb[0]
-    entry = cyan_cube.data.outside_spectra.reflectance(np.array([0]), at)[0]
+    entry = cyan_cube.data.atlas.outside.spectra.reflectance(np.array([0]), at)[0]
     pixels = np.array([[rgb, [1, 0.2, 0]]], dtype=np.float32)
     write_exr(tmp_path / "image.exr", planes(pixels))
     every = {"type": "uplift", "cube": str(tmp_path / "cyan.uplift")}

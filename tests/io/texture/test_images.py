@@ -337,7 +337,7 @@ def test_pixels_of_an_entry_outside_the_space_have_its_spectrum(cyan_cube, conve
     np.testing.assert_allclose(colours[0], pixels[0], rtol=0, atol=1e-6)
     tolerance = 1e-3 if encoding is texture.Moments else 1e-4
     np.testing.assert_allclose(data.sensor.rgb(numbers), colours, rtol=0, atol=tolerance)
-    spectra = data.outside_spectra
+    spectra = data.atlas.outside.spectra
     if encoding is not texture.Spectrum:
         spectra = EntrySpectra(model, data.atlas.outside.coefficients)
     stored = spectra.reflectance(np.array([0]), data.sensor.wavelengths)[0]

@@ -32,7 +32,7 @@ def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
     }
     for prefix, table in (("atlas", data.atlas), ("outside", data.atlas.outside)):
         if table is not None:
-            arrays[f"{prefix}.multipliers"] = table.spectra_in(data.model).multipliers
+            arrays[f"{prefix}.multipliers"] = table.spectra.multipliers
             arrays[f"{prefix}.names"] = np.array(table.names, dtype=np.str_)
     with atomic_write(path, force=force) as temporary, temporary.open("wb") as file:
         np.savez(file, allow_pickle=False, **arrays)

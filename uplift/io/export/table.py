@@ -56,7 +56,7 @@ def make_table(data: CubeData, mode: str) -> Table:
     rows[:, : model.count] = np.concatenate(stored)
     rows[:size, model.count] = tags
     sections: dict[str, NDArray[Any]] = {
-        "ENTRIES": data.entry_spectra.multipliers,
+        "ENTRIES": data.atlas.spectra.multipliers,
         "NODES": data.lattice.nodes.astype(np.float32),
         "BINS": _bins(data.lattice.nodes.astype(np.float32)),
         "LISTS": lists,
@@ -66,7 +66,7 @@ def make_table(data: CubeData, mode: str) -> Table:
     numbers, offsets = concatenate({"ROWS": rows, **sections, **moving})
     constants = {
         "COUNT": model.count,
-        "ENTRY_COUNT": data.entry_spectra.model.count,
+        "ENTRY_COUNT": data.atlas.spectra.model.count,
         "STRIDE": stride,
         "DIM": data.lattice.dim,
         "LATTICE": size,

@@ -76,7 +76,7 @@ def _make(props: Any) -> Any:
         cube, method = _cube(props), str(props.get("out_of_gamut", "error"))
         if cube.data.outside_boxes.find(rgb[None]).rows.size:
             (_, multipliers), _ = prepare_texels(cube, method, of_entries=True).convert(rgb[None].astype(np.float32))
-            return _constant(evaluate(cube.data.entry_spectra.model, multipliers.astype(float), at)[0])
+            return _constant(evaluate(cube.data.atlas.spectra.model, multipliers.astype(float), at)[0])
         return _constant(cube.reflectance(map_to_gamut(rgb, cube.data.sensor, method).rgb, at))
     texels, placement = _texels(props, is_light=is_light), Placement.read(props)
     _warn_in_scalar_variants("texture")

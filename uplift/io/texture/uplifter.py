@@ -147,10 +147,10 @@ class Spectrum(PixelEncoding):
     def pixels(self, cube: Cube, threads: int) -> Pixels:
         from uplift.lookup import bulk
 
-        at, spectra = as_wavelengths(self.wavelengths, cube.wavelengths), cube.data.outside_spectra
+        at, entries = as_wavelengths(self.wavelengths, cube.wavelengths), cube.data.atlas.outside
         channels, outside = spectral_channels("T", at), None
-        if spectra is not None:
-            outside = spectra.reflectance(np.arange(len(spectra.coefficients)), at).astype(np.float32)
+        if entries is not None:
+            outside = entries.spectra.reflectance(np.arange(len(entries.names)), at).astype(np.float32)
         sample = bulk.spectra(cube, self.wavelengths, threads=threads)
         return Pixels(channels, sample, outside, details={"wavelengths": at.tolist()})
 
@@ -190,12 +190,12 @@ class Multipliers(PixelEncoding):
     depths = ("float",)
 
     def pixels(self, cube: Cube, threads: int) -> Pixels:
-        data, entries, spectra = cube.data, cube.data.atlas.outside, cube.data.outside_spectra
+        data, entries = cube.data, cube.data.atlas.outside
         function, model, outside = partial(refined_multipliers, data), data.model, None
         if self.of_entries:
-            function, model = partial(extended_multipliers, data), data.entry_spectra.model
-        if entries is not None and spectra is not None:
-            own = spectra.multipliers if self.of_entries else data.model.from_storage(entries.coefficients)
+            function, model = partial(extended_multipliers, data), data.atlas.spectra.model
+        if entries is not None:
+            own = entries.spectra.multipliers if self.of_entries else data.model.from_storage(entries.coefficients)
             outside = own.astype(np.float32)
 
         def sample(rgb: Floats) -> Floats:

@@ -82,7 +82,7 @@ def prepare_lookup(task: Task, options: CubeOptions, mode: str, dtype: str) -> P
         return np.asarray(cube.reflectance(rgb, within(cube, wavelengths), mode, dtype=dtype))
 
     data = cube.data
-    size = nbytes(data.points.coefficients, data.lattice.nodes, data.atlas.rgb, data.entry_spectra.coefficients)
+    size = nbytes(data.points.coefficients, data.lattice.nodes, data.atlas.rgb, data.atlas.spectra.coefficients)
     return PreparedMethod(uplift, size, seconds, loading)
 
 
