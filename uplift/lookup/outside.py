@@ -40,7 +40,8 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
             hint="reduce its luminance, where white has Y = 1, or its distance from white",
         )
     # Start from the nearest colour inside, and near an entry outside from its spectrum, unless that answers alone.
-    hits, entries = data.outside_boxes.find(rgb), data.atlas.outside and data.atlas.outside.spectra
+    hits, outside = data.outside_boxes.find(rgb), data.atlas.outside
+    entries = None if outside is None else outside.spectra
     has_lattice = np.ones(len(rgb), dtype=bool)
     has_lattice[hits.rows[hits.lattice_weight == 0]] = False
     start = data.model.from_storage(coefficients(data, map_to_gamut(rgb[has_lattice], data.sensor, MAPPING).rgb))
