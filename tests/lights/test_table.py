@@ -22,7 +22,7 @@ def forge(data, path, change):
     """Write ``data`` after ``change(tensors, metadata)``, with the digest of the changed content."""
     tensors, metadata = table._tensors(data), table._metadata(data)
     change(tensors, metadata)
-    container.save(tensors, metadata, path)
+    container.save((tensors, metadata), path, table.KIND, lambda _: None, force=True)
     return path
 
 

@@ -68,6 +68,8 @@ class Measurements:
 
 def to_atlas(document: Document, measurements: Measurements, format_name: str, measured: str = "auto") -> Atlas:
     """Validate the spectra of a file: turn descending ones round, and scale all of them by one number."""
+    if measurements.refusal is not None:
+        raise measurements.refusal
     rows = [np.asarray(spectrum.values, dtype=float) for spectrum in measurements.spectra]
     scale, scale_note = _scale(document.location, measurements, rows, measured)
     # One scale for all spectra: a dark one alone does not show whether it is in percent.
@@ -139,7 +141,7 @@ def _scale(
     top = int(np.argmax(highest))
     problem = f"values up to {highest[top]:g} are read as percent and divided by 100"
     entry = measurements.spectra[top].name
-    warnings.warn(UpliftWarning(problem, code="values-in-percent", path=location.path, entry=entry), stacklevel=5)
+    warnings.warn(UpliftWarning(problem, code="values-in-percent", path=location.path, entry=entry), stacklevel=4)
     return PERCENT, f"scale: percent, by values up to {highest[top]:g}"
 
 

@@ -114,18 +114,19 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
     Resampled
     """
     grid = np.asarray(wavelengths, dtype=np.float64)
-    raw, alike = np.empty((len(atlas), len(grid))), defaultdict[bytes, list[int]](list)
-    for row, entry in enumerate(atlas):
+    entries, alike = atlas.entries, defaultdict[bytes, list[int]](list)
+    raw = np.empty((len(entries), len(grid)))
+    for row, entry in enumerate(entries):
         alike[entry.wavelengths.tobytes()].append(row)
     for rows in alike.values():
-        values = np.stack([atlas[row].values for row in rows])
-        raw[rows] = pchip(atlas[rows[0]].wavelengths, values, grid)
+        values = np.stack([entries[row].values for row in rows])
+        raw[rows] = pchip(entries[rows[0]].wavelengths, values, grid)
     # Distance from [0, 1]: x − 1 above, −x below
     excess = np.maximum(raw - 1.0, -raw)
     clips = []
     for row in np.flatnonzero(excess.max(axis=1, initial=0) > NOISE).tolist():
         worst = int(excess[row].argmax())
-        clips.append(Clip(atlas[row].name, float(raw[row, worst]), float(grid[worst])))
+        clips.append(Clip(entries[row].name, float(raw[row, worst]), float(grid[worst])))
     return Resampled(np.clip(raw, 0.0, 1.0), tuple(clips))
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from uplift.atlas.atlas import Atlas, Entry, Header, Source, merge
 from uplift.atlas.document import SourceLocation, read_document, truncate
 from uplift.atlas.formats import art, read_any
-from uplift.atlas.measurements import MEASURED, Measured
+from uplift.atlas.measurements import MEASURED, Measured, to_atlas
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OptionError, OutputError, UpliftWarning
 from uplift.common.files import write_text
@@ -68,8 +68,11 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
     if measured not in MEASURED:
         problem = f"unknown scale of measured values '{truncate(str(measured))}'"
         raise OptionError(problem, hint=f"use one of {', '.join(MEASURED)}")
-    found = list(map(find_atlas_file, paths))
-    atlas = merge(read_any(read_document(path), measured) for path in found)
+    atlases = []
+    for document in map(read_document, list(map(find_atlas_file, paths))):
+        chosen, found = read_any(document)
+        atlases.append(found if isinstance(found, Atlas) else to_atlas(document, found, chosen.name, measured))
+    atlas = merge(atlases)
     for skipped in atlas.skipped:
         warnings.warn(skipped.warning(), stacklevel=2)
     return atlas

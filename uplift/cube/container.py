@@ -55,16 +55,7 @@ class Stored(NamedTuple):
     feature: str = ""
 
 
-def save(tensors: Tensors, metadata: Mapping[str, Any], path: Path) -> None:
-    """Write arrays and metadata with their digest."""
-    from safetensors.numpy import save as encode
-
-    complete = {**metadata, "digest": content_digest(tensors, metadata)}
-    # safetensors' own save_file uses another temporary file, which would remain if this process were killed.
-    path.write_bytes(encode(tensors, metadata={KEY: _json(complete)}))
-
-
-def replace_file(
+def save(
     content: tuple[Tensors, Mapping[str, Any]],
     path: str | os.PathLike[str],
     kind: Kind,
@@ -72,10 +63,15 @@ def replace_file(
     *,
     force: bool,
 ) -> None:
-    """Write arrays and metadata atomically. The new file is read back before it replaces an existing one."""
+    """Write arrays and metadata with their digest, atomically. The new file is read back before it replaces another."""
+    from safetensors.numpy import save as encode
+
+    tensors, metadata = content
     with atomic_write(path, force=force) as temporary:
         try:
-            save(*content, temporary)
+            complete = {**metadata, "digest": content_digest(tensors, metadata)}
+            # safetensors' own save_file uses another temporary file, which would remain if this process were killed.
+            temporary.write_bytes(encode(tensors, metadata={KEY: _json(complete)}))
             read(temporary)
         except CubeFileError as error:
             raise OutputError(

@@ -17,8 +17,8 @@ from uplift.cube.container import (
     check_metadata,
     content_digest,
     load,
-    replace_file,
     require,
+    save,
 )
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
 from uplift.lattice import CORNERS, Lattice, PointTable, Status
@@ -130,7 +130,7 @@ METADATA = {
 
 def write(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
     """Write a cube file, atomically. The new file is read back before it replaces an existing one."""
-    replace_file(contents(data), path, KIND, read, force=force)
+    save(contents(data), path, KIND, read, force=force)
 
 
 def read(path: str | os.PathLike[str]) -> CubeData:
@@ -159,9 +159,9 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
         if array is not None:  # in a type that its file may have: its own, or else the most precise one
             types = ARRAYS[name].types
             tensors[name] = np.ascontiguousarray(array, array.dtype if array.dtype.name in types else types[-1])
-    if data.complete_cells is not None:
+    present = data.points.present
+    if not present.all():
         # A sparse file has the rows of the present points, and their numbers.
-        present = data.points.present
         tensors |= {name: np.ascontiguousarray(tensors[name][present]) for name in POINTS if name in tensors}
         tensors["points"] = np.flatnonzero(present).astype(np.uint32)
     announced = {ARRAYS[name].feature for name in tensors}

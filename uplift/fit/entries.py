@@ -190,16 +190,17 @@ class FittedEntries(NamedTuple):
 def fit_entries(problem: Problem, measured: Array, rgb: Array, **weights: float) -> FittedEntries:
     """Fit measured reflectances (E, N) by the spectrum model, and meet their linear RGB (E, 3) to the tolerance.
 
-    ``weights`` are those of `objective`, min ‖g − m‖² + Σ |w ΔL*a*b*|².
+    ``weights`` are those of `objective`, min ‖g − m‖² + Σ |w ΔL*a*b*|². The order of the entries does not change the
+    rounding of sums.
     """
-    goal = objective(problem, **weights)
+    goal, order = objective(problem, **weights), np.lexsort(rgb.T)
+    measured, rgb = measured[order], rgb[order]
     near = minimise(goal, measured)
     # The minimum has nearly the colour; of all spectra that have it exactly, the nearest to the minimum is taken.
     multipliers = solve_in_numpy(problem.forward, near, rgb, problem.tolerance, MAX_STEPS)
     spectra = np.asarray(problem.model.to_reflectance(multipliers @ problem.forward.basis.T))
-    return FittedEntries(
-        rgb, measured, multipliers, delta_e_spectra(problem.error_light or problem.sensor.light, spectra, measured)
-    )
+    error = delta_e_spectra(problem.error_light or problem.sensor.light, spectra, measured)
+    return FittedEntries(rgb, measured, multipliers, error).rows(np.argsort(order))
 
 
 def join_entries(*parts: FittedEntries) -> FittedEntries:

@@ -89,7 +89,7 @@ def seed(lattice: Lattice, rgb: Array) -> Seeds:
     corner of its cell: the "better approach" of the thesis.
     """
     cells, _ = lattice.corners(rgb)
-    distance = np.linalg.norm(lattice.points[cells] - rgb[:, None, :], axis=-1)
+    distance = np.linalg.norm(lattice.target(cells) - rgb[:, None, :], axis=-1)
     by_distance = np.argsort(distance, axis=1, kind="stable")
     queue = np.take_along_axis(cells, by_distance, axis=1)
     nearest = np.take_along_axis(distance, by_distance, axis=1)[:, 0]
@@ -145,7 +145,7 @@ def lattice_error(problem: Problem, lattice: Lattice, prior: Prior, blend: Blend
     """
     seeds = seed(lattice, entries.rgb)
     points = np.sort(seeds.points)
-    target = lattice.points[points]
+    target = lattice.target(points)
     start = initial_guess(points, target, prior, seeds, entries.multipliers, blend)
     fitted = problem.solve(target, start, MAX_PASSES, prior=start).multipliers
     spectra, own = (

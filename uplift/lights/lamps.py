@@ -7,7 +7,7 @@ import numpy as np
 
 from uplift.atlas.atlas import Atlas, merge
 from uplift.atlas.document import Document, read_document, truncate
-from uplift.atlas.formats import recognise
+from uplift.atlas.formats import read_any
 from uplift.atlas.measurements import Measurements, to_atlas
 from uplift.colorimetry import tables
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, matching_functions
@@ -54,8 +54,7 @@ def read_lamps(*paths: StrPath) -> Atlas:
 
 
 def _read(document: Document) -> Atlas:
-    chosen = recognise(document)
-    found = chosen.read(document)
+    chosen, found = read_any(document)
     stated = REFLECTANCES if isinstance(found, Atlas) else found.material
     if isinstance(found, Atlas) or stated:
         problem = f"the file states '{truncate(stated)}', not the power of a lamp"
@@ -74,4 +73,4 @@ def _scaled(document: Document, measurements: Measurements) -> Measurements:
                 "a lamp must have power, got none above 0", "remove the lamp"
             )
         spectra.append(replace(spectrum, values=values / highest))
-    return replace(measurements, spectra=tuple(spectra), scale=None)
+    return replace(measurements, spectra=tuple(spectra), scale=None, refusal=None)

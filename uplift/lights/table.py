@@ -20,8 +20,8 @@ from uplift.cube.container import (
     check_metadata,
     content_digest,
     load,
-    replace_file,
     require,
+    save,
 )
 from uplift.cube.file import ENTRIES, MAX_CONDITION, PROVENANCE
 from uplift.lights.discs import LampEntries
@@ -99,7 +99,7 @@ def write_emission(data: EmissionData, path: str | os.PathLike[str], *, force: b
 
     The new file is read back before it replaces an existing one.
     """
-    replace_file((_tensors(data), _metadata(data)), path, KIND, read_emission, force=force)
+    save((_tensors(data), _metadata(data)), path, KIND, read_emission, force=force)
 
 
 def read_emission(path: str | os.PathLike[str]) -> EmissionData:

@@ -88,14 +88,15 @@ def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, Measu
     # t = W m of measured reflectances m
     rgb = sensor.rgb(measured)
     inside = sensor.contains(rgb)
+    count = len(atlas.entries)
     hint = ""
     if not inside.all():
         space = smallest_space(resample(atlas, grid()).values, sensor.illuminant, sensor.observer)
         hint = f"none of {', '.join(COMMON_SPACES)} holds all entries"
         if space is not None:
             hint = f'build with --space "{space}" to have all entries in the lattice'
-    if (len(atlas) or atlas.skipped) and not inside.any():
-        problem = f"no entry of the atlas is within {sensor.space}: {len(atlas)} outside, {len(atlas.skipped)} skipped"
+    if (count or atlas.skipped) and not inside.any():
+        problem = f"no entry of the atlas is within {sensor.space}: {count} outside, {len(atlas.skipped)} skipped"
         raise AtlasError(problem, code="atlas-out-of-gamut", hint=hint)
     names = np.array(atlas.names, dtype=object)
     for row in np.flatnonzero(~inside):
@@ -110,14 +111,9 @@ def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, Measu
 
 def fit_constraints(problem: Problem, entry_model: Model, entries: MeasuredEntries) -> Constraints:
     """Fit measured entries by the models of nodes and of entries, which may be the same."""
-    order = np.lexsort(entries.rgb.T)  # not in that of the atlas, on which rounding would depend
-
-    def fitted(model: Model) -> FittedEntries:
-        found = fit_entries(replace(problem, model=model), entries.reflectances[order], entries.rgb[order])
-        return found.rows(np.argsort(order))
-
-    at_nodes = fitted(problem.model)
-    at_entries = at_nodes if entry_model == problem.model else fitted(entry_model)
+    at_nodes = at_entries = fit_entries(problem, entries.reflectances, entries.rgb)
+    if entry_model != problem.model:
+        at_entries = fit_entries(replace(problem, model=entry_model), entries.reflectances, entries.rgb)
     return Constraints(entries.names, entry_model, at_nodes, at_entries)
 
 

@@ -1,6 +1,6 @@
 """Build options and their validation."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
 from numbers import Integral, Real
 from typing import Any, Literal, get_args
@@ -91,28 +91,32 @@ class Options:
     def __post_init__(self) -> None:
         for field in fields(self):
             object.__setattr__(self, field.name, _plain(field.name, field.type, getattr(self, field.name)))
-        low, high = MAX_RANGE
-        shown = f"got {self.shortest:g} to {self.longest:g}"
-        limits = f"the range must hold {START:g} to {END:g} nm and lie within {low:g} to {high:g} nm"
-        _require(low <= self.shortest <= START < END <= self.longest <= high, f"{limits}, {shown}")
-        # A rebuild has the sensitivities of a camera at the wavelengths of the cube only.
-        steps = [step for step in STEPS if step <= STEP or self.space != CAMERA]
-        allowed = ", ".join(f"{step:g}" for step in steps)
-        _require(self.step in steps, f"step of {self.space} must be one of {allowed} nm, got {self.step:g}", "use 5")
-        multiple = f"the range must be a multiple of the step of {self.step:g} nm"
-        _require((self.longest - self.shortest) % self.step == 0, f"{multiple}, {shown}", "use a step of 1")
+        for problem, hint in self._faults():
+            raise OptionError(problem, hint=hint)
         self.spectrum_model()
         for option, names in CHOICES.items():
             if getattr(self, option) not in names:
                 raise unknown_name(getattr(self, option), [name for name in names if name != CUSTOM], option)
-        _require(
-            self.neutral == "expected" or self.growth != "neighbours",
-            "neutral='flat' does not apply to growth='neighbours', whose nodes start from their neighbours",
-            "use another growth",
-        )
-        _require(
-            self.dim == AUTO or self.dim >= 2, f"dim must be at least 2, got {format_value(self.dim)}", "use dim=2"
-        )
+
+    def _faults(self) -> Iterator[tuple[str, str]]:
+        """Yield problems of the values, with hints. The first one counts."""
+        low, high = MAX_RANGE
+        if not low <= self.shortest <= START < END <= self.longest <= high:
+            limits = f"the range must hold {START:g} to {END:g} nm and lie within {low:g} to {high:g} nm"
+            yield f"{limits}, got {self.shortest:g} to {self.longest:g}", ""
+        # A rebuild has the sensitivities of a camera at the wavelengths of the cube only.
+        steps = [step for step in STEPS if step <= STEP or self.space != CAMERA]
+        if self.step not in steps:
+            allowed = ", ".join(f"{step:g}" for step in steps)
+            yield f"step of {self.space} must be one of {allowed} nm, got {self.step:g}", "use 5"
+        if (self.longest - self.shortest) % self.step != 0:
+            multiple = f"the range must be a multiple of the step of {self.step:g} nm"
+            yield f"{multiple}, got {self.shortest:g} to {self.longest:g}", "use a step of 1"
+        if self.neutral == "flat" and self.growth == "neighbours":
+            problem = "neutral='flat' does not apply to growth='neighbours', whose nodes start from their neighbours"
+            yield problem, "use another growth"
+        if self.dim != AUTO and self.dim < 2:
+            yield f"dim must be at least 2, got {format_value(self.dim)}", "use dim=2"
         entries = self.entry_coefficients if self.model == Moments.name else MAX_COUNT
         for name, value, least, most in (
             ("number of lights", len(self.lights), 1, MAX_LIGHTS),
@@ -120,7 +124,8 @@ class Options:
             ("threshold", self.threshold, MIN_THRESHOLD, MAX_THRESHOLD),
             ("auto_tolerance", self.auto_tolerance, 0, MAX_AUTO_TOLERANCE),
         ):
-            _require(least <= value <= most, f"{name} must be in [{least:g}, {most:g}], got {format_value(value)}")
+            if not least <= value <= most:
+                yield f"{name} must be in [{least:g}, {most:g}], got {format_value(value)}", ""
 
     def spectrum_model(self, coefficients: int | None = None) -> Model:
         """Create the spectrum model, from `shortest` to `longest` nm, of the nodes or of other moments."""
@@ -141,11 +146,6 @@ def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
         current.setdefault("entry_coefficients", current["coefficients"])
     current = {"prior": "smooth", "leave_out": (), **current}  # the defaults up to file version 3
     return {name: tuple(value) if isinstance(value, list) else value for name, value in current.items()}
-
-
-def _require(valid: bool, problem: str, hint: str = "") -> None:
-    if not valid:
-        raise OptionError(problem, hint=hint)
 
 
 def _plain(name: str, kind: Any, value: Any) -> Any:

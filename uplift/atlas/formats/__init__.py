@@ -7,7 +7,7 @@ from typing import Any
 
 from uplift.atlas.atlas import Atlas
 from uplift.atlas.document import Document
-from uplift.atlas.measurements import Measurements, to_atlas
+from uplift.atlas.measurements import Measurements
 
 LIBRARY = ".sli"
 """Suffix of the numbers of an ENVI library, which have no mark: its header is another file."""
@@ -43,20 +43,6 @@ class Format:
     extra: str = ""
     written: bool = False
 
-    def read(self, document: Document) -> Measurements | Atlas:
-        """Read a document of the format.
-
-        Parameters
-        ----------
-        document : Document
-            The file.
-
-        Returns
-        -------
-        Measurements or Atlas
-        """
-        return import_module(f"{__name__}.{self.module}").read(document)
-
 
 XML = r"\A\s*<(?s:.{0,4000}?<)?(?:[\w.-]+:)?"
 """Text before the name of an element near the beginning of an XML file."""
@@ -79,23 +65,11 @@ FORMATS = (
 """Formats; the last one takes all other files."""
 
 
-def read_any(document: Document, measured: str = "auto") -> Atlas:
-    """Read a document by the first format that recognises it. Raise `AtlasError`."""
-    chosen = recognise(document)
-    found = chosen.read(document)
-    if isinstance(found, Atlas):
-        return found
-    if found.refusal is not None:
-        raise found.refusal
-    return to_atlas(document, found, chosen.name, measured)
-
-
-def recognise(document: Document) -> Format:
-    """Return the first format whose pattern a document has."""
+def read_any(document: Document) -> tuple[Format, Measurements | Atlas]:
+    """Read a document by the first format whose pattern it has, and return both. Raise `AtlasError`."""
     for each in FORMATS:
         content: Any = document.data if isinstance(each.pattern, bytes) else document.text
-        if re.search(each.pattern, content):
-            return each
-        if LIBRARY in each.suffixes and document.path.lower().endswith(LIBRARY):
-            return each
-    return FORMATS[-1]
+        is_library = LIBRARY in each.suffixes and document.path.lower().endswith(LIBRARY)
+        if is_library or re.search(each.pattern, content):
+            break  # the last one has every document
+    return each, import_module(f"{__name__}.{each.module}").read(document)

@@ -37,7 +37,7 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas
 from uplift.atlas.document import read_document
-from uplift.atlas.formats import recognise
+from uplift.atlas.formats import read_any
 from uplift.colorimetry import Sensor
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError
@@ -225,7 +225,7 @@ def read_constants(path: StrPath, wavelengths: Array) -> Array:
     S' = B' + F' and S = B + F may be in the table too; they must be these sums. Raises `AtlasError`.
     """
     document = read_document(path)
-    found, samples = recognise(document).read(document), {}
+    (_, found), samples = read_any(document), {}
     for spectrum in () if isinstance(found, Atlas) else found.spectra:
         nm, values = np.asarray(spectrum.wavelengths, dtype=float), np.asarray(spectrum.values, dtype=float)
         if not (np.isfinite(values) & (values >= 0)).all():
