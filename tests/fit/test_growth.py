@@ -1,6 +1,7 @@
 """Growth, improvement and storage, from the prior and as in Tódová 2020, section 3.1: any seeds fit all nodes."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -39,9 +40,7 @@ def fitted(model, sensor, lattice, rgb=NO_COLOURS, grow=grow_outward):
     prior = prior_of(problem)
     grey = np.zeros((len(rgb), model.count))
 
-    def expected(points):
-        return initial_guess(points, nodes.goal(points), prior, seeds, grey, FULL_ENTRY)
-
+    expected = partial(initial_guess, prior=prior, seeds=seeds, entries=grey, blend=FULL_ENTRY)
     growth = grow(problem, nodes, expected, seeds.points, ignore_progress)
     improvements = improve(growth)
     return store(growth, seeds, prior), improvements
@@ -77,7 +76,7 @@ def test_points_that_fail_from_their_start_are_fitted_from_their_neighbours(sens
     start = np.full((LATTICE.size, 9), -1e9) * MODEL.constant()
     start[middle] = 0
     grown = grow_coarse_to_fine(
-        Problem(sensor, MODEL), all_nodes(LATTICE), lambda at: start[at], np.array([middle]), rounds.append
+        Problem(sensor, MODEL), all_nodes(LATTICE), lambda at, _: start[at], np.array([middle]), rounds.append
     )
     steps = np.abs(LATTICE.position(np.arange(LATTICE.size)) - LATTICE.position(np.array(middle))).max(axis=1)
     fitted = grown.round != NOT_FITTED

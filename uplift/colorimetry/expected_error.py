@@ -73,18 +73,14 @@ class ExpectedError:
         return found
 
 
-def expected_error(locations: Array, left_out: Array, kept: Array) -> ExpectedError:
-    """Learn from the ΔE00 (E,) of entries at L*a*b* (E, 3), when left out and when kept; K is 1."""
-    return expected_products(locations, left_out, kept, left_out[:, None] ** 2, kept[:, None] ** 2)
-
-
-def expected_products(
-    locations: Array, left_out: Array, kept: Array, left_out_products: Array, kept_products: Array
+def expected_error(
+    locations: Array, left_out: Array, kept: Array, products: tuple[Array, Array] | None = None
 ) -> ExpectedError:
-    """Learn products of errors.
+    """Learn from the ΔE00 (E,) of entries at L*a*b* (E, 3), when left out and when kept.
 
-    Shapes: ``locations`` (E, 3), ``left_out``, ``kept`` (E,), ``left_out_products``, ``kept_products`` (E, K).
+    What is learnt are the ``products`` (E, K) of errors, in both cases, by default their squares.
     """
+    left_out_products, kept_products = products or (left_out[:, None] ** 2, kept[:, None] ** 2)
     parts = list(blocks(len(locations), max(BLOCK_NUMBERS // len(locations), 1)))
 
     def others(part: slice) -> Array:

@@ -70,27 +70,23 @@ STANDARD_ILLUMINANTS = ("A", "D50", "D55", "D65", "D75")
 """Illuminants that an emission table without an atlas returns exactly."""
 
 
-def standard_name(name: str) -> str:
-    """Return the name of an illuminant for one of `COMMON_NAMES`, and temperatures as ``3200K``; other names stay.
+def standard_name(name: str) -> tuple[str, float | None]:
+    """Return the name of an illuminant for one of `COMMON_NAMES`, and its colour temperature, as of ``3200K``.
+
+    Other names stay, and have none. `OptionError` for a temperature out of range.
 
     >>> standard_name("Tungsten"), standard_name("3200 k"), standard_name("FL11")
-    ('A', '3200K', 'FL11')
+    (('A', None), ('3200K', 3200.0), ('FL11', None))
     """
-    kelvin = temperature(name)
-    return COMMON_NAMES.get(name.casefold(), name) if kelvin is None else f"{kelvin:g}K"
-
-
-def temperature(name: str) -> float | None:
-    """Return the colour temperature of a name such as ``3200K``, None for other names; `OptionError` out of range."""
     found = re.fullmatch(r"(\d{1,6}(?:\.\d{1,3})?) ?K", name, re.IGNORECASE)
     if found is None:
-        return None
+        return COMMON_NAMES.get(name.casefold(), name), None
     kelvin = float(found[1])
     if not TEMPERATURES[0] <= kelvin <= TEMPERATURES[1]:
         raise OptionError(
             f"a colour temperature must be from 1000K to 25000K, got {name}", hint="black bodies end at 4000K"
         )
-    return kelvin
+    return f"{kelvin:g}K", kelvin
 
 
 def black_body(kelvin: float, wavelengths: Array) -> Array:

@@ -21,7 +21,6 @@ from uplift.colorimetry.lights import (
     TEMPERATURES,
     black_body,
     standard_name,
-    temperature,
 )
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
@@ -84,7 +83,7 @@ def names(kind: str) -> tuple[str, ...]:
 
 def stated_name(kind: str, name: str) -> str:
     """Return the name that colour-science states for a name, which may be an alias or have other capitals."""
-    name = standard_name(name) if kind == "illuminant" else name
+    name, _ = standard_name(name) if kind == "illuminant" else (name, None)
     if name in names(kind):
         return str(_file()[f"{kind}: stated"][names(kind).index(name)])
     return str(look_up(kind, name).name)
@@ -96,8 +95,7 @@ def samples(kind: str, name: str, start: float = START, end: float = END, step: 
 
     ``kind`` is one of the keys of `TABLES`, such as ``"display"`` for the power of the primaries of a display.
     """
-    name = standard_name(name) if kind == "illuminant" else name
-    kelvin = temperature(name) if kind == "illuminant" else None
+    name, kelvin = standard_name(name) if kind == "illuminant" else (name, None)
     if kelvin is not None and kelvin < DAYLIGHT_FROM:
         values = black_body(kelvin, np.arange(start, end + step / 2, step))
     elif kind in SPECTRA and (start, end, step) == WAVELENGTHS and name in names(kind):
@@ -134,8 +132,8 @@ def look_up(kind: str, name: str) -> Any:
     table = getattr(colour_science(), TABLES[kind])
     known = list(table)
     if kind == "illuminant":
-        name, known = standard_name(name), [*known, *COMMON_NAMES, "3200K"]
-        if (kelvin := temperature(name)) is not None:
+        (name, kelvin), known = standard_name(name), [*known, *COMMON_NAMES, "3200K"]
+        if kelvin is not None:
             return _of_temperature(kelvin, name)
     try:
         return table[name]

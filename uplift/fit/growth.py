@@ -42,8 +42,8 @@ THESIS_STEPS = (
     "from white or black, all multipliers nudged",
 )
 """The order of Tódová 2020, section 3.1.4."""
-Expected = Callable[[Indices], Array]
-"""From nodes (k,) to the multipliers (k, C) expected there."""
+Expected = Callable[[Indices, Array], Array]
+"""From nodes (k,) and the linear RGB (k, 3) that they are fitted to, to the multipliers (k, C) expected there."""
 
 
 class Growth:

@@ -54,7 +54,7 @@ def grow_coarse_to_fine(
         for block in blocks(len(points), BLOCK_POINTS):
             # From p₀ + R δ, with the correction δ of the nodes around, to the spectrum of the colour nearest to p₀.
             some = points[block]
-            prior = expected(some)
+            prior = expected(some, nodes.goal(some))
             sums = weighted_sum(known, *level.corners(lattice.target(some)))
             smooth = (sums[:, -1:] > ALL) & ~seeded[some, None]
             rest.append(fit(some, prior + np.where(smooth, sums[:, :-1], 0), prior, number, max_passes=1))

@@ -30,7 +30,7 @@ def grow_outward(
     for number, shell in enumerate(np.split(order, ends[:-1])):
         for block in blocks(len(shell), BLOCK_POINTS):
             points = shell[block]
-            prior = expected(points)
+            prior = expected(points, nodes.goal(points))
             # Where both are known, δ ≈ 2 δ₁ − δ₂ with the corrections one and two steps towards a seed, else δ₁.
             near, far = toward[points], toward[toward[points]]
             one = known[near] & (distance[near] < number)

@@ -22,7 +22,7 @@ def grow_from_neighbours(
     growth, lattice = Growth(problem, nodes, progress), nodes.lattice
     seeds = np.intersect1d(seeds, nodes.points)
     if seeds.size:
-        start = expected(seeds)
+        start = expected(seeds, nodes.goal(seeds))
     else:
         away = np.abs(2 * lattice.position(nodes.points) - (lattice.dim - 1)).sum(axis=1)
         seeds = nodes.points[[int(away.argmin())]]

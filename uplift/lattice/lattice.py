@@ -1,7 +1,7 @@
 """The regular grid over RGB: axis nodes, node numbers, cells and neighbours. Nodes are numbered blue fastest."""
 
 import decimal
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
 
@@ -29,6 +29,12 @@ class Lattice:
     """
 
     nodes: Array
+    dim: int = field(init=False)
+    """Number of nodes along each axis."""
+    size: int = field(init=False)
+    """Number of nodes, dim³."""
+    shape: tuple[int, int, int] = field(init=False)
+    """(dim, dim, dim), the shape of an array over the nodes."""
 
     def __post_init__(self) -> None:
         nodes = self.nodes
@@ -38,24 +44,12 @@ class Lattice:
                 f"the nodes of a lattice must be at least 2 increasing numbers, got shape {nodes.shape}",
                 hint="use dim=2 or more",
             )
+        dim = len(nodes)
+        for name, value in (("dim", dim), ("size", dim**3), ("shape", (dim, dim, dim))):
+            object.__setattr__(self, name, value)
 
     def __repr__(self) -> str:
         return f"Lattice(dim {self.dim}, {self.nodes[0]:g} to {self.nodes[-1]:g})"
-
-    @property
-    def dim(self) -> int:
-        """Number of nodes along each axis."""
-        return len(self.nodes)
-
-    @property
-    def size(self) -> int:
-        """Number of nodes, dim³."""
-        return self.dim**3
-
-    @property
-    def shape(self) -> tuple[int, int, int]:
-        """(dim, dim, dim), the shape of an array over the nodes."""
-        return (self.dim,) * 3
 
     @cached_property
     def points(self) -> Array:

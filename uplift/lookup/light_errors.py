@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.colorimetry.delta_e import delta_e_spectra, lab, rgb_to_lab
-from uplift.colorimetry.expected_error import ExpectedError, expected_error, expected_products, learn_radii, mahalanobis
+from uplift.colorimetry.expected_error import ExpectedError, expected_error, learn_radii, mahalanobis
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
@@ -103,9 +103,11 @@ def lab_errors(data: CubeData, light: Light) -> LabErrors:
     measured, left_out = _evidence(data)
     coefficients = data.atlas.coefficients[: len(measured)]
     spectra = (left_out, reflectance(data.model, coefficients, data.sensor.wavelengths))
-    errors = [delta_e_spectra(light, each, measured) for each in spectra]
+    missed, kept = (delta_e_spectra(light, each, measured) for each in spectra)
     differences = [_differences(light, each, measured) for each in spectra]
-    expected = expected_products(data.entry_lab, *errors, *map(_products, differences))
+    # Products (E, 9) of the components
+    left_out_products, kept_products = ((each[:, :, None] * each[:, None, :]).reshape(-1, 9) for each in differences)
+    expected = expected_error(data.entry_lab, missed, kept, (left_out_products, kept_products))
     # d² = eᵀ Σ⁻¹ e of each entry, by the covariance Σ that the other entries let expect
     own = expected.radii.scale**2 * expected.left_out.reshape(-1, 3, 3)
     distances = mahalanobis(own[:, 1:, 1:], differences[0][:, 1:])
@@ -128,8 +130,3 @@ def _differences(light: Light, answered: NDArray[Any], measured: NDArray[Any]) -
     """Differences (E, 3) in L*a*b*."""
     answered_lab, measured_lab = (lab(spectra @ light.xyz.T, light.white) for spectra in (answered, measured))
     return measured_lab - answered_lab
-
-
-def _products(differences: Array) -> Array:
-    """Products (E, 9) of the components."""
-    return (differences[:, :, None] * differences[:, None, :]).reshape(-1, 9)

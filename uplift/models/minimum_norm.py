@@ -35,14 +35,10 @@ class ForwardMap:
     jacobian_basis: Any
     """W times B R, shape (N, 3·C): the constant part of the Jacobian A."""
 
-    def rgb(self, multipliers: Any) -> Any:
-        """Linear RGB (n, 3) of multipliers (n, C)."""
-        spectra = self.model.to_reflectance(blocked_matmul(multipliers, self.basis.T))
-        return blocked_matmul(spectra, self.sensor.T)
-
     def residual(self, multipliers: Any, target: Any) -> Any:
         """Target minus RGB, t − r, (n, 3), of multipliers (n, C)."""
-        return target - self.rgb(multipliers)
+        spectra = self.model.to_reflectance(blocked_matmul(multipliers, self.basis.T))
+        return target - blocked_matmul(spectra, self.sensor.T)
 
 
 def forward_map(model: Model, wavelengths: ArrayLike, sensor: Array) -> ForwardMap:

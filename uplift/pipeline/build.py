@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, fields, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
@@ -14,7 +15,7 @@ from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array, Indices, Mask, StrPath
+from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
 from uplift.common.progress import ProgressCallback, ignore_progress
@@ -306,7 +307,7 @@ def build_stages(
     neighbours = options.growth == "neighbours"
 
     # The spectra: families of the library, entries of the atlas, and looks, which become further entries.
-    libraries = spectra.read_libraries(library)
+    libraries = () if library is None else spectra.read_libraries(library)
     families = spectra.families_of(options, libraries, sensor)
     atlas = spectra.as_atlas(atlas)
     measured, outside = spectra.split_by_gamut(atlas, sensor)
@@ -336,9 +337,7 @@ def build_stages(
     kept = None if scene is None else np.flatnonzero(scene.required_points(boxes, sensor, progress))
     nodes = nodes_of(lattice, sensor, None if neighbours else kept)
 
-    def expected(points: Indices) -> Array:
-        return initial_guess(points, nodes.goal(points), prior, seeds, own, blend)
-
+    expected = partial(initial_guess, prior=prior, seeds=seeds, entries=own, blend=blend)
     grown = GROWTH[options.growth](problem, nodes, expected, seeds.points, progress)
     improvements = improve(grown, THESIS_STEPS if neighbours else STEPS)
     points = store(grown, seeds, prior)
@@ -348,22 +347,24 @@ def build_stages(
     points = points if kept is None else points.restricted_to(kept)
 
     # Entries outside the RGB space constrain no node: their spectra answer XYZ and textures of other spaces.
-    table = constraints.table(model, boxes.half_width)
+    # Errors are learnt from measured reflectances, and from those expected without each of them.
+    known, beyond = [None if prior.left_out is None else each.reflectances for each in (measured, outside)], None
     if outside.names:
         half_width = outside_half_widths(lattice, outside.rgb)
         spectra.warn_of_close(outside.names, half_width)
-        table = replace(table, outside=spectra.fit_constraints(problem, entry_model, outside).table(model, half_width))
-    if prior.left_out is not None:
-        # Errors are learnt from measured reflectances, and from those expected without each of them.
-        without = prior.left_out.astype(np.float32)
-        table = replace(table, measured=measured.reflectances.astype(np.float32), left_out=without)
-        if table.outside is not None:
-            more = replace(table.outside, measured=outside.reflectances.astype(np.float32))
-            table = replace(table, outside=more)
+        fitted = spectra.fit_constraints(problem, entry_model, outside)
+        beyond = fitted.table(model, half_width, known[1])
+    table = constraints.table(model, boxes.half_width, known[0], prior.left_out, beyond)
     provenance = {
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
-        **spectra.describe_atlas(atlas, measured.names),
+        "atlases": [
+            {"name": source.name, "digest": source.digest}
+            | ({} if source.measured == "auto" else {"measured": source.measured})
+            for source in atlas.sources
+        ],
+        "left_out": [name for name in atlas.names if name not in set(measured.names)],
+        "skipped": [entry.name for entry in atlas.skipped],
         "prior": prior.describe(),
         "improvements": [{"step": step, "tried": tried, "mended": fixed} for step, tried, fixed in improvements],
         **({} if scene is None else {"scene": scene.describe()}),

@@ -4,7 +4,7 @@ import os
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from uplift.models.model import Model
 from uplift.pipeline.options import Options
 
 AtlasLike = Atlas | StrPath | Sequence[StrPath] | None
+"""An atlas, or the files of one."""
 
 SPREAD, RELATED = 1.0, 0.5
 """See `uplift.fit.families.Family`; by held-out halves of large sets (docs/prior.md)."""
@@ -58,7 +59,14 @@ class Constraints:
         stored = self.entry_model.to_storage(self.at_entries.multipliers)  # c_j = (1/π) ∫ g cos jφ dφ for any count
         return model.from_storage(stored[:, : model.count])
 
-    def table(self, model: Model, half_width: Array) -> AtlasTable:
+    def table(
+        self,
+        model: Model,
+        half_width: Array,
+        measured: Array | None,
+        left_out: Array | None = None,
+        outside: AtlasTable | None = None,
+    ) -> AtlasTable:
         """Return the part of a cube that records the constraints; entries with more coefficients have them there."""
         coefficients = model.to_storage(self.at_nodes.multipliers)
         spectra = EntrySpectra(model, coefficients)
@@ -71,7 +79,10 @@ class Constraints:
             half_width,
             self.at_entries.error,
             spectra,
-            looks=self.looks,
+            None if measured is None else measured.astype(np.float32),
+            None if left_out is None else left_out.astype(np.float32),
+            self.looks,
+            outside,
         )
 
 
@@ -137,27 +148,8 @@ def _listed(names: Sequence[str], rows: Sequence[int]) -> str:
     return f"entry {shown} is" if len(rows) == 1 else f"entries {shown} are"
 
 
-def describe_atlas(atlas: Atlas, names: Sequence[str]) -> dict[str, Any]:
-    """Files by name, digest and the scale of their values if the caller gave it, and the entries that are not used."""
-    used = set(names)
-    return {
-        "atlases": [
-            {
-                "name": each.name,
-                "digest": each.digest,
-                **({} if each.measured == "auto" else {"measured": each.measured}),
-            }
-            for each in atlas.sources
-        ],
-        "left_out": [name for name in atlas.names if name not in used],
-        "skipped": [entry.name for entry in atlas.skipped],
-    }
-
-
-def read_libraries(library: AtlasLike) -> tuple[tuple[Source, Atlas], ...]:
+def read_libraries(library: Atlas | StrPath | Sequence[StrPath]) -> tuple[tuple[Source, Atlas], ...]:
     """Read libraries, a family per file, or spectra given as an atlas; the digest of these is empty."""
-    if library is None:
-        return ()
     atlases = map(as_atlas, [library] if isinstance(library, Atlas | str | os.PathLike) else library)
     return tuple((each.sources[0] if len(each.sources) == 1 else Source("library", ""), each) for each in atlases)
 
