@@ -3,7 +3,7 @@
 import gc
 import sys
 
-COLLECT_AFTER = 100_000
+COLLECT_AFTER = 1_000_000
 """New objects between searches for garbage: imports create a million, which all stay."""
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells report it."""
