@@ -12,7 +12,7 @@ from ..startup import enable_jit_cache
 
 @click.command("plan")
 @click.argument("scene", metavar="SCENE.toml", type=click.Path())
-@options.output("Plan to write, with an HTML page of the same name. [default: SCENE.plan.json in the current folder]")
+@options.output("Plan to write. [default: SCENE.plan.json in the current folder]")
 @click.option("--quick", is_flag=True, help="Fewer candidates, and fewer pixels.")
 @options.output_format("table", "json")
 @options.force
@@ -40,25 +40,23 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
 
     Candidates that may be on the Pareto front of memory, time, samples and error are measured on pixels of the
     textures and on the entries of the atlases. The cheapest sufficient one is confirmed on other pixels: RGB without
-    spectra, a list of spectra, or a cube, which 'uplift build --plan' builds. An HTML page shows the front.
+    spectra, a list of spectra, or a cube, which 'uplift build --plan' builds.
     """
     enable_jit_cache()
-    from uplift.common.files import check_outputs, write_text
+    from uplift.common.files import check_output, write_text
     from uplift.scene.plan import plan, read_scene_file
     from uplift.scene.plan.candidates import SearchGrid
-    from uplift.scene.plan.page import HEADINGS, describe_error, front_row, front_rows, notes, page, verdict
     from uplift.scene.plan.plan_file import to_json
+    from uplift.scene.plan.summary import HEADINGS, describe_error, front_row, front_rows, notes, verdict
 
-    path = Path(f"{Path(scene).stem}.plan.json" if output is None else output)
-    html = path.with_suffix(".html")
     scene_file = read_scene_file(scene)
     inputs = (scene_file.path, *scene_file.textures, *scene_file.atlases)
-    check_outputs((path, html), inputs=inputs, force=force)
+    name = f"{Path(scene).stem}.plan.json" if output is None else output
+    path = check_output(name, inputs=inputs, force=force)
     with progress_bar() as progress:
         result = plan(scene_file, SearchGrid.quick() if quick else SearchGrid(), progress)
     fields = to_json(result, path)
     write_text(json_text(fields) + "\n", path, force=force)
-    write_text(page(result, path), html, force=force)
     if style == "json":
         print_json(fields)
     else:
@@ -76,5 +74,5 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
             table.add_row("→" if each is result.chosen else "", *front_row(each))
         show(table)
         say()
-        paragraph(f"{describe_error(result)}.")
-    say(f"{path}, {html}", err=True)
+        paragraph(describe_error(result))
+    say(str(path), err=True)

@@ -1,5 +1,5 @@
 # ruff: noqa: F811
-"""``uplift plan``, ``uplift build --plan``, the page of a plan and its command lines."""
+"""``uplift plan``, ``uplift build --plan``, and the command lines of a plan."""
 
 import dataclasses
 import json
@@ -10,11 +10,9 @@ import click
 import pytest
 from uplift_cli.main import main
 
-from tests.browsing import check_page
 from tests.cli.conftest import home, refuse, run, shown  # noqa: F401
 from uplift.cube import read
 from uplift.scene.plan.candidates import PIXELS
-from uplift.scene.plan.page import page
 from uplift.scene.plan.plan_file import commands, cube_name
 
 
@@ -34,20 +32,15 @@ def test_a_plan_is_printed_written_and_built(run, here):
     result = run("plan", "kitchen.toml")
     assert result.stdout.startswith("  uplift build --plan kitchen.plan.json\n")
     assert max(map(len, result.stdout.partition("kitchen.toml: ")[2].splitlines())) <= 80
-    assert "kitchen.plan.json, kitchen.plan.html" in result.stderr
+    assert "kitchen.plan.json" in result.stderr
     values = json.loads((here / "kitchen.plan.json").read_text(encoding="utf-8"))
     assert json.loads(run("plan", "kitchen.toml", "--format", "json", "--force").stdout) == values
-    assert (here / "kitchen.plan.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
     built = run("build", "--plan", "kitchen.plan.json", "-v")
     assert "kitchen.uplift: " in built.stdout
     data = read(here / "kitchen.uplift")
     assert (data.lattice.dim, data.model.count) == (values["build"]["dim"], values["build"]["coefficients"])
     error = run("build", "--plan", "kitchen.plan.json", "--dim", 4, "--light", "A", code=2).stderr
     assert "leave out --dim, --light." in error
-
-
-def test_the_page_fits_and_is_accessible(planned, tmp_path):
-    check_page(page(planned[0], tmp_path / "kitchen.plan.json"), tmp_path)
 
 
 @pytest.mark.parametrize("pixel", PIXELS, ids=lambda pixel: f"{pixel.form}-{pixel.depth}{pixel.mode}")

@@ -2,7 +2,7 @@
 
 import json
 import shutil
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import colour
 import numpy as np
@@ -17,9 +17,9 @@ from uplift.colorimetry import observer
 from uplift.common.errors import PlanFileError
 from uplift.io.scene_colours import Images
 from uplift.scene import plan
-from uplift.scene.plan.page import notes
 from uplift.scene.plan.plan_file import read_plan, to_json
 from uplift.scene.plan.planning import no_candidate
+from uplift.scene.plan.summary import notes
 
 
 def test_the_choice_is_the_cheapest_within_the_tolerance(planned):
@@ -28,7 +28,6 @@ def test_the_choice_is_the_cheapest_within_the_tolerance(planned):
     assert found.chosen.error.quantile <= found.scene.tolerance
     sufficient = [each for each in found.measured if each.error.quantile <= found.scene.tolerance]
     assert min(each.cost.ranked("balance") for each in sufficient) == found.chosen.cost.ranked("balance")
-    assert found.options["dim"] == found.chosen.cube.dim
     assert found.chosen in found.front
 
 
@@ -50,9 +49,8 @@ def test_an_independent_computation_on_every_pixel_agrees(planned, kitchen):
     found, _ = planned
     rgb = painted().reshape(-1, 3).astype(float)
     scene, atlas = Images((kitchen.parent / "wood.exr",)), kitchen.parent / "macbeth.txt"
-    options = {"lights": found.options["lights"]}
-    best = uplift.build(atlas, scene=scene, dim=SMALL.reference, coefficients=9, **options)
-    cube = uplift.build(atlas, scene=scene, **found.options)
+    best = uplift.build(atlas, scene=scene, dim=SMALL.reference, coefficients=9, lights=LIGHTS)
+    cube = uplift.build(atlas, scene=scene, **asdict(found.chosen.cube))
     sampling = found.chosen.rendering.sampling
     spectra = cube.reflectance(rgb, sampling.wavelengths)
     if found.chosen.pixel.form == "moments":

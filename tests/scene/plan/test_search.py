@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from tests.scene.plan.conftest import SMALL
+from uplift.pipeline.options import Options
 from uplift.scene import plan
 from uplift.scene.plan.candidates import (
     Candidate,
     Cost,
-    CubeChoice,
     Minimised,
     Pixel,
     explore,
@@ -44,7 +44,7 @@ def small_space(errors, seed, looseness=1.0):
     """72 candidates with bounds from 0.5 to 1 of their true errors, times the ``looseness``, and measured ones."""
     rng, truth = np.random.default_rng(seed), {}
     for count, dim, samples, pixel in product((3, 5, 9), (4, 8, 12), (3, 5, 7, 9), PIXELS):
-        choice = CubeChoice("moments", count, "none", dim, "srgb")
+        choice = Options(dim=dim, coefficients=count)
         memory = count * dim**3 / 10 + 100 * (samples if pixel.depth else 3)
         cost = Cost(memory, samples * 7 + (not pixel.depth) * count, samples)
         error = errors(rng, choice, samples)

@@ -5,7 +5,7 @@ Each decision is measured on colours of the scene's own textures; docs/plan.md d
     from uplift.scene import plan
 
     result = plan.plan(plan.read_scene_file("kitchen.toml"))
-    result.chosen.name, result.confirmed.quantile, result.options
+    result.chosen.name, result.confirmed.quantile, result.chosen.cube
 """
 
 from uplift.scene.plan.planning import Plan, plan

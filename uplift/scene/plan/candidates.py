@@ -2,7 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from functools import partial
 from math import prod
 from typing import Any, Literal, NamedTuple
@@ -17,6 +17,7 @@ from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import refined_multipliers
 from uplift.models import Sigmoid, evaluate, reflectance
+from uplift.pipeline.options import Options
 from uplift.scene.plan.evaluation import ErrorSummary, Rendering
 
 MODELS: Mapping[str, tuple[int, ...]] = {
@@ -79,30 +80,6 @@ class Cost(NamedTuple):
 
 
 @dataclass(frozen=True)
-class CubeChoice:
-    """Options of `uplift.build` that a plan chooses."""
-
-    model: str
-    coefficients: int
-    warp: str
-    dim: int
-    axis: str
-
-    @property
-    def options(self) -> dict[str, Any]:
-        """Options of a build."""
-        fields = asdict(self)
-        return fields if self.model != Sigmoid.name else {key: fields[key] for key in ("model", "dim", "axis")}
-
-    @property
-    def name(self) -> str:
-        """Short text, with all that differs from the defaults."""
-        spectra = f"{self.coefficients}" if self.model != Sigmoid.name else self.model
-        warp, axis = f", {self.warp}" * (self.warp != "none"), f", {self.axis}" * (self.axis != "srgb")
-        return f"{self.dim}³ × {spectra}{warp}{axis}"
-
-
-@dataclass(frozen=True)
 class Pixel:
     """What a texture stores per pixel: a pixel encoding, RGB, or an index; and a renderer does with it.
 
@@ -129,13 +106,13 @@ class Pixel:
         numbers = samples if self.form == texture.Spectrum.name else count
         return numbers * DEPTHS[self.depth].itemsize if self.depth else 0
 
-    def operations(self, choice: CubeChoice, samples: int) -> int:
+    def operations(self, cube: Options, samples: int) -> int:
         """Floating-point operations until the reflectances of a pixel are known.
 
         Sums of cosines by Clenshaw's recurrence and an arctangent are 4 C + 15 for each sample, a sigmoid 10. From
         moments to multipliers there are 28 C² (docs/mathematics.md, 4), between eight nodes 16 for each number.
         """
-        count, is_sigmoid = choice.coefficients, choice.model == Sigmoid.name
+        count, is_sigmoid = cube.coefficients, cube.model == Sigmoid.name
         evaluation = samples * (10 if is_sigmoid else 4 * count + 15)
         conversion = 0 if is_sigmoid else 28 * count**2
         return {
@@ -186,15 +163,19 @@ class Candidate:
     pixel: Pixel
     cost: Cost
     rendering: Rendering | None = None
-    cube: CubeChoice | None = None
+    cube: Options | None = None
     sparse: bool = False
     bound: float = 0.0
     error: ErrorSummary = UNMEASURED
 
     @property
     def cube_name(self) -> str:
-        """Short text, empty without a cube."""
-        return f"{self.cube.name}{' sparse' * self.sparse}" if self.cube else ""
+        """Short text, with all that differs from the defaults; empty without a cube."""
+        if self.cube is None:
+            return ""
+        spectra = self.cube.model if self.cube.model == Sigmoid.name else self.cube.coefficients
+        others = [value for value in (self.cube.warp, self.cube.axis) if value not in (Options.warp, Options.axis)]
+        return ", ".join([f"{self.cube.dim}³ × {spectra}", *others]) + " sparse" * self.sparse
 
     @property
     def traced(self) -> str:
@@ -207,7 +188,7 @@ class Candidate:
         return "; ".join(filter(None, (self.cube_name, self.traced, self.pixel.name)))
 
 
-Measure = Callable[[CubeChoice | None, Sequence[Candidate]], list[Candidate]]
+Measure = Callable[[Options | None, Sequence[Candidate]], list[Candidate]]
 """Builds the cube that candidates share, and measures their errors."""
 
 
@@ -218,7 +199,7 @@ def explore(candidates: Iterable[Candidate], measure: Measure, floor: float) -> 
     dominates it: no cost is larger, and its error is at most the lower bound of the other's. Errors below the ``floor``
     count as equal. If every bound holds, none that is left out costs less than the cheapest measured one of its error.
     """
-    groups: dict[CubeChoice | None, list[Candidate]] = defaultdict(list)
+    groups: dict[Options | None, list[Candidate]] = defaultdict(list)
     for candidate in candidates:
         groups[candidate.cube].append(candidate)
     measured, best = list[Candidate](), np.empty((0, 4))

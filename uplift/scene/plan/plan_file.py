@@ -29,6 +29,8 @@ FORMAT: Literal["uplift plan 1"] = "uplift plan 1"
 HINT = "plan the scene again"
 MAX_FILES = 10_000
 SUFFIX = ".plan.json"
+CUBE_KEYS = ("model", "coefficients", "warp", "dim", "axis")
+"""Options of a build that a plan chooses."""
 SCENE_KEYS = ("lights", "tolerance", "quantile", "encoding", "minimise", "limits")
 
 
@@ -38,8 +40,6 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
     ``path`` is the file to write them to: paths of textures and atlases are relative to its folder.
     """
     scene, chosen = plan.scene, plan.chosen
-    # All options, so that later defaults do not change the build.
-    options = asdict(Options(**plan.options))
     return {
         "format": FORMAT,
         "uplift": VERSION,
@@ -50,7 +50,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
             "atlases": _sources(scene.atlases, path),
         },
         "name": chosen.name,
-        "build": options if plan.options else None,
+        "build": chosen.cube and asdict(chosen.cube),
         "cells": "sparse" if chosen.sparse else "whole",
         "texture": asdict(chosen.pixel),
         "rendering": _rendering_json(plan),
@@ -67,7 +67,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
         "search": {"considered": plan.considered, "measured": len(plan.measured)},
         "front": [
             {"name": each.name, "rendering": each.traced, "pixel": asdict(each.pixel)}
-            | {"cube": each.cube and asdict(each.cube), "sparse": each.sparse}
+            | {"cube": each.cube and {key: getattr(each.cube, key) for key in CUBE_KEYS}, "sparse": each.sparse}
             | {**each.cost._asdict(), "error": asdict(each.error.worst)}
             for each in plan.front
         ],
@@ -99,7 +99,7 @@ def cube_name(plan_path: StrPath) -> str:
 def commands(plan: Plan, path: Path) -> tuple[str, ...]:
     """Command lines for a plan at ``path``: its build, and its textures or the program that looks colours up."""
     scene, pixel = plan.scene, plan.chosen.pixel
-    if not plan.options:
+    if plan.chosen.cube is None:
         return ()
     build, cube = f"uplift build --plan {shlex.quote(str(path))}", cube_name(path)
     if pixel.mode:

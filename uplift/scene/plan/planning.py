@@ -1,8 +1,7 @@
 """Plans: components are measured, cubes that may suffice are built, the choice is confirmed on other pixels."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -42,8 +41,6 @@ class Plan:
         From linear RGB to XYZ under each light, the best without spectra.
     without_spectra : ErrorSummary
         Error of RGB with these matrices.
-    options : mapping
-        Options of `uplift.build`; empty without a cube.
     spectra : tuple of ndarray, or None
         Colours (n, 3) and reflectances (n, W) of a list of spectra.
     expected_error : float or None
@@ -58,7 +55,6 @@ class Plan:
     confirmed: ErrorSummary
     matrices: Array
     without_spectra: ErrorSummary
-    options: Mapping[str, Any]
     spectra: tuple[Array, Array] | None
     expected_error: float | None
 
@@ -124,7 +120,6 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     if chosen.pixel.form == INDEX and chosen.rendering is not None and few is not None:
         wavelengths = chosen.rendering.sampling.wavelengths
         spectra = few, space.cube(few, space.reference).reflectance(few, wavelengths)
-    options = {} if chosen.cube is None else {**space.options, **chosen.cube.options}
     return Plan(
         scene=scene,
         measured=tuple(measured),
@@ -133,7 +128,6 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         confirmed=confirmed,
         matrices=space.matrices,
         without_spectra=space.without_spectra,
-        options=options,
         spectra=spectra,
         expected_error=_expected_error(space.cubes[space.reference], scene, textures.rgb, textures.share),
     )

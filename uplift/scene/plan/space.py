@@ -22,11 +22,11 @@ from uplift.io import texture
 from uplift.io.scene_colours import ColourSet, Images, PixelSample, cells_touched, sample_colours
 from uplift.lattice import Lattice, axis_nodes
 from uplift.lookup import Cube
-from uplift.models import Moments, Sigmoid
+from uplift.models import Sigmoid
 from uplift.models.model import Model
 from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
 from uplift.pipeline.options import Options
-from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, CubeChoice, Pixel, SearchGrid
+from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, Pixel, SearchGrid
 from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ErrorSummary, EvaluationSet, Rendering, renderings
 from uplift.scene.plan.scene_file import SceneFile
 
@@ -75,17 +75,18 @@ class CandidateSpace:
         self.built = self.considered = 0
 
     @property
-    def options(self) -> dict[str, Any]:
-        """Options of all cubes: entries hold under the scene's lights, and under the illuminant of the RGB space."""
-        named = {key: getattr(self.scene, key) for key in ("space", "illuminant", "observer")}
-        return named | {"lights": tuple(dict.fromkeys((self.sensor.illuminant, *self.scene.lights)))}
+    def reference(self) -> Options:
+        """Options of the reference cube. Entries hold under the scene's lights and the illuminant of the RGB space."""
+        return Options(
+            dim=self.grid.reference,
+            coefficients=self.grid.models[Options.warp][-1],
+            space=self.scene.space,
+            illuminant=self.scene.illuminant,
+            observer=self.scene.observer,
+            lights=tuple(dict.fromkeys((self.sensor.illuminant, *self.scene.lights))),
+        )
 
-    @property
-    def reference(self) -> CubeChoice:
-        """Options of the reference cube."""
-        return CubeChoice(Moments.name, self.grid.models["none"][-1], "none", self.grid.reference, "srgb")
-
-    def cube(self, rgb: Array, choice: CubeChoice) -> Cube:
+    def cube(self, rgb: Array, options: Options) -> Cube:
         """Build a sparse cube for linear RGB (n, 3)."""
 
         def shared(problem: Problem, entry_model: Model, *rest: Any) -> Learnt:
@@ -96,7 +97,6 @@ class CandidateSpace:
 
         # `uplift build --plan` repeats the warnings of trial builds.
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
-            options = Options(**self.options, **choice.options)
             options, problem = problem_of(options, options.observer, options.solver)
             return build_stages(self.atlas, options, problem, scene=ColourSet(rgb), learn=shared)
 
@@ -129,12 +129,12 @@ class CandidateSpace:
             found += self._with_cubes()
         return found
 
-    def measure(self, choice: CubeChoice | None, candidates: Sequence[Candidate]) -> list[Candidate]:
+    def measure(self, choice: Options | None, candidates: Sequence[Candidate]) -> list[Candidate]:
         """Build the cube that candidates share, and measure their errors."""
         cube = None
         if choice is not None:
             self.built += 1
-            self.progress(Progress(f"cube {self.built}: {choice.name}", 0, 1))
+            self.progress(Progress(f"cube {self.built}: {candidates[0].cube_name}", 0, 1))
             cube = self._cube(choice)
         return self.errors(cube, candidates, self.tests, self.cubes[self.reference])
 
@@ -178,7 +178,7 @@ class CandidateSpace:
                     yield from candidates
 
     def _with_pixels(
-        self, choice: CubeChoice, points: tuple[int, int], rendering: Rendering, bound: float
+        self, choice: Options, points: tuple[int, int], rendering: Rendering, bound: float
     ) -> Iterator[Candidate]:
         """Candidates of a cube, of ``points`` with all cells and with those of the textures, and of wavelengths."""
         colours, count = self.colours, len(rendering.sampling)
@@ -191,7 +191,7 @@ class CandidateSpace:
             time = pixel.operations(choice, count) + SAMPLE_OPERATIONS * count
             yield Candidate(pixel, Cost(memory, time, count), rendering, choice, sparse, bound)
 
-    def _models(self) -> dict[CubeChoice, Array]:
+    def _models(self) -> dict[Options, Array]:
         """Changes of XYZ (K, n, 3) by models of spectra, on a fine lattice: the sigmoid, and moments of each warp."""
         fine = replace(self.reference, dim=min(FINE, self.grid.reference))
         series = {
@@ -201,17 +201,15 @@ class CandidateSpace:
         series[fine.warp].insert(0, replace(fine, model=Sigmoid.name, coefficients=3))
         return self._changes("models of spectra", list(series.values()), fine)
 
-    def _lattices(self) -> dict[CubeChoice, Array]:
+    def _lattices(self) -> dict[Options, Array]:
         """Changes of XYZ (K, n, 3) by lattices, with a usual model: more and more nodes along each axis."""
         probe = replace(self.reference, coefficients=PROBE)
         series = [[replace(probe, dim=dim, axis=axis) for dim in self.grid.dims] for axis in self.grid.axes]
         return self._changes("lattices", series, probe)
 
-    def _changes(
-        self, stage: str, series: Sequence[Sequence[CubeChoice]], finest: CubeChoice
-    ) -> dict[CubeChoice, Array]:
+    def _changes(self, stage: str, series: Sequence[Sequence[Options]], finest: Options) -> dict[Options, Array]:
         """Changes of XYZ from the ``finest``, of each series up to the first below the floor."""
-        found, reference = dict[CubeChoice, Array](), self._xyz(finest)
+        found, reference = dict[Options, Array](), self._xyz(finest)
         for done, choices in enumerate(series):
             self.progress(Progress(stage, done, len(series)))
             for choice in choices:
@@ -220,18 +218,18 @@ class CandidateSpace:
                     break
         return found
 
-    def _xyz(self, choice: CubeChoice) -> Array:
+    def _xyz(self, choice: Options) -> Array:
         return self.tests.xyz(self._cube(choice).reflectance(self.tests.rgb))
 
-    def _cube(self, choice: CubeChoice) -> Cube:
+    def _cube(self, choice: Options) -> Cube:
         """Cube for the test colours, built once."""
         if choice not in self.cubes:
             self.cubes[choice] = self.cube(self.tests.rgb, choice)
         return self.cubes[choice]
 
-    def _points(self, choice: CubeChoice) -> tuple[int, int]:
+    def _points(self, choice: Options) -> tuple[int, int]:
         """Points of a lattice, and those around one colour of every bin of the textures."""
-        lattice = Lattice(axis_nodes(choice.axis, choice.dim))
+        lattice = Lattice(axis_nodes(choice.axis, int(choice.dim)))
         needed = lattice.corner_points(lattice.mask(cells_touched(lattice, self.colours.colour_bins)))
         return lattice.size, int(needed.sum())
 

@@ -1,35 +1,14 @@
-"""Plan as a self-contained HTML page, and its summary as text for the page and the terminal."""
-
-from pathlib import Path
+"""Summary of a plan as text."""
 
 from uplift.scene.plan.candidates import INDEX, Candidate, Cost, cheapest_first
-from uplift.scene.plan.plan_file import commands
 from uplift.scene.plan.planning import Plan, cost_text
 from uplift.viz.format import format_error, format_size, pluralise
-from uplift.viz.html import render
 
-TEMPLATE = "scene/plan/templates/page.html.j2"
 HEADINGS = ("ΔE00", "memory", "time", "samples", "cube", "traced", "pixel")
 CLEARLY_SMALLER = 0.95
 """Share of the error of a cheaper candidate that is worth a row."""
 SHARE = 0.5
 """Share of the expected error of measurements below which a plan spends more than its colours are worth."""
-
-
-def page(plan: Plan, path: Path) -> str:
-    """HTML of a plan; ``path`` is that of the plan file, which the commands refer to."""
-    return render(
-        TEMPLATE,
-        title=f"Plan for {plan.scene.path.stem}",
-        lead=f"{plan.chosen.name}: {verdict(plan)}.",
-        notes=notes(plan),
-        commands=commands(plan, path),
-        headings=HEADINGS,
-        rows=[(front_row(each), each is plan.chosen) for each in front_rows(plan)],
-        definition=describe_error(plan),
-        quantile=percent(plan.scene.quantile),
-        errors=list(zip(plan.chosen.error.parts, plan.confirmed.parts, strict=True)),
-    )
 
 
 def front_rows(plan: Plan) -> list[Candidate]:
@@ -93,13 +72,8 @@ def describe_error(plan: Plan) -> str:
     materials = " and of the atlas's entries" if scene.atlases else ""
     measured = ", entries with their measurements" if scene.atlases else ""
     return (
-        f"ΔE00 of {percent(scene.quantile)} of the textures' pixels{materials} is at most this value, under the worst "
-        f"of {', '.join(scene.lights)}. Pixels are compared with a cube of the finest lattice and the most "
+        f"ΔE00 of {100 * scene.quantile:.4g} % of the textures' pixels{materials} is at most this value, under the "
+        f"worst of {', '.join(scene.lights)}. Pixels are compared with a cube of the finest lattice and the most "
         f"coefficients at all wavelengths{measured}. {len(plan.measured):,} of {plan.considered:,} candidates were "
-        "measured; the bounds of the others exclude them"
+        "measured; the bounds of the others exclude them."
     )
-
-
-def percent(share: float) -> str:
-    """A share in percent, such as ``97.5 %``."""
-    return f"{100 * share:.4g} %"
