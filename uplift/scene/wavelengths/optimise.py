@@ -29,27 +29,19 @@ MIN_FITTED = 32
 
 def delta_e_factors(setup: RenderSetup) -> Array:
     """Factors T (K, M, 3, 3) of the form at every material and light: |T (XYZ' − XYZ)| ≈ ΔE00 of close colours."""
-    jacobian = np.stack([lab_jacobian(xyz, white) for xyz, white in zip(setup.xyz, setup.whites, strict=True)])
-    values, vectors = np.linalg.eigh(_quadratic_form(setup.lab))
-    root = np.sqrt(np.maximum(values, MIN_EIGENVALUE))[..., None] * np.swapaxes(vectors, -1, -2)
-    return np.asarray(root @ jacobian)
-
-
-def _quadratic_form(lab: Array) -> Array:
-    """Matrices G (…, 3, 3) with dᵀ G d ≈ ΔE00² for small differences d of L*a*b* (…, 3)."""
-    steps = np.eye(3) * STEP
+    lab, steps = setup.lab[..., None, :], np.eye(3) * STEP
 
     def squared(difference: Array) -> Array:
         return (delta_e_2000(lab, lab + difference) / STEP) ** 2
 
-    diagonal = [squared(step) for step in steps]
-    form = np.empty((*lab.shape, 3))
-    for i in range(3):
-        form[..., i, i] = diagonal[i]
-        for j in range(i):
-            mixed = (squared(steps[i] + steps[j]) - diagonal[i] - diagonal[j]) / 2
-            form[..., i, j] = form[..., j, i] = mixed
-    return form
+    # G with dᵀ G d ≈ ΔE00² for small differences d of L*a*b*
+    diagonal, (i, j) = squared(steps), np.tril_indices(3, -1)
+    form = diagonal[..., None] * np.eye(3)
+    form[..., i, j] = (squared(steps[i] + steps[j]) - diagonal[..., i] - diagonal[..., j]) / 2
+    values, vectors = np.linalg.eigh(form)  # of the lower triangle
+    root = np.sqrt(np.maximum(values, MIN_EIGENVALUE))[..., None] * vectors.mT
+    jacobian = np.stack([lab_jacobian(xyz, white) for xyz, white in zip(setup.xyz, setup.whites, strict=True)])
+    return np.asarray(root @ jacobian)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,19 +77,14 @@ class FitProblem:
         """Derivative (K · M · 3, (4 + K) n) of the residuals."""
         sampling = self.unpack(unknowns)
         values, slopes = (self.setup.curves(sampling.wavelengths, order) for order in (0, 1))
-        lights, materials, count = len(sampling.lights), len(values), len(sampling)
         weighted = np.einsum("kmij,nj->kmin", self.factors, sampling.to_xyz)
         radiance = sampling.powers[:, None, :] * values
-        by_powers = np.zeros((lights, materials, 3, lights, count))
-        for light in range(lights):
-            by_powers[light, :, :, light] = weighted[light] * values[:, None, :]
         blocks = (
             weighted * (sampling.powers[:, None, :] * slopes)[:, :, None, :],
             radiance[:, :, None, :, None] * self.factors[:, :, :, None, :],
-            by_powers,
+            np.einsum("kmin,mn,kl->kmiln", weighted, values, np.eye(len(sampling.lights))),
         )
-        height = lights * materials * 3
-        return np.concatenate([block.reshape(height, -1) for block in blocks], axis=1)
+        return np.concatenate([block.reshape(self.setup.xyz.size, -1) for block in blocks], axis=1)
 
 
 def local_fit(problem: FitProblem, start: Sampling, *, fix_wavelengths: bool = False) -> Sampling:
