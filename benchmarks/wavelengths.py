@@ -11,9 +11,9 @@ from uplift.atlas import on_grid
 from uplift.colorimetry import delta_e_1976, lab
 from uplift.common.arrays import Array
 from uplift.scene.quadrature import QuadratureRule
-from uplift.scene.wavelengths import METHODS, ColourErrors, choose, grid, make_setup
+from uplift.scene.wavelengths import METHODS, choose, grid, make_setup
 from uplift.scene.wavelengths import meyer as paper
-from uplift.scene.wavelengths.sampling import RenderSetup, evaluate
+from uplift.scene.wavelengths.sampling import RenderSetup, evaluate, statistics
 from uplift.viz.figure import GREY, INK, colour_map, new_figure, style_axes, styled, write_png
 
 CHANNELS = ("A", "C1", "C2")
@@ -146,7 +146,7 @@ def four_wavelengths(
 
 # --- methods ---
 
-Errors = Mapping[tuple[str, int], ColourErrors]
+Errors = Mapping[tuple[str, int], Array]
 """By method and number of wavelengths."""
 
 
@@ -177,15 +177,15 @@ def tables(lights: tuple[str, ...], comparison: Mapping[str, Errors]) -> Iterato
     for a mean of 1; None if 16 do not reach it.
     """
     for materials, errors in comparison.items():
-        means = {method: np.array([errors[method, count].mean for count in COUNTS]) for method in METHODS}
+        means = {method: np.array([errors[method, count].mean() for count in COUNTS]) for method in METHODS}
         gains = np.min([means[other] for other in OTHERS], axis=0) / means[OPTIMISED]
         head = {"lights": ", ".join(lights), "materials": materials}
         rows = []
         for count, gain in zip(COUNTS, gains.tolist(), strict=True):
             cells = {method: errors[method, count] for method in METHODS}
-            values = {name: [float(one.mean), float(one.p95), float(one.max)] for name, one in cells.items()}
+            values = {name: list(statistics(one).values()) for name, one in cells.items()}
             rows.append({**head, "count": count, "errors": values, "gain": gain})
-        fewest = {method: next((n for n in COUNTS if errors[method, n].mean <= 1), None) for method in METHODS}
+        fewest = {method: next((n for n in COUNTS if errors[method, n].mean() <= 1), None) for method in METHODS}
         ratios = {"other_gain": gains, "fitted_gain": means[FITTED] / means[OPTIMISED]}
         yield {**head, **{name: spread(values) for name, values in ratios.items()}, "needed": fewest}, rows
 

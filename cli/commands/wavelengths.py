@@ -120,12 +120,15 @@ def command(
 
 def _print(choice: Choice, camera: Sensor, materials: tuple[str, ...], style: str) -> None:
     """Print wavelengths, weights, powers, and errors by light."""
+    from uplift.scene.wavelengths.sampling import statistics
+
     sampling = choice.sampling
     to_rgb = sampling.to_rgb(camera)
-    errors = {light: choice.errors.under(row) for row, light in enumerate(sampling.lights)}
+    errors = dict(zip(sampling.lights, choice.errors, strict=True))
     if len(errors) > 1:
         errors["all lights"] = choice.errors
-    worst = {name: materials[int(each.delta_e.max(axis=0).argmax())] for name, each in errors.items()}
+    worst = {name: materials[each.argmax() % len(materials)] for name, each in errors.items()}
+    summary = {name: statistics(each) for name, each in errors.items()}
     # wavelength, weights to XYZ and to RGB, and powers of the lights
     parts = (sampling.wavelengths[:, None], sampling.to_xyz, to_rgb, sampling.powers.T)
     rows = [[number for part in parts for number in part[row].tolist()] for row in range(len(sampling))]
@@ -141,10 +144,7 @@ def _print(choice: Choice, camera: Sensor, materials: tuple[str, ...], style: st
             "to_xyz": sampling.to_xyz.tolist(),
             "to_rgb": to_rgb.tolist(),
             "powers": dict(zip(sampling.lights, sampling.powers.tolist(), strict=True)),
-            "errors": {
-                name: {"mean": each.mean, "p95": each.p95, "max": each.max, "worst": worst[name]}
-                for name, each in errors.items()
-            },
+            "errors": {name: {**each, "worst": worst[name]} for name, each in summary.items()},
         }
         print_json(fields)
     elif style == "csv":
@@ -158,6 +158,6 @@ def _print(choice: Choice, camera: Sensor, materials: tuple[str, ...], style: st
             powers.add_row(f"{nm:.1f}", *cells[6:])
         table = make_table(("light",), ("mean", "95 %", "max"), title=f"ΔE00 of {len(materials)} materials")
         table.add_column("worst material")
-        for name, each in errors.items():
-            table.add_row(name, *(f"{number:.3f}" for number in (each.mean, each.p95, each.max)), worst[name])
+        for name, each in summary.items():
+            table.add_row(name, *(f"{number:.3f}" for number in each.values()), worst[name])
         show(weights, powers, table)

@@ -101,10 +101,10 @@ def test_meyer_takes_the_best_allocation(smooth, count, opponent):
     chosen = meyer(smooth, count)
     assert len(chosen) == count
     np.testing.assert_allclose((chosen.powers @ chosen.to_xyz)[:, 1], 1, rtol=1e-12)
-    reached = evaluate(smooth, chosen).mean
+    reached = evaluate(smooth, chosen).mean()
     for allocation in allocations(smooth, opponent, count):
         assert sum(map(len, allocation)) == count
-        assert evaluate(smooth, balanced(combine_rules(smooth, opponent, allocation))).mean >= reached
+        assert evaluate(smooth, balanced(combine_rules(smooth, opponent, allocation))).mean() >= reached
 
 
 def test_given_orders_have_the_wavelengths_of_the_paper(setting_c):

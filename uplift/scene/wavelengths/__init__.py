@@ -8,7 +8,7 @@ Examples
 >>> choice = choose(setup, target=1.0)
 >>> choice.sampling.to_xyz.shape == (len(choice.sampling), 3)
 True
->>> choice.errors.max <= 1.0
+>>> bool(choice.errors.max() <= 1.0)
 True
 """
 
@@ -17,15 +17,15 @@ from dataclasses import dataclass
 
 from numpy.typing import ArrayLike
 
+from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, unknown_name
 from uplift.scene.wavelengths import meyer, optimise
 from uplift.scene.wavelengths import sampling as setups
-from uplift.scene.wavelengths.sampling import ColourErrors, RenderSetup, Sampling, grid, make_setup
+from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, grid, make_setup
 
 __all__ = [
     "METHODS",
     "Choice",
-    "ColourErrors",
     "Sampling",
     "choose",
     "choose_orders",
@@ -58,13 +58,13 @@ class Choice:
         A key of `METHODS`, or ``"given"``.
     sampling : Sampling
         Wavelengths, weights and powers.
-    errors : ColourErrors
-        ΔE00 of the M materials under the K lights, shape (K, M).
+    errors : ndarray, shape (K, M)
+        ΔE00 of the M materials under the K lights.
     """
 
     method: str
     sampling: Sampling
-    errors: ColourErrors
+    errors: Array
 
 
 def choose(
@@ -122,7 +122,7 @@ def choose(
             if count is not None or problem.code != "undefined-rule":
                 raise
             continue
-        error = getattr(choice.errors, measure)
+        error = setups.statistics(choice.errors)[measure]
         if target is None or error <= target:
             return choice
     missed = f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method '{method}'"

@@ -169,4 +169,4 @@ def meyer(setup: RenderSetup, count: int) -> Sampling:
         problem = f"method 'meyer' has no rule of {count} wavelengths"
         raise OptionError(problem, code="undefined-rule", hint="give a count in [4, 30]")
     samplings = (balanced(combine_rules(setup, space, allocation)) for allocation in candidates)
-    return min(samplings, key=lambda sampling: evaluate(setup, sampling).mean)
+    return min(samplings, key=lambda sampling: evaluate(setup, sampling).mean())

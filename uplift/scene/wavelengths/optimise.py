@@ -120,7 +120,7 @@ def optimise(setup: RenderSetup, count: int) -> Sampling:
     problem = FitProblem(_thinned(setup))
     starts = (prefiltered(problem.setup, midpoints(count, *span)) for span in START_RANGES)
     fits = [_with_nearby_powers(problem.setup, ordered(local_fit(problem, start))) for start in starts]
-    return min(fits, key=lambda sampling: evaluate(setup, sampling).mean)
+    return min(fits, key=lambda sampling: evaluate(setup, sampling).mean())
 
 
 def fit_at(setup: RenderSetup, wavelengths: ArrayLike) -> Sampling:

@@ -6,7 +6,7 @@ from uplift.colorimetry.gamut import SRGB, map_to_gamut
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array, StrPath
 from uplift.scene.wavelengths import Choice
-from uplift.scene.wavelengths.sampling import RenderSetup, interp_curves
+from uplift.scene.wavelengths.sampling import RenderSetup, interp_curves, statistics
 from uplift.viz.figure import GREY, INK, new_figure, style_axes, styled, write_figure
 
 WIDTH, PANEL_HEIGHT, MARGIN_HEIGHT = 7.2, 1.55, 0.9
@@ -16,7 +16,7 @@ CHANNEL_COLOURS = {"X": "#c0392b", "Y": "#2e8b57", "Z": "#2f5fb3"}
 
 def plot_choice(setup: RenderSetup, choice: Choice, path: StrPath, *, force: bool = False) -> None:
     """Write a figure with a panel per light, showing its powers, and a panel of the weights. Raises `OutputError`."""
-    sampling, errors = choice.sampling, choice.errors
+    sampling = choice.sampling
     nm, chosen = setup.wavelengths, sampling.wavelengths
 
     def area(values: Array) -> Array:
@@ -45,7 +45,8 @@ def plot_choice(setup: RenderSetup, choice: Choice, path: StrPath, *, force: boo
         for axes in (*panels, last):
             style_axes(axes)
         figure.align_ylabels()
-        found = f"mean {errors.mean:.2f}, 95th percentile {errors.p95:.2f}, max {errors.max:.2f}"
+        mean, p95, largest = statistics(choice.errors).values()
+        found = f"mean {mean:.2f}, 95th percentile {p95:.2f}, max {largest:.2f}"
         title = f"{len(sampling)} wavelengths, {choice.method}: ΔE00 {found}"
         figure.suptitle(title, x=0.02, ha="left", fontsize=10, color=INK)
         write_figure(figure, path, force=force)

@@ -1,8 +1,9 @@
 """Materials under lights on a full grid, and a few wavelengths in its place, with the colour errors they cause."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,8 +18,8 @@ START, END, STEP = 380.0, 770.0, 1.0
 """Visible range of Meyer 1988 in nm, with a step that resolves the lines of fluorescent lamps."""
 MIN_SAMPLES = 16
 """Fewest samples of a wavelength grid."""
-MEASURES = ("mean", "p95", "max")
-"""Names of the statistics of `ColourErrors`."""
+MEASURES: Mapping[str, Callable[[Array], Any]] = {"mean": np.mean, "p95": partial(np.quantile, q=0.95), "max": np.max}
+"""Statistics of ΔE00 by name."""
 UNIFORM_START, UNIFORM_END = 400.0, 700.0
 """Range in nm for which even spacing has the least error with few wavelengths."""
 
@@ -215,53 +216,15 @@ def ordered(sampling: Sampling) -> Sampling:
     return replace(sampling, wavelengths=sampling.wavelengths[order], to_xyz=weights, powers=powers)
 
 
-@dataclass(frozen=True, eq=False)
-class ColourErrors:
-    """Colour errors of materials under lights.
-
-    Parameters
-    ----------
-    delta_e : ndarray, shape (K, M)
-        ΔE00 of M materials under K lights.
-    """
-
-    delta_e: Array
-
-    @cached_property
-    def mean(self) -> float:
-        """Mean over all materials and lights."""
-        return float(self.delta_e.mean())
-
-    @cached_property
-    def p95(self) -> float:
-        """95th percentile over all materials and lights."""
-        return float(np.quantile(self.delta_e, 0.95))
-
-    @cached_property
-    def max(self) -> float:
-        """Maximum over all materials and lights."""
-        return float(self.delta_e.max())
-
-    def under(self, light: int) -> "ColourErrors":
-        """Select the errors under one light.
-
-        Parameters
-        ----------
-        light : int
-            Index of the light.
-
-        Returns
-        -------
-        ColourErrors
-            Errors of shape (1, M).
-        """
-        return ColourErrors(self.delta_e[light : light + 1])
-
-
-def evaluate(setup: RenderSetup, sampling: Sampling) -> ColourErrors:
-    """Errors of a sampling for the lights of the setup, in place of the full grid."""
+def evaluate(setup: RenderSetup, sampling: Sampling) -> Array:
+    """ΔE00 (K, M) of a sampling for the lights of the setup, in place of the full grid."""
     xyz = sampling.xyz(setup.curves(sampling.wavelengths))
-    return ColourErrors(delta_e_2000(setup.lab, setup.to_lab(xyz)))
+    return delta_e_2000(setup.lab, setup.to_lab(xyz))
+
+
+def statistics(errors: Array) -> dict[str, float]:
+    """Compute `MEASURES` of errors (K, M)."""
+    return {name: float(compute(errors)) for name, compute in MEASURES.items()}
 
 
 def midpoints(count: int, start: float = UNIFORM_START, end: float = UNIFORM_END) -> Array:
