@@ -45,7 +45,7 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
     enable_jit_cache()
     from uplift.common.files import check_output, write_text
     from uplift.scene.plan import plan, read_scene_file
-    from uplift.scene.plan.candidates import SearchGrid
+    from uplift.scene.plan.candidates import QUICK, SearchGrid
     from uplift.scene.plan.plan_file import to_json
     from uplift.scene.plan.summary import HEADINGS, describe_error, front_row, front_rows, notes, verdict
 
@@ -54,7 +54,7 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
     name = f"{Path(scene).stem}.plan.json" if output is None else output
     path = check_output(name, inputs=inputs, force=force)
     with progress_bar() as progress:
-        result = plan(scene_file, SearchGrid.quick() if quick else SearchGrid(), progress)
+        result = plan(scene_file, QUICK if quick else SearchGrid(), progress)
     fields = to_json(result, path)
     write_text(json_text(fields) + "\n", path, force=force)
     if style == "json":

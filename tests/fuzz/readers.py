@@ -349,7 +349,7 @@ def use_scene(path: Path) -> None:
     for name, file in (("texture.png", TEXTURE), ("atlas.txt", ATLAS)):
         if not path.with_name(name).exists():
             path.with_name(name).symlink_to(file)
-    read_scene_file(path).light_sources()
+    read_scene_file(path).sensor()
 
 
 TARGETS = (

@@ -8,7 +8,7 @@ from tests.helpers import raises
 from uplift.colorimetry.delta_e import delta_e_2000
 from uplift.common.errors import OptionError, UnknownNameError, UpliftError
 from uplift.scene.wavelengths import METHODS, choose, fit_weights, grid, make_setup
-from uplift.scene.wavelengths.optimise import MAX_FITTED_PAIRS, FitProblem, delta_e_factors, fit_at, optimise
+from uplift.scene.wavelengths.optimise import MAX_FITTED_PAIRS, FitProblem, fit_at, optimise
 from uplift.scene.wavelengths.sampling import evaluate, midpoints, prefiltered
 
 
@@ -71,7 +71,7 @@ def test_invalid_options_raise(smooth, options, kind, code):
 
 def test_metric_is_delta_e_of_close_colours(spiky):
     change = np.random.default_rng(4).normal(0, 1e-6, spiky.xyz.shape)
-    approximate = np.linalg.norm(np.einsum("kmij,kmj->kmi", delta_e_factors(spiky), change), axis=-1)
+    approximate = np.linalg.norm(np.einsum("kmij,kmj->kmi", FitProblem(spiky).factors, change), axis=-1)
     exact = delta_e_2000(spiky.lab, spiky.to_lab(spiky.xyz + change))
     np.testing.assert_allclose(approximate, exact, rtol=0.02)
 

@@ -10,6 +10,7 @@ from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.errors import TextureError, UpliftWarning
 from uplift.io.scene_colours import Images, sample_colours
 from uplift.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet
+from uplift.scene.wavelengths import make_setup
 
 LIGHTS = ("D65", "FL11")
 ROWS = {"textures": slice(0, 40), "materials": slice(40, 47)}
@@ -20,8 +21,9 @@ def tests():
     rng = np.random.default_rng(0)
     weights = rng.random(40)
     weights = np.concatenate([weights / weights.sum(), np.full(7, 1 / 7)])
-    lights = tuple(observer.light(name) for name in LIGHTS)
-    return EvaluationSet(rng.random((47, 3)), rng.random((47, 81)), weights, ROWS, lights, 0.8)
+    rgb = rng.random((47, 3))
+    setup = make_setup(rng.random((47, 81)), LIGHTS, wavelengths=observer.grid())
+    return EvaluationSet(setup, rgb, weights, ROWS, 0.8)
 
 
 def weighted_quantile(values, weights, share):
@@ -35,12 +37,12 @@ def weighted_quantile(values, weights, share):
 
 
 def test_errors_agree_with_a_slow_oracle(tests):
-    spectra = np.clip(tests.reflectances + np.random.default_rng(1).normal(0, 0.02, (47, 81)), 0, 1)
+    spectra = np.clip(tests.setup.reflectances + np.random.default_rng(1).normal(0, 0.02, (47, 81)), 0, 1)
     error = tests.error(tests.xyz(spectra))
     assert len(error.parts) == 4
     for part in error.parts:
         rows = ROWS[part.group]
-        delta_e = delta_e_spectra(observer.light(part.light), tests.reflectances[rows], spectra[rows])
+        delta_e = delta_e_spectra(observer.light(part.light), tests.setup.reflectances[rows], spectra[rows])
         assert part.quantile == pytest.approx(weighted_quantile(delta_e, tests.weights[rows], 0.8), rel=1e-9)
         assert part.mean == pytest.approx(np.average(delta_e, weights=tests.weights[rows]), rel=1e-9)
         assert part.largest == pytest.approx(delta_e.max(), rel=1e-9)
@@ -48,8 +50,8 @@ def test_errors_agree_with_a_slow_oracle(tests):
 
 
 def test_reference_spectra_have_no_error_and_nan_has_the_largest(tests):
-    assert tests.error(tests.xyz(tests.reflectances)).quantile == pytest.approx(0, abs=1e-9)
-    broken = tests.reflectances.copy()
+    assert tests.error(tests.xyz(tests.setup.reflectances)).quantile == pytest.approx(0, abs=1e-9)
+    broken = tests.setup.reflectances.copy()
     broken[3] = np.nan
     error = tests.error(tests.xyz(broken))
     assert {part.largest for part in error.parts if part.group == "textures"} == {WORST_DELTA_E}
@@ -123,8 +125,8 @@ def test_images_without_pixels_are_refused(image, sensor, monkeypatch):
 def test_the_best_matrices_map_rgb_under_the_light_of_the_space_exactly(sensor):
     spectra = np.random.default_rng(4).random((30, 81)) ** 2
     rgb = spectra @ sensor.matrix.T
-    lights = tuple(observer.light(name) for name in ("D65", "A"))
-    tests = EvaluationSet(rgb, spectra, np.full(30, 1 / 30), {"textures": slice(0, 30)}, lights, 0.9)
+    setup = make_setup(spectra, ("D65", "A"), wavelengths=observer.grid())
+    tests = EvaluationSet(setup, rgb, np.full(30, 1 / 30), {"textures": slice(0, 30)}, 0.9)
     matrices = tests.matrices()
     np.testing.assert_allclose(matrices[0], np.linalg.inv(sensor.xyz_to_rgb), atol=1e-9)
     fitted = tests.error(rgb @ matrices.mT)

@@ -34,7 +34,6 @@ def test_all_keys_are_read(read, tmp_path):
     sensor = scene.sensor()
     assert (sensor.space, sensor.illuminant) == ("ITU-R BT.2020", "D50")
     assert sensor.observer == "CIE 1964 10 Degree Standard Observer"
-    assert [light.name for light in scene.light_sources()] == ["A", "FL11"]
 
 
 TEXTURES = "textures = 'a.png'\n"

@@ -45,12 +45,9 @@ class SearchGrid:
     predicting: int = 1500
     confirming: int = 4000
 
-    @classmethod
-    def quick(cls) -> "SearchGrid":
-        """Fewer candidates and pixels: seconds."""
-        models, dims, samples = {"none": (5, 9, 13, 17)}, (8, 16, 32, 48), (3, 5, 6, 7, 8, 10)
-        return cls(models, dims, AXES[:1], samples, reference=64, predicting=400, confirming=1000)
 
+QUICK = SearchGrid({"none": (5, 9, 13, 17)}, (8, 16, 32, 48), AXES[:1], (3, 5, 6, 7, 8, 10), 64, 400, 1000)
+"""Fewer candidates and pixels: seconds."""
 
 CostName = Literal["memory", "time", "samples"]
 Minimised = Literal["balance", CostName]
@@ -95,11 +92,6 @@ class Pixel:
     def name(self) -> str:
         """Short text."""
         return f"RGB, lookup of {self.mode}" if self.mode else f"{self.form}, {self.depth}" if self.depth else self.form
-
-    @property
-    def cli_args(self) -> str:
-        """Options of ``uplift texture``."""
-        return f"--representation {self.form} --depth {self.depth}"
 
     def size(self, count: int, samples: int) -> int:
         """Bytes of a pixel of a texture for a cube of ``count`` coefficients, 0 for the numbers of the image itself."""
@@ -180,7 +172,7 @@ class Candidate:
     @property
     def traced(self) -> str:
         """Short text."""
-        return self.rendering.name if self.rendering else WITHOUT_SPECTRA
+        return f"{len(self.rendering.sampling)} wavelengths" if self.rendering else WITHOUT_SPECTRA
 
     @property
     def name(self) -> str:

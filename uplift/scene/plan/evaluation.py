@@ -2,16 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
-from uplift.colorimetry import Light, Sensor, delta_e_2000, lab
-from uplift.colorimetry.delta_e import delta_e_2000_weights, lab_jacobian
+from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab_jacobian
 from uplift.common.arrays import Array, Indices
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.lookup import Cube
-from uplift.scene.wavelengths import Sampling, choose, make_setup
+from uplift.scene.wavelengths import Sampling, choose
+from uplift.scene.wavelengths.sampling import RenderSetup
 
 TEXTURES, MATERIALS = "textures", "materials"
 WORST_DELTA_E = 100.0
@@ -57,35 +56,24 @@ class Rendering:
     sampling: Sampling
     error: ErrorSummary
 
-    @property
-    def name(self) -> str:
-        """Short text."""
-        return f"{len(self.sampling)} wavelengths"
-
 
 @dataclass(frozen=True, eq=False)
 class EvaluationSet:
-    """Test colours with their reference spectra, and the lights to compare them under, on the grid of the spectra.
+    """Test colours: n reference spectra under the lights of the scene, linear RGB (n, 3), and weights (n,).
 
-    Linear RGB (n, 3), reference spectra (n, N), and weights (n,) whose sum is 1 in each group, a slice of the rows with
-    one statistic. ``quantile`` is the share of the colours whose largest ΔE00 is the error of a group.
+    Weights have the sum 1 in each group, a slice of the rows with one statistic. ``quantile`` is the share of the
+    colours whose largest ΔE00 is the error of a group.
     """
 
+    setup: RenderSetup
     rgb: Array
-    reflectances: Array
     weights: Array
     groups: Mapping[str, slice]
-    lights: tuple[Light, ...]
     quantile: float
-
-    @cached_property
-    def lab(self) -> list[Array]:
-        """CIE L*a*b* (n, 3) of the reference spectra under each light."""
-        return [lab(xyz, light.white) for xyz, light in zip(self.xyz(self.reflectances), self.lights, strict=True)]
 
     def xyz(self, reflectances: Array) -> Array:
         """XYZ (K, n, 3) of reflectances (n, N) on the grid of the lights, where white has Y = 1."""
-        return np.stack([reflectances @ light.xyz.T for light in self.lights])
+        return replace(self.setup, reflectances=reflectances).xyz
 
     def subsample(self, count: int) -> Indices:
         """Rows of at most ``count`` colours of each group, drawn at equal steps of the cumulative weight."""
@@ -98,35 +86,33 @@ class EvaluationSet:
             found.append(drawn)
         return np.concatenate(found)
 
-    def error(self, xyz: Sequence[Array] | Array) -> ErrorSummary:
+    def error(self, xyz: Array) -> ErrorSummary:
         """Errors of XYZ (n, 3) under each light, where white has Y = 1."""
         parts = []
-        for light, reference, values in zip(self.lights, self.lab, xyz, strict=True):
-            difference = delta_e_2000(reference, lab(values, light.white))
+        differences = delta_e_2000(self.setup.lab, self.setup.to_lab(xyz))
+        for light, difference in zip(self.setup.lights, differences, strict=True):
             delta_e = np.where(np.isfinite(difference), difference, WORST_DELTA_E)
             for name, rows in self.groups.items():
                 errors, weights = delta_e[rows], self.weights[rows]
                 quantile = np.quantile(errors, self.quantile, weights=weights, method="inverted_cdf")
                 mean, largest = float(errors @ weights), float(errors.max())
-                parts.append(GroupError(name, light.name, mean, float(quantile), largest))
+                parts.append(GroupError(name, light, mean, float(quantile), largest))
         return ErrorSummary(tuple(parts))
 
     def matrices(self) -> Array:
         """Matrices (K, 3, 3) from linear RGB to XYZ under each light: least squares of small differences in ΔE00."""
-        weight = np.sqrt(self.weights)[:, None, None]
-        found = []
-        for light, reference, xyz in zip(self.lights, self.lab, self.xyz(self.reflectances), strict=True):
-            # ΔE00 ≈ |F (M r − x)|
-            factor = weight * (delta_e_2000_weights(reference) @ lab_jacobian(xyz, light.white))
-            design = np.einsum("nij,nl->nijl", factor, self.rgb).reshape(-1, 9)
-            target = np.einsum("nij,nj->ni", factor, xyz).ravel()
-            found.append(np.linalg.lstsq(design, target, rcond=None)[0].reshape(3, 3))
-        return np.stack(found)
+        xyz, whites = self.setup.xyz, self.setup.whites[:, None]
+        # ΔE00 ≈ |F (M r − x)|
+        factors = delta_e_2000_weights(self.setup.lab) @ lab_jacobian(xyz, whites)
+        factors *= np.sqrt(self.weights)[:, None, None]
+        designs = np.einsum("knij,nl->knijl", factors, self.rgb).reshape(len(xyz), -1, 9)
+        targets = np.einsum("knij,knj->kni", factors, xyz).reshape(len(xyz), -1)
+        pairs = zip(designs, targets, strict=True)
+        return np.stack([np.linalg.lstsq(*pair, rcond=None)[0].reshape(3, 3) for pair in pairs])
 
 
 def renderings(
     counts: Sequence[int],
-    sensor: Sensor,
     tests: EvaluationSet,
     reference: Cube,
     floor: float,
@@ -136,8 +122,7 @@ def renderings(
 
     Those that do not lower the error are left out.
     """
-    fitted, lights = tests.reflectances[tests.subsample(FEW)], [light.name for light in tests.lights]
-    setup = make_setup(fitted, lights, wavelengths=sensor.wavelengths, observer_name=sensor.observer)
+    setup = tests.setup.only(tests.subsample(FEW))
     found, smallest = list[Rendering](), np.inf
     for done, count in enumerate((*counts, None)):
         progress(Progress("wavelengths", done, len(counts)))

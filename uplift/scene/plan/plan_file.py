@@ -105,7 +105,8 @@ def commands(plan: Plan, path: Path) -> tuple[str, ...]:
     if pixel.mode:
         return build, shlex.join(["uplift", "export", cube, "--format", "c", "--mode", pixel.mode])
     target = f"{scene.textures[0].stem}-uplifted.exr" if len(scene.textures) == 1 else "uplifted"
-    words = ["uplift", "texture", *map(str, scene.textures), "-o", target, "--cube", cube, *pixel.cli_args.split()]
+    words = ["uplift", "texture", *map(str, scene.textures), "-o", target, "--cube", cube]
+    words += ["--representation", pixel.form, "--depth", pixel.depth]
     if pixel.form == Spectrum.name and plan.chosen.rendering is not None:
         words += ["--wavelengths", ",".join(f"{each:g}" for each in plan.chosen.rendering.sampling.wavelengths)]
     if scene.encoding != SceneFile.encoding:

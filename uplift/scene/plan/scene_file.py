@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field
 
-from uplift.colorimetry import Light, Sensor, observer
+from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PlanFileError
@@ -110,16 +110,6 @@ class SceneFile:
             The space under its illuminant, for its observer.
         """
         return observer.sensor(self.space, self.illuminant, self.observer)
-
-    def light_sources(self) -> tuple[Light, ...]:
-        """Look up the lights.
-
-        Returns
-        -------
-        tuple of Light
-            One for each of `lights`.
-        """
-        return tuple(observer.light(name, self.observer) for name in self.lights)
 
 
 def read_scene_file(path: StrPath) -> SceneFile:

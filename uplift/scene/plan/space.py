@@ -29,6 +29,7 @@ from uplift.pipeline.options import Options
 from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, Pixel, SearchGrid
 from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ErrorSummary, EvaluationSet, Rendering, renderings
 from uplift.scene.plan.scene_file import SceneFile
+from uplift.scene.wavelengths import make_setup
 
 FLOOR, CEILING = 0.5, 2.0
 """Shares of the tolerance below which errors count as equal, and above which candidates are not measured."""
@@ -64,7 +65,7 @@ class CandidateSpace:
         self.floor, self.ceiling = (share * scene.tolerance for share in (FLOOR, CEILING))
         progress(Progress("reference cube", 0, 1))
         tests, reference = self.evaluation_set(self.colours.predicting)
-        self.renderings = renderings(grid.samples, self.sensor, tests, reference, self.floor, progress)
+        self.renderings = renderings(grid.samples, tests, reference, self.floor, progress)
         self.cubes = {self.reference: reference}
         self.tests, self.matrices = tests, tests.matrices()
         self.base = tests.xyz(reference.reflectance(tests.rgb))
@@ -72,7 +73,7 @@ class CandidateSpace:
         rows = {name: array for name, array in arrays.items() if name in POINTS}
         self.row_bytes = sum(array[0].nbytes for name, array in rows.items() if name != "coefficients")
         self.other_bytes = sum(array.nbytes for name, array in arrays.items() if name not in rows)
-        self.built = self.considered = 0
+        self.considered = 0
 
     @property
     def reference(self) -> Options:
@@ -108,8 +109,9 @@ class CandidateSpace:
         pixels, count = len(sample.rgb), len(self.materials)
         weights = np.concatenate([sample.share, np.full(count, 1 / max(count, 1))])
         groups = {TEXTURES: slice(0, pixels)} | ({MATERIALS: slice(pixels, pixels + count)} if count else {})
-        lights = self.scene.light_sources()
-        return EvaluationSet(rgb, spectra, weights, groups, lights, self.scene.quantile), reference
+        nm, observer_name = self.sensor.wavelengths, self.sensor.observer
+        setup = make_setup(spectra, self.scene.lights, wavelengths=nm, observer_name=observer_name)
+        return EvaluationSet(setup, rgb, weights, groups, self.scene.quantile), reference
 
     def candidates(self) -> list[Candidate]:
         """All candidates with their costs and the lower bounds of their errors; RGB alone is the first.
@@ -133,8 +135,7 @@ class CandidateSpace:
         """Build the cube that candidates share, and measure their errors."""
         cube = None
         if choice is not None:
-            self.built += 1
-            self.progress(Progress(f"cube {self.built}: {candidates[0].cube_name}", 0, 1))
+            self.progress(Progress(f"cube {candidates[0].cube_name}", 0, 1))
             cube = self._cube(choice)
         return self.errors(cube, candidates, self.tests, self.cubes[self.reference])
 

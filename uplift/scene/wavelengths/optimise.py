@@ -27,23 +27,6 @@ MIN_FITTED = 32
 """Fewest materials that are fitted, however many lights there are."""
 
 
-def delta_e_factors(setup: RenderSetup) -> Array:
-    """Factors T (K, M, 3, 3) of the form at every material and light: |T (XYZ' − XYZ)| ≈ ΔE00 of close colours."""
-    lab, steps = setup.lab[..., None, :], np.eye(3) * STEP
-
-    def squared(difference: Array) -> Array:
-        return (delta_e_2000(lab, lab + difference) / STEP) ** 2
-
-    # G with dᵀ G d ≈ ΔE00² for small differences d of L*a*b*
-    diagonal, (i, j) = squared(steps), np.tril_indices(3, -1)
-    form = diagonal[..., None] * np.eye(3)
-    form[..., i, j] = (squared(steps[i] + steps[j]) - diagonal[..., i] - diagonal[..., j]) / 2
-    values, vectors = np.linalg.eigh(form)  # of the lower triangle
-    root = np.sqrt(np.maximum(values, MIN_EIGENVALUE))[..., None] * vectors.mT
-    jacobian = np.stack([lab_jacobian(xyz, white) for xyz, white in zip(setup.xyz, setup.whites, strict=True)])
-    return np.asarray(root @ jacobian)
-
-
 @dataclass(frozen=True, eq=False)
 class FitProblem:
     """Least-squares problem over a vector of wavelengths (n,), weights (n, 3) and powers (K, n), in this order."""
@@ -52,8 +35,19 @@ class FitProblem:
 
     @cached_property
     def factors(self) -> Array:
-        """Factors (K, M, 3, 3) of ΔE00, see `delta_e_factors`."""
-        return delta_e_factors(self.setup)
+        """Factors T (K, M, 3, 3) at every material and light: |T (XYZ' − XYZ)| ≈ ΔE00 of close colours."""
+        lab, steps = self.setup.lab[..., None, :], np.eye(3) * STEP
+
+        def squared(difference: Array) -> Array:
+            return (delta_e_2000(lab, lab + difference) / STEP) ** 2
+
+        # G with dᵀ G d ≈ ΔE00² for small differences d of L*a*b*
+        diagonal, (i, j) = squared(steps), np.tril_indices(3, -1)
+        form = diagonal[..., None] * np.eye(3)
+        form[..., i, j] = (squared(steps[i] + steps[j]) - diagonal[..., i] - diagonal[..., j]) / 2
+        values, vectors = np.linalg.eigh(form)  # of the lower triangle
+        root = np.sqrt(np.maximum(values, MIN_EIGENVALUE))[..., None] * vectors.mT
+        return np.asarray(root @ lab_jacobian(self.setup.xyz, self.setup.whites[:, None]))
 
     @staticmethod
     def pack(sampling: Sampling) -> Array:

@@ -60,7 +60,7 @@ class RenderSetup:
 
     def to_lab(self, xyz: Array) -> Array:
         """Convert XYZ (K, M, 3) to CIE L*a*b* relative to the white of each light."""
-        return np.stack([lab(colours, white) for colours, white in zip(xyz, self.whites, strict=True)])
+        return lab(xyz, self.whites[:, None])
 
     def sampled_powers(self, wavelengths: Array) -> Array:
         """Powers (K, n) of the lights at wavelengths (n,) nm, as a renderer without prefiltering reads them."""
