@@ -136,8 +136,8 @@ def riemann_rows(scene: Scene, thesis: Mapping[tuple[str, str], Printed]) -> lis
         {
             "lights": lights.name,
             "name": one.name,
-            "disjoint": compare.error_statistics(one, scene, lights).mean,
-            "closed": compare.error_statistics(other, scene, lights).mean,
+            "disjoint": compare.error_statistics(one, lights).mean,
+            "closed": compare.error_statistics(other, lights).mean,
             "thesis": thesis[lights.name, one.name].mean,
         }
         for lights in scene.sets

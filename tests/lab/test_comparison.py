@@ -54,7 +54,7 @@ def found(checker):
 def test_dense_data_have_no_error(checker):
     dense = linear("dense", "dense", np.eye(401), xyz_weights())
     for part in checker.sets:
-        assert max(error_statistics(dense, checker, part)) < 1e-9
+        assert max(error_statistics(dense, part)) < 1e-9
 
 
 def test_errors_match_explicit_loops(checker):
@@ -66,7 +66,7 @@ def test_errors_match_explicit_loops(checker):
             pair = (lab(samples.xyz(product)[0], white), lab((power * surface) @ xyz_weights(), white))
             apart.append(float(delta_e_2000(*pair)))
     expected = [np.mean(apart), np.std(apart), *np.quantile(apart, (0.5, 0.025, 0.25, 0.75, 0.975))]
-    np.testing.assert_allclose(error_statistics(samples, checker, part), expected, rtol=1e-9)
+    np.testing.assert_allclose(error_statistics(samples, part), expected, rtol=1e-9)
 
 
 def test_result_that_is_not_finite_is_an_error(checker):
@@ -197,8 +197,7 @@ def tuned(checker):
 def test_no_candidate_filter_is_better(checker, tuned, kind):
     part = checker.sets[1]
     means = {
-        one: error_statistics(filtered_point_samples(16, one), checker, part).mean
-        for one in candidates(kind, COARSE_STRIDE)
+        one: error_statistics(filtered_point_samples(16, one), part).mean for one in candidates(kind, COARSE_STRIDE)
     }
     best = tuned[part.name, kind]
     assert best.low_pass == min(means, key=means.__getitem__)
@@ -207,7 +206,7 @@ def test_no_candidate_filter_is_better(checker, tuned, kind):
 
 def test_filters_improve_point_sampling_under_spiky_lights(checker, tuned):
     for part in checker.sets:
-        assert tuned[part.name, NONE].statistics == error_statistics(point_samples(16), checker, part)
+        assert tuned[part.name, NONE].statistics == error_statistics(point_samples(16), part)
     for kind in ("mitchell", "lanczos"):
         assert tuned["spiky", kind].statistics.mean < 0.3 * tuned["spiky", NONE].statistics.mean
 
@@ -256,7 +255,7 @@ def fitted():
 def test_representations_fitted_to_a_scene_follow_its_products(fitted):
     scene, named = fitted
     (lights,) = scene.sets
-    errors = {name: error_statistics(named[name], scene, lights).mean for name in ("FW5", "FW12", "BF5", "CM9", "CM17")}
+    errors = {name: error_statistics(named[name], lights).mean for name in ("FW5", "FW12", "BF5", "CM9", "CM17")}
     assert errors["FW12"] < 0.1 < errors["FW5"] < 2
     assert errors["CM17"] < errors["CM9"] < 0.5
     assert errors["BF5"] < 6

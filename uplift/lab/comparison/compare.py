@@ -8,7 +8,6 @@ import math
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from itertools import product
 from typing import Any, NamedTuple
 
@@ -16,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, Entry, merge, on_grid
-from uplift.colorimetry import delta_e_2000, lab, observer
+from uplift.colorimetry import delta_e_2000, observer
 from uplift.colorimetry.lights import KMENT_LIGHTS
 from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array
@@ -27,6 +26,7 @@ from uplift.scene.plan.candidates import front
 from uplift.scene.representations import filters, samples
 from uplift.scene.representations.filters import Filter
 from uplift.scene.representations.samples import Representation
+from uplift.scene.wavelengths.sampling import RenderSetup
 
 NAMED_SET = "given"
 """Name of the set of lights that a user lists."""
@@ -37,57 +37,37 @@ TIMING, QUICK_TIMING = (1024, 0.05, 7), (256, 0.005, 3)
 
 
 @dataclass(frozen=True, eq=False)
-class LightSet:
-    """A set of lights.
-
-    ``name``: name of the set.
-    ``lights``: names of K lights.
-    ``powers`` (K, 401): their relative powers, of luminance 1.
-    """
+class LightSet(RenderSetup):
+    """Surfaces under a set of lights of luminance 1, as dense spectra."""
 
     name: str
-    lights: tuple[str, ...]
-    powers: Array
 
     @property
     def title(self) -> str:
         """Return the name of the set with those of its lights."""
         return f"{self.name} lights ({', '.join(self.lights)})"
 
-    @cached_property
-    def whites(self) -> Array:
-        """Return XYZ of the lights, (K, 3)."""
-        return self.powers @ samples.xyz_weights()
-
-    def lab(self, xyz: Array) -> Array:
-        """Convert XYZ to L*a*b*, relative to the white of each light. Shapes: ``xyz`` (K, E, 3); result (K, E, 3)."""
-        return lab(xyz / self.whites[:, None], np.ones(3))
-
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Surfaces and the sets of lights that illuminate them.
+    """The same surfaces under several sets of lights."""
 
-    ``surfaces`` (E, 401): reflectances.
-    ``sets``: sets of lights.
-    """
-
-    surfaces: Array
     sets: tuple[LightSet, ...]
+
+    @property
+    def surfaces(self) -> Array:
+        """Return the reflectances (E, 401)."""
+        return self.sets[0].reflectances
 
     @property
     def powers(self) -> Array:
         """Return the powers of all lights, (L, 401)."""
         return np.concatenate([light_set.powers for light_set in self.sets])
 
-    def reference(self, light_set: LightSet) -> Array:
-        """Compute the colours of all surfaces from densely sampled products. The result has shape (K, E, 3)."""
-        return light_set.lab((light_set.powers[:, None] * self.surfaces) @ samples.xyz_weights())
-
     def thinned(self, count: int = QUICK_SURFACES) -> "Scene":
         """Select at most ``count`` surfaces, evenly spaced."""
         kept = np.unique(np.linspace(0, len(self.surfaces) - 1, count).round().astype(np.intp))
-        return replace(self, surfaces=self.surfaces[kept])
+        return Scene(tuple(replace(each, reflectances=each.reflectances[kept]) for each in self.sets))
 
 
 def make_scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scene:
@@ -96,13 +76,14 @@ def make_scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scen
     if not merged.entries:
         raise AtlasError("the atlases have no entries", hint="give an atlas of reflectances")
     named = {NAMED_SET: tuple(dict.fromkeys(lights))} if lights else KMENT_LIGHTS
-    sets = tuple(LightSet(name, members, _powers(members)) for name, members in named.items())
-    return Scene(on_grid(merged, samples.wavelengths()), sets)
+    nm, weights = samples.wavelengths(), samples.xyz_weights()
+    surfaces = on_grid(merged, nm)
 
+    def light_set(name: str, members: tuple[str, ...]) -> LightSet:
+        powers = np.stack([observer.illuminant_spd(member, step=samples.STEP) for member in members])
+        return LightSet(nm, surfaces, members, powers / (powers @ weights[:, 1:2]), weights, name)
 
-def _powers(names: Sequence[str]) -> Array:
-    powers = np.stack([observer.illuminant_spd(name, step=samples.STEP) for name in names])
-    return np.asarray(powers / (powers @ samples.xyz_weights()[:, 1:2]))
+    return Scene(tuple(light_set(*each) for each in named.items()))
 
 
 HEADINGS = ("mean", "σ", "median", "2.5 %", "25 %", "75 %", "97.5 %")
@@ -182,10 +163,7 @@ def compare(
         floats = float(representation.storage(representation.encode_surface(scene.surfaces)).mean())
         for light_set in scene.sets:
             light_floats = float(representation.storage(representation.encode_light(light_set.powers)).mean())
-            errors, ns = (
-                error_statistics(representation, scene, light_set),
-                _time(representation, scene, light_set, quick),
-            )
+            errors, ns = error_statistics(representation, light_set), _time(representation, light_set, quick)
             names = representation.name, representation.family, light_set.name
             results.append(RepresentationResult(*names, errors, floats, light_floats, ns))
         progress(Progress("representations", done, len(representations)))
@@ -215,21 +193,21 @@ def represent(representation: Representation, scene: Scene, names: Sequence[str]
     return atlas(names, surfaces), atlas(lights, powers / powers.max(axis=1, keepdims=True))
 
 
-def error_statistics(representation: Representation, scene: Scene, light_set: LightSet) -> Statistics:
+def error_statistics(representation: Representation, light_set: LightSet) -> Statistics:
     """Compute the errors of a representation under a set of lights. Raises `UpliftError`."""
-    surfaces = representation.encode_surface(scene.surfaces)
-    lights = (_repeat_light(representation, power, len(scene.surfaces)) for power in light_set.powers)
+    surfaces = representation.encode_surface(light_set.reflectances)
+    lights = (_repeat_light(representation, power, len(light_set.reflectances)) for power in light_set.powers)
     xyz = np.stack([representation.xyz(representation.multiply(light, surfaces)) for light in lights])
-    errors = delta_e_2000(light_set.lab(xyz), scene.reference(light_set))
+    errors = delta_e_2000(light_set.to_lab(xyz), light_set.lab)
     if not np.isfinite(errors).all():
         raise UpliftError(f"{representation.name} returns values that are not finite under {light_set.title}")
     return compute_statistics(errors)
 
 
-def _time(representation: Representation, scene: Scene, light_set: LightSet, quick: bool) -> Spread:
+def _time(representation: Representation, light_set: LightSet, quick: bool) -> Spread:
     """CPU time of a product, in ns: each light of a set in turn, with many surfaces per call."""
     rows, lap, runs = QUICK_TIMING if quick else TIMING
-    surfaces = representation.encode_surface(np.resize(scene.surfaces, (rows, scene.surfaces.shape[1])))
+    surfaces = representation.encode_surface(np.resize(light_set.reflectances, (rows, len(light_set.wavelengths))))
     lights = [_repeat_light(representation, power, rows) for power in light_set.powers]
 
     def multiply() -> None:
@@ -325,26 +303,26 @@ def tune_filters(
     """Search the best filter of each kind, for each number of samples and each set of lights."""
     results = []
     for count, light_set in product(counts, scene.sets):
-        errors = error_statistics(samples.point_samples(count), scene, light_set)
+        errors = error_statistics(samples.point_samples(count), light_set)
         results.append(TunedFilter(NONE, count, light_set.name, None, errors))
     tasks = list(product(kinds, counts))
     for done, (kind, count) in enumerate(tasks, 1):
         tried = list(filters.candidates(kind, stride))
         encoders = [filters.resampling_matrix(low_pass, count).T for low_pass in tried]
         for light_set in scene.sets:
-            best = tried[int(_mean_errors(scene, light_set, count, encoders).argmin())]
-            errors = error_statistics(filters.filtered_point_samples(count, best), scene, light_set)
+            best = tried[int(_mean_errors(light_set, count, encoders).argmin())]
+            errors = error_statistics(filters.filtered_point_samples(count, best), light_set)
             results.append(TunedFilter(kind, count, light_set.name, best, errors))
         progress(Progress("filters", done, len(tasks)))
     return tuple(results)
 
 
-def _mean_errors(scene: Scene, light_set: LightSet, count: int, encoders: Iterable[Array]) -> Array:
+def _mean_errors(light_set: LightSet, count: int, encoders: Iterable[Array]) -> Array:
     """Mean ΔE00 of encoders (81, count) of the 5 nm table, faster than `error_statistics`."""
-    surfaces, lights = scene.surfaces[:, :: samples.TABLE_STRIDE], light_set.powers[:, :: samples.TABLE_STRIDE]
-    reference, to_xyz = scene.reference(light_set), samples.point_samples(count).xyz
+    surfaces, lights = (each[:, :: samples.TABLE_STRIDE] for each in (light_set.reflectances, light_set.powers))
+    to_xyz = samples.point_samples(count).xyz
     products = ((lights @ encoder)[:, None] * (surfaces @ encoder) for encoder in encoders)
-    return np.array([delta_e_2000(light_set.lab(to_xyz(each)), reference).mean() for each in products])
+    return np.array([delta_e_2000(light_set.to_lab(to_xyz(each)), light_set.lab).mean() for each in products])
 
 
 def filter_records(tuned: Iterable[TunedFilter]) -> list[dict[str, Any]]:
