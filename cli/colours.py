@@ -37,36 +37,38 @@ Colour = tuple[list[float], bool]
 
 
 @dataclass(frozen=True)
-class ColourReader:
-    """Converts colours to linear RGB of a sensor.
+class ColourSource:
+    """Colours in words, or in the file of a ``path``, '-' for standard input, or one by XYZ.
 
-    Numbers are codes from 0 to 255 if ``encoded``, else linear RGB, which must lie in [0, 1] if ``bounded``. Colours
-    are in ``space``, or in that of the sensor.
+    Numbers are codes from 0 to 255 if ``encoded``, else linear RGB. Colours are in ``space``, or in that of the sensor
+    whose linear RGB they are converted to.
     """
 
-    sensor: Sensor
+    words: tuple[str, ...] = ()
+    path: str | None = None
+    xyz: tuple[float, float, float] | None = None
     encoded: bool = False
-    bounded: bool = False
     space: ImageSpace | None = None
 
-    def parse(self, words: Sequence[str]) -> Array:
-        """Parse one colour, 'R G B', 'R,G,B' or '#rrggbb', into linear RGB (1, 3)."""
-        parts = [part for word in words for part in re.split(r"[,\s]+", word) if part]
+    def blocks(self, sensor: Sensor, *, bounded: bool = False) -> Iterable[Array]:
+        """Return blocks of linear RGB (n, 3) from the words or the file, which must lie in [0, 1] if ``bounded``."""
+        if self.path is not None:
+            return self._read(self.path, sensor, bounded)
+        # One colour: 'R G B', 'R,G,B' or '#rrggbb'
+        parts = [part for word in self.words for part in re.split(r"[,\s]+", word) if part]
         colour = _parse(parts)
         if colour is None or len(parts) > 3:
             raise _not_a_colour(parts)
-        return self._linear([colour])
+        return [self._linear([colour], sensor)]
 
-    def read(self, path: str) -> Iterator[Array]:
-        """Read blocks of linear RGB (n, 3) from a file, or from standard input, ``-``."""
-        name = "standard input" if path == "-" else path
+    def _read(self, path: str, sensor: Sensor, bounded: bool) -> Iterator[Array]:
         try:
             with click.open_file(path, "rb") as file:
-                yield from self.parse_table(file, name)
+                yield from self.parse_table(file, "standard input" if path == "-" else path, sensor, bounded)
         except OSError as error:
             raise ColourError(f"cannot be read: {error.strerror}", path=path, hint=TABLE) from error
 
-    def parse_table(self, file: IO[bytes], name: str) -> Iterator[Array]:
+    def parse_table(self, file: IO[bytes], name: str, sensor: Sensor, bounded: bool = False) -> Iterator[Array]:
         """Parse lines of 'r,g,b' or hex colours into blocks of linear RGB (n, 3), as the lines come.
 
         A first line without numbers is a header. Further columns are ignored.
@@ -78,15 +80,15 @@ class ColourReader:
                 colour = _parse(row[:1] if row[0].startswith("#") else row)
                 if colour is None:
                     raise _not_a_colour(row, name, line)
-                self._check_range(colour, name, line)
+                self._check_range(colour, name, line, bounded)
                 colours.append(colour)
             if colours:
                 empty = False
-                yield self._linear(colours)
+                yield self._linear(colours, sensor)
         if empty:
             raise ColourError("has no colours", path=name, hint="give lines of r,g,b or of hex colours")
 
-    def _check_range(self, colour: Colour, name: str, line: int) -> None:
+    def _check_range(self, colour: Colour, name: str, line: int, bounded: bool) -> None:
         """Check the range as the cube does, but report the line."""
         from uplift.colorimetry.sensor import SLACK
 
@@ -96,14 +98,14 @@ class ColourReader:
             if not all(0 <= number <= 255 for number in numbers):
                 problem = f"8-bit codes must be in [0, 255], got {values}"
                 raise ColourError(problem, code="invalid-codes", path=name, line=line)
-        elif self.bounded:
+        elif bounded:
             if not all(-SLACK <= number <= 1 + SLACK for number in numbers):
                 problem = f"linear RGB must be in [0, 1], got {values}"
                 raise ColourError(problem, code="rgb-out-of-gamut", path=name, line=line)
         elif not all(map(math.isfinite, numbers)):
             raise ColourError(f"{values} is not finite", path=name, line=line, hint=SYNTAX)
 
-    def _linear(self, colours: list[Colour]) -> Array:
+    def _linear(self, colours: list[Colour], sensor: Sensor) -> Array:
         """Decode codes, and convert colours of another space to the sensor's."""
         import numpy as np
 
@@ -117,25 +119,9 @@ class ColourReader:
         elif mask.any():
             from uplift.lookup.blocks import decode_codes
 
-            values[mask] = decode_codes(self.sensor, values[mask])
-        matrix = None if space is None else space.matrix_to(self.sensor)
+            values[mask] = decode_codes(sensor, values[mask])
+        matrix = None if space is None else space.matrix_to(sensor)
         return values if matrix is None else np.asarray(values @ matrix.T)
-
-
-@dataclass(frozen=True)
-class ColourSource:
-    """The only source of colours: XYZ, the ``path`` of a file, '-' for standard input, or else words."""
-
-    xyz: tuple[float, float, float] | None
-    path: str | None
-    words: tuple[str, ...]
-    encoded: bool
-    space: ImageSpace | None
-
-    def blocks(self, sensor: Sensor, *, bounded: bool = False) -> Iterable[Array]:
-        """Return blocks of linear RGB (n, 3) from the words or the file; see `ColourReader`."""
-        reader = ColourReader(sensor, self.encoded, bounded, self.space)
-        return [reader.parse(self.words)] if self.path is None else reader.read(self.path)
 
 
 def find_colours(
@@ -148,7 +134,7 @@ def find_colours(
     input_space: str | None,
 ) -> ColourSource:
     """Return the source that the values of `options.colours` name. Raises click's error for none or several."""
-    space = find_input_space(input_space)
+    space = None if input_space is None else find_input_space(input_space)
     if colour == ("-",):
         colour, input_path = (), input_path or "-"
     if (xy is None) != (luminance is None) or (xyz is not None and xy is not None):
@@ -160,7 +146,7 @@ def find_colours(
         xyz = x * luminance / y, luminance, (1 - x - y) * luminance / y
     if (xyz is not None) + bool(colour) + (input_path is not None) != 1:
         raise click.UsageError("Give one colour, --input FILE, '-', --xyz or --xy. See 'uplift query --help'.")
-    return ColourSource(xyz, input_path, colour, encoded, space)
+    return ColourSource(colour, input_path, xyz, encoded, space)
 
 
 def _row_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, list[str]]]]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from uplift.common.errors import ColourError, OptionError
 from uplift.common.text import format_value, parse_float
 
-from .colours import ColourReader
+from .colours import ColourSource
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
@@ -69,7 +69,7 @@ class SpectrumResolver:
         if text in CONSTANT_SPECTRA:
             return np.full(len(self.wavelengths), CONSTANT_SPECTRA[text])
         try:
-            (rgb,) = ColourReader(self.cube.data.sensor, space=self.space).parse([text])
+            [(rgb,)] = ColourSource((text,), space=self.space).blocks(self.cube.data.sensor)
         except ColourError as error:
             hint = "write '#rrggbb', 'r,g,b' in linear RGB, or an entry of the cube's atlas or of --atlas"
             raise ColourError(f"{error.problem} and not an atlas entry", hint=hint) from error

@@ -63,7 +63,7 @@ def read_pictures(paths: Sequence[str], sensor: Sensor, *, space: str | None = N
     """Return images, reduced to `MAX_SIDE`, with the options of `options.pixels`, and emit their warnings."""
     from uplift.io.texture.picture import read_picture
 
-    found = find_input_space(space)
+    found = None if space is None else find_input_space(space)
     pictures = [read_picture(path, sensor, max_side=MAX_SIDE, space=found, **options) for path in paths]
     for picture in pictures:
         warn(picture.warnings)
@@ -89,10 +89,8 @@ def parse_wavelengths(text: str) -> Array:
     )
 
 
-def find_input_space(name: str | None) -> ImageSpace | None:
-    """Return the space of a name or of chromaticities, None for None. The tables take a second to load."""
-    if name is None:
-        return None
+def find_input_space(name: str) -> ImageSpace:
+    """Return the space of a name or of chromaticities. The tables take a second to load."""
     from uplift.colorimetry.spaces import find_space
 
     return find_space(name)

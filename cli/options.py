@@ -99,12 +99,21 @@ class Whole(click.IntRange):
         return "" if (self.min, self.max) == (None, None) else super()._describe_range()
 
 
+class Parsed(click.ParamType):  # type: ignore[type-arg]
+    """A text that a function of `uplift_cli.inputs` parses or checks, which may raise `UpliftError`."""
+
+    name = "text"
+
+    def __init__(self, function: Callable[[str], Any]) -> None:
+        self.function = function
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return what the function makes of the text."""
+        return self.function(value)
+
+
 NUMBER = Number()
-
-
-def converted(function: Callable[[str], Any]) -> Callable[..., Any]:
-    """Return a callback that converts a text by a function, which may raise `UpliftError`; None stays."""
-    return lambda context, parameter, text: None if text is None else function(text)
+PAGE, PLOT, WAVELENGTHS = Parsed(check_page), Parsed(check_plot), Parsed(parse_wavelengths)
 
 
 def completion(*sources: str, files: bool = False) -> Callable[..., list[CompletionItem]]:
@@ -137,20 +146,16 @@ def stacked(*decorators: Decorator) -> Decorator:
     return lambda function: reduce(lambda inner, each: each(inner), reversed(decorators), function)
 
 
-def _repeatable(option: str, name: str, help: str, default: str = "", **settings: Any) -> Decorator:
-    text = f"{help}; repeatable." + (f" [default: {default}]" if default else "")
-    return click.option(option, name, multiple=True, help=text, **settings)
-
-
 def atlas(help: str, default: str = "") -> Decorator:
     """``--atlas`` as ``files``."""
-    return _repeatable("--atlas", "files", help, default, metavar="FILE", shell_complete=complete_atlas)
+    text = f"{help}; repeatable." + (f" [default: {default}]" if default else "")
+    return click.option("--atlas", "files", multiple=True, metavar="FILE", help=text, shell_complete=complete_atlas)
 
 
 def light(help: str, default: str) -> Decorator:
     """``--light`` as ``lights``; why defaults differ is in `uplift help lights`."""
-    help = f"{help}, such as led, 3200K or FL11"
-    return _repeatable("--light", "lights", help, default, metavar="NAME", shell_complete=complete_light)
+    text = f"{help}, such as led, 3200K or FL11; repeatable. [default: {default}]"
+    return click.option("--light", "lights", multiple=True, metavar="NAME", help=text, shell_complete=complete_light)
 
 
 OF_PACKAGE = ", or ACEScg for the packaged ACEScg cube{}. [default: the packaged sRGB cube]"
@@ -234,18 +239,18 @@ def _remember_format(ctx: click.Context, param: click.Parameter, value: str) -> 
 def plot(help: str, option: str = "--plot", name: str = "plot_path") -> Decorator:
     """An option for the file of a plot, as ``name``. A suffix other than .png, .svg and .pdf is an error at once."""
     text = f"{help}, as .png, .svg or .pdf."
-    return click.option(option, name, metavar="FILE", callback=converted(check_plot), help=text)
+    return click.option(option, name, metavar="FILE", type=PLOT, help=text)
 
 
 def page(help: str) -> Decorator:
     """``--html``. A suffix other than .html is an error at once."""
-    return click.option("--html", metavar="FILE", callback=converted(check_page), help=help)
+    return click.option("--html", metavar="FILE", type=PAGE, help=help)
 
 
 def wavelengths(help: str) -> Decorator:
     """``--wavelengths`` as an array in nm, or None; `uplift_cli.inputs.check_range` checks their range."""
     text = f"Wavelengths in nm as START:END:STEP or a list such as 450,550,650{help}"
-    return click.option("--wavelengths", metavar="NM", callback=converted(parse_wavelengths), help=text)
+    return click.option("--wavelengths", metavar="NM", type=WAVELENGTHS, help=text)
 
 
 cube_argument = click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
@@ -290,7 +295,9 @@ def colours(xyz: str, space: str) -> Decorator:
 fill = click.option(
     "--fill-missing", is_flag=True, help="Take colours that a cube built with --scene lacks from the packaged cube."
 )
-atlas_folders = _repeatable("--atlas-dir", "folders", "Folder to search for atlases", metavar="DIR")
+atlas_folders = click.option(
+    "--atlas-dir", "folders", multiple=True, metavar="DIR", help="Folder to search for atlases; repeatable."
+)
 force = click.option("--force", is_flag=True, help="Replace existing files.")
 quiet = click.option("-q", "--quiet", is_flag=True, help="Print only warnings and errors.")
 verbose = click.option("-v", "--verbose", is_flag=True, help="Print a line for every round and improvement step.")
@@ -298,7 +305,7 @@ verbose = click.option("-v", "--verbose", is_flag=True, help="Print a line for e
 
 def output(help: str, metavar: str = "FILE", **settings: Any) -> Decorator:
     """``--output``."""
-    return click.option("-o", "--output", metavar=metavar, type=click.Path(), help=help, **settings)
+    return click.option("-o", "--output", metavar=metavar, help=help, **{"type": click.Path()} | settings)
 
 
 def space(camera: str = "") -> Decorator:

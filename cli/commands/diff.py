@@ -7,7 +7,7 @@ from typing import Any
 import click
 
 from .. import options
-from ..inputs import check_page, expand_patterns, read_pictures
+from ..inputs import expand_patterns, read_pictures
 from ..output.console import make_table, print_json, say, show
 from ..output.progress import progress_bar
 
@@ -26,7 +26,7 @@ from ..output.progress import progress_bar
 )
 @click.option("--worst", type=options.Whole(0), default=5, help="Number of worst colours of each set.")
 @options.pixels()
-@options.output("HTML page with pictures of where the cubes differ.", callback=options.converted(check_page))
+@options.output("HTML page with pictures of where the cubes differ.", type=options.PAGE)
 @options.output_format("table", "json")
 @options.force
 def command(

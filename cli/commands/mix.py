@@ -173,7 +173,7 @@ def command(
         raise OutputError("painted images are OpenEXR files", path=output, hint="give a file name ending in .exr")
     check_outputs((plot_path, output), inputs=(cube_path, over, *files), force=force)
     cube = load(cube_path)
-    sensor, space = cube.data.sensor, find_input_space(input_space)
+    sensor, space = cube.data.sensor, None if input_space is None else find_input_space(input_space)
     if wavelengths is not None:
         check_range(wavelengths, cube.wavelengths)
     further = np.array([]) if theories or over is not None else as_wavelengths(wavelengths, cube.wavelengths)

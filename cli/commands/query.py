@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from uplift.common.errors import UpliftWarning
-from uplift.common.files import check_outputs
+from uplift.common.files import check_output
 from uplift.common.text import printable
 
 from .. import options
@@ -53,7 +53,7 @@ colour_options = options.stacked(
 class Answers:
     """Answers to blocks of colours from the values of `colour_options`, each before the next block is read.
 
-    ``cube`` is filled where colours need it. ``origin`` is its file, dim and atlases, for JSON.
+    ``cube`` is filled where colours need it. ``origin`` is its file, dim and atlases, for JSON, and ``title`` for text.
     """
 
     def __init__(
@@ -77,6 +77,9 @@ class Answers:
         data = self.cube.data
         atlases = [source["name"] for source in data.provenance.get("atlases", ())]
         self.origin: dict[str, Any] = {"file": cube_path or PACKAGED, "dim": data.lattice.dim, "atlases": atlases}
+        self.title = (
+            f"{Path(cube_path or PACKAGED).name}: {data.lattice.dim}³ nodes, {', '.join(atlases) or 'no atlas'}"
+        )
         self.lights: list[Light] = []
         self.to_srgb: dict[str, Array] = {}  # matrices from XYZ under a light to linear sRGB with the same white
         if lights:
@@ -86,10 +89,6 @@ class Answers:
             self.lights = [light(name, *setting) for name in dict.fromkeys(lights)]
             names = [each.name for each in self.lights]
             self.to_srgb = {each.illuminant: each.xyz_to_rgb for each in display_sensors(names, *setting)}
-
-    def __str__(self) -> str:
-        atlases = ", ".join(self.origin["atlases"]) or "no atlas"
-        return f"{Path(self.origin['file']).name}: {self.origin['dim']}³ nodes, {atlases}"
 
     def __iter__(self) -> Iterator[list[QueryResult]]:
         """Answer block by block, and warn at the end of colours that were mapped or filled."""
@@ -184,7 +183,8 @@ def command(
             raise click.UsageError("--check takes the colours from its FILE: give no others.")
         _check(stored, colours["cube_path"], colours["mode"], tolerance, style)
         return
-    check_outputs((plot_path,), inputs=(colours["cube_path"], colours["input_path"]), force=force)
+    if plot_path is not None:
+        check_output(plot_path, inputs=(colours["cube_path"], colours["input_path"]), force=force)
     answers = Answers(lights=lights, **colours)
     results: Iterable[QueryResult] = chain.from_iterable(answers)
     if plot_path is not None:
@@ -277,7 +277,7 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
         fields["requested"] = f"{format_rgb(result.requested_rgb)}  outside [0, 1], mapped by ΔE00 {moved:.2g}"
     fields["linear RGB"] = f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"
     fields |= describe_coordinates(coordinates(cube, rgb))
-    fields["cube"] = str(answers)
+    fields["cube"] = answers.title
     fields["cell"] = f"{result.cell} of {data.lattice.dim - 1}³, {', '.join(s.label for s in result.statuses)}"
     round_trip = f"{format_rgb(result.round_trip)}  ΔE00 {result.delta_e_2000:.2g} ({data.sensor.illuminant})"
     fields["round trip"] = round_trip
@@ -288,11 +288,11 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
     if result.light_xyz:
         relit = answers.light_colours(result).items()
         fields["sRGB under"] = ", ".join(f"{code} {name} ({format_rgb(lit)})" for name, (lit, code) in relit)
-    if result.entry in atlas.names[atlas.measured_count :]:
-        fields["look"] = str(result.entry)
+    if result.entry is None:
+        fields["atlas entry"] = "none, and none is near: unlike the atlas" if result.unlike_atlas else "none"
     else:
-        unknown = "none, and none is near: unlike the atlas" if result.unlike_atlas else "none"
-        fields["atlas entry"] = result.entry or unknown
+        is_look = result.entry in atlas.names[atlas.measured_count :]
+        fields["look" if is_look else "atlas entry"] = result.entry
     errors = (f"ΔE00 {error:.2g} under {name} (95 %: {bound:.2g})" for name, error, bound in _errors(cube, result))
     fields["exp. error"] = ", ".join(errors) or "unknown: too few atlas entries"
     return fields
@@ -326,7 +326,7 @@ def _print_lines(answers: Answers, results: Iterable[QueryResult]) -> None:
         if number == 0:
             names = list(errors) or [f"{'spectrum':<16}"]
             indent = " " * 5 * has_colours()
-            say(f"cube     {answers}")
+            say(f"cube     {answers.title}")
             say(f"{indent}hex      {'linear RGB':<17}  {'ΔE00':<7}  {'  '.join(names)}  atlas entry")
         last = [f"{error:>{len(name)}}" for name, error in errors.items()] or [sparkline(result.reflectance, 16)]
         rgb = " ".join(f"{value:.3f}" for value in result.rgb)

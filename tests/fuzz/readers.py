@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from PIL import Image, ImageCms
-from uplift_cli.colours import ColourReader
+from uplift_cli.colours import ColourSource
 
 from tests.atlas.vendor_files import VENDORS, Files, sample
 from tests.cube.cube_files import forge, header_length, with_header, with_header_length
@@ -119,7 +119,7 @@ def use_colours(path: Path) -> None:
     """Map the colours into the gamut and query them."""
     cube = _cube()
     with path.open("rb") as file:
-        for rgb in ColourReader(cube.data.sensor).parse_table(file, path.name):
+        for rgb in ColourSource().parse_table(file, path.name, cube.data.sensor):
             for method in METHODS[1:]:
                 mapped = map_to_gamut(rgb, cube.data.sensor, method).rgb
                 if not ((mapped >= 0) & (mapped <= 1)).all():

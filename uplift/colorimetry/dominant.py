@@ -1,7 +1,6 @@
 """Dominant wavelength and excitation purity of a colour (Fishkin 1983, 3.12; CIE 15:2018, 9.3.2)."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -41,7 +40,10 @@ def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
     colour = np.asarray(xyz, dtype=float)
     if not colour.sum() > 0:
         return GREY
-    white, outline = _outline(sensor)
+    # x, y of white, and from there to the spectrum locus and the line of purples around it (N + 1, 2)
+    curves = np.concatenate([sensor.light.white[None], sensor.cmfs, sensor.cmfs[:1]])
+    xy = curves[:, :2] / curves.sum(axis=1, keepdims=True)
+    white, outline = xy[0], xy[1:] - xy[0]
     direction = colour[:2] / colour.sum() - white
     if np.hypot(*direction) < ACHROMATIC:
         return GREY
@@ -52,14 +54,6 @@ def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
         edge, fraction, _ = crossing(outline[:-1], -direction)
     first, second = sensor.wavelengths[edge : edge + 2]
     return DominantWavelength(float(first + fraction * (second - first)), bool(complementary), float(1 / distance))
-
-
-@lru_cache(maxsize=8)
-def _outline(sensor: Sensor) -> tuple[Array, Array]:
-    """Return x, y (2,) of white, and the spectrum locus and the line of purples around it (N + 1, 2)."""
-    xyz = np.concatenate([sensor.light.white[None], sensor.cmfs, sensor.cmfs[:1]])
-    xy = xyz[:, :2] / xyz.sum(axis=1, keepdims=True)
-    return xy[0], xy[1:] - xy[0]
 
 
 def crossing(path: Array, direction: Array) -> tuple[Any, Array, Array]:

@@ -54,6 +54,8 @@ def require_covered(covered: Mask, rgb: Array) -> None:
 def exact(mix: Mode, data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of a mixture, moved to exact colours where nodes have not their own."""
     mixed = mix(data, rgb, wavelengths)
+    if data.inexact_cells is None:
+        return mixed
     rows, share = fading_rows(data, rgb) if mix is mixed_moments else (inexact_rows(data, rgb), 1)
     if rows.size:
         at_sensor = mix(data, rgb[rows], data.sensor.wavelengths)
