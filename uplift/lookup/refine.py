@@ -31,6 +31,9 @@ TRACE = [0, 2, 5]
 """Diagonal elements of a lower triangle, row by row."""
 MIN_CURVATURE = 0.01
 """Least ratio of the curvatures after and before a step."""
+REACH = 2.0
+"""Longest step of a linear part x of the convex problem, relative to 1 + |x|. Where spectra are nearly flat at 0 and 1,
+Newton's step may be longer by powers of ten."""
 LEAST, SLOPE, MOST, STEEP = 3e-4, 0.03, 1e-2, 100.0
 """Mixtures that are moved are clipped to a distance from 0 and 1, so that programs in single precision follow: the
 first, plus the second times the residual, at most the third, and at most the residual times the last: those that nearly
@@ -106,6 +109,7 @@ def _pull(model: Model, pulled: Pull, linear: Array, goal: Array) -> Array:
     As S increases, this is the minimum of a convex function Φ, whose gradient is the negative residual, and Newton's
     steps (W diag(S') Kᵀ)⁻¹ r, shortened if need be, reach it for every colour inside the solid. A step is accepted
     unless it goes too far: to where Φ rises more than half as steeply as it fell, or where it is much flatter.
+    It changes no x by more than `REACH` (1 + |x|).
     """
     products = np.array([pulled.sensor[a] * pulled.shapes[b] for a in range(3) for b in range(a + 1)])
     found, length = np.zeros_like(goal), np.ones(goal.shape[1])
@@ -114,8 +118,12 @@ def _pull(model: Model, pulled: Pull, linear: Array, goal: Array) -> Array:
         pending = np.flatnonzero(np.abs(residual).max(axis=0) > PULLED)
         if not pending.size:
             break
-        part, off, (g00, g10, g11, g20, g21, g22) = length[pending], residual[:, pending], gram[:, pending]
-        step = part * np.array(solve_damped([[g00], [g10, g11], [g20, g21, g22]], 0, off))
+        off, (g00, g10, g11, g20, g21, g22) = residual[:, pending], gram[:, pending]
+        step = np.array(solve_damped([[g00], [g10, g11], [g20, g21, g22]], 0, off))
+        at = linear[:, pending] + pulled.shapes.T @ found[:, pending]
+        reach = (np.abs(pulled.shapes.T @ step) / (1 + np.abs(at))).max(axis=0)
+        part = length[pending] / np.maximum(1, length[pending] * reach / REACH)
+        step = part * step
         trial = linear[:, pending] + pulled.shapes.T @ (found[:, pending] + step)
         trial_off = goal[:, pending] - pulled.sensor @ model.to_reflectance(trial)
         trial_gram = products @ model.derivative(trial)

@@ -85,6 +85,14 @@ def test_realisable_colours_around_unrealisable_nodes(wide, check, style, mode, 
     check(wide[model], style, mode, rgb, within=(2 if style in ("c", "cuda") else 50) * WITHIN)
 
 
+def test_mixtures_that_start_from_flat_spectra(check):
+    """White weights are moved to strong colours, where Newton's steps are longer than numbers can be (seed 104)."""
+    cube = uplift.build(dim=5, space="ACES2065-1", model="sigmoid")
+    rgb = np.concatenate([[[0.75587261, 0.82532507, 0.21911287]], colours(cube.data)[2000:3000]])
+    rgb = rgb[cube.data.solid.signed_distance(rgb) < -2e-3].astype(np.float32).astype(float)
+    check(cube, "c", "moments", rgb, within=2 * WITHIN)
+
+
 @pytest.mark.parametrize("style", ["glsl", "hlsl"])
 def test_other_phases_in_shaders(warped_cube, check, style):
     check(warped_cube, style, "spectra", colours(warped_cube.data))

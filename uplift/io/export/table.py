@@ -11,7 +11,7 @@ from uplift.common.arrays import Array
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes, weighted_sum
 from uplift.lookup.interpolate import around
-from uplift.lookup.refine import LEAST, MOST, SLOPE, STEEP, pull
+from uplift.lookup.refine import LEAST, MOST, REACH, SLOPE, STEEP, pull
 from uplift.models import Moments, Sigmoid, evaluate
 from uplift.models.moments import WARPS, warped
 
@@ -162,7 +162,14 @@ def _moving(data: CubeData) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
     }
     first, _, step = sensor.range
     how = {"SAMPLES": len(sensor.wavelengths), "FIRST": first, "STEP": step, "FACET_COUNT": half}
-    return sections, how | {"MARGIN": data.threshold / 2, "LEAST": LEAST, "SLOPE": SLOPE, "MOST": MOST, "STEEP": STEEP}
+    return sections, how | {
+        "MARGIN": data.threshold / 2,
+        "LEAST": LEAST,
+        "SLOPE": SLOPE,
+        "MOST": MOST,
+        "STEEP": STEEP,
+        "REACH": REACH,
+    }
 
 
 def _boxes(boxes: EntryBoxes) -> Floats:

@@ -537,8 +537,8 @@ UP_FUNCTION void up_residual(
     }
 }
 
-/* A part of Newton's step of residual and derivative. */
-UP_FUNCTION void up_step(UP_IN UP_FINE found[9], UP_FINE part, UP_OUT UP_FINE change[3])
+/* Newton's step of residual and derivative. */
+UP_FUNCTION void up_step(UP_IN UP_FINE found[9], UP_OUT UP_FINE change[3])
 {
     UP_FINE least = UP_TINY * (found[3] + found[5] + found[8]);
     UP_FINE d0 = found[3] > least ? found[3] : least, l1 = found[4] / d0, l2 = found[6] / d0;
@@ -551,7 +551,26 @@ UP_FUNCTION void up_step(UP_IN UP_FINE found[9], UP_FINE part, UP_OUT UP_FINE ch
     change[2] = (found[2] - l2 * found[0] - l3 * change[1]) / d2;
     change[1] = change[1] / d1 - l3 * change[2];
     change[0] = found[0] / d0 - l1 * change[1] - l2 * change[2];
-    for (int k = 0; k < 3; ++k) change[k] *= part;
+}
+
+/* Take a part of a step, less if arguments x, which have moved by `change`, would move farther than UP_REACH (1 + |x|). */
+UP_FUNCTION UP_FINE up_shorten(
+    UP_READS UP_IN float given[UP_SAMPLES], UP_IN UP_FINE change[3], UP_FINE part, UP_OUT UP_FINE move[3])
+{
+    UP_FINE kept = part;
+    for (int row = 0; row < UP_SAMPLES; ++row) {
+        UP_FINE x = UP_EXACT(given[row]), by = UP_EXACT(0.0f);
+        for (int k = 0; k < 3; ++k) {
+            UP_FINE shape = UP_EXACT(up_number(UP_TABLE UP_PULL + 6 * row + 3 + k));
+            x += shape * change[k];
+            by += shape * move[k];
+        }
+        x = x > 0.0f ? x : -x;
+        by = by > 0.0f ? by : -by;
+        if (kept * by > UP_REACH * (1.0f + x)) kept = UP_REACH * (1.0f + x) / by;
+    }
+    for (int k = 0; k < 3; ++k) move[k] *= kept;
+    return kept;
 }
 
 /* Set place[4] to place[6], by which arguments move along the curves of the sensor, so that the answer has its colour:
@@ -595,7 +614,8 @@ UP_FUNCTION void up_pull(UP_READS UP_IN float rgb[3], int entry, UP_OUT float pl
     up_residual(UP_TABLE given, goal, change, found);
     for (int turn = 0; turn < UP_STEPS && off > UP_TOLERANCE; ++turn) {
         UP_FINE before = UP_EXACT(0.0f), beyond = UP_EXACT(0.0f);
-        up_step(found, part, move);
+        up_step(found, move);
+        part = up_shorten(UP_TABLE given, change, part, move);
         for (int k = 0; k < 3; ++k) trial[k] = change[k] + move[k];
         up_residual(UP_TABLE given, goal, trial, after);
         for (int k = 0; k < 3; ++k) {

@@ -17,4 +17,4 @@
 #define UP_SQUARE_ROOT sqrt
 #define UP_TINY 1e-18
 #define UP_TOLERANCE 1e-7
-#define UP_STEPS 60
+#define UP_STEPS 100
