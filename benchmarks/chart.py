@@ -3,7 +3,8 @@
 from typing import Any
 
 from benchmarks import ATLASES, DOCS, ROOT, record, show
-from benchmarks.choices import ALONE, OURS, SHIPPED, mark
+from benchmarks.choices import ALONE, OURS, mark
+from benchmarks.materials import SHIPPED
 from uplift.atlas import read_atlas
 from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.common.files import write_text

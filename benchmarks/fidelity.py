@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import asdict
 from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from benchmarks import Row, record
 from benchmarks.choices import ALONE, ALONE_SMOOTH, CHOICES, OURS, OURS_SMOOTH, is_optimistic
 from benchmarks.materials import (
     LARGE,
+    MIXTURE,
     MUNSELL,
     SENSOR,
     SPLITS,
@@ -41,7 +43,8 @@ from uplift.report.measures import check_calibration
 DIM, COARSE = 32, 16
 COUNTS = (9, 13, 17)
 SETS = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017")
-"""Sets of at least 20 entries. The others are too small to split."""
+"""Shipped sets of at least 20 entries. The others are too small to split."""
+SMALL = tuple(name for name in SETS if name not in LARGE)
 TESTED = ("macbeth", "cie2017", "rawtoaces")
 LIBRARY_SETS = tuple(name for names in FAMILIES.values() for name in names)
 PUBLISHED = ("otsu2018", "mallett2019", "smits1999")
@@ -52,14 +55,8 @@ Pairs = list[tuple[Cube, Materials]]
 
 def main() -> None:
     """Measure and store."""
-    splits = {
-        (name, count): held_out.holdout(
-            spectra(name), SPLITS, dim=DIM, coefficients=count, leave_out=shipped_families(name)
-        )
-        for name in LARGE
-        for count in COUNTS
-    }
-    known = {(name, count): other_halves(name, dim=DIM, coefficients=count) for name in LARGE for count in (9, 17)}
+    cubes = [*product(LARGE, COUNTS), *((name, 9) for name in (*SMALL, MIXTURE))]
+    known = {(name, count): other_halves(name, dim=DIM, coefficients=count) for name, count in cubes}
     others = {
         f"macbeth, queried for {name}": [(build("macbeth", dim=DIM, leave_out=shipped_families(name)), materials(name))]
         for name in LARGE
@@ -70,7 +67,7 @@ def main() -> None:
         splits=SPLITS,
         munsell=MUNSELL.exists(),
         entries=[row for name in TESTED for row in at_entries(name)],
-        halves=[row for key, found in splits.items() for row in halves(*key, found)],
+        halves=[row for key, pairs in known.items() for row in halves(*key, pairs)],
         light_splits=SPLITS,
         standard_errors=[
             *(coverage(*key, pairs) for key, pairs in known.items()),
@@ -86,7 +83,7 @@ def main() -> None:
         lights=list(HELD_OUT_LIGHTS),
         splits=SPLITS,
         choices=[asdict(choice) for choice in CHOICES],
-        sets=[compare_methods(name) for name in SETS],
+        sets=[compare_methods(name) for name in (*SETS, MIXTURE)],
     )
     sets = (*LIBRARY_SETS, *(["munsell"] if MUNSELL.exists() else []))
     size = FILE.stat().st_size
@@ -117,12 +114,19 @@ def at_entries(name: str) -> Iterator[Row]:
         yield {"atlas": name, "cube": label, "megabytes": size / 1e6, **errors(cube.reflectance(some.rgb), some)}
 
 
-def halves(name: str, count: int, splits: Splits) -> Iterator[Row]:
-    """Yield the errors of every cube at the held-out half, with their standard deviation over the splits."""
-    for method in (held_out.HALF, held_out.NO_ATLAS, held_out.SIGMOID):
-        found = np.array([split.errors[method].means() for split in splits])
-        pairs = zip(found.mean(axis=0).tolist(), found.std(axis=0).tolist(), strict=True)
-        rms, *delta_e = [{"mean": mean, "std": std} for mean, std in pairs]
+def halves(name: str, count: int, pairs: Pairs) -> Iterator[Row]:
+    """Yield the errors of every cube at the other halves, with their standard deviation over the halves."""
+    options = {"dim": DIM, "leave_out": shipped_families(name)}
+    no_atlas, sigmoid = build(None, coefficients=count, **options), build(None, model="sigmoid", **options)
+    for method, queried in (
+        (held_out.HALF, pairs),
+        (held_out.NO_ATLAS, [(no_atlas, some) for _, some in pairs]),
+        (held_out.SIGMOID, [(sigmoid, some) for _, some in pairs]),
+    ):
+        answers = [held_out.spectrum_errors(cube.reflectance(some.rgb), some.measured) for cube, some in queried]
+        found = np.array([each.means() for each in answers])
+        spread = zip(found.mean(axis=0).tolist(), found.std(axis=0).tolist(), strict=True)
+        rms, *delta_e = [{"mean": mean, "std": std} for mean, std in spread]
         by_light = dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True))
         yield {"atlas": name, "coefficients": count, "cube": method, "rms": rms, "errors": by_light}
 

@@ -14,13 +14,16 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.common.arrays import Array
 from uplift.fit.families import families_with
-from uplift.lab.study.held_out import random_halves, spectrum_errors
+from uplift.lab.study.held_out import halves_both_ways, spectrum_errors
 from uplift.lookup import Cube
 
 MUNSELL = ROOT / "out" / "munsell.csv"
 """The 1,269 chips of the Munsell book, if `make munsell` has fetched them: they cannot be redistributed."""
 LARGE = ("rawtoaces", "cie2017", *(["munsell"] if MUNSELL.exists() else []))
 """Atlases that are large enough to split."""
+SHIPPED = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017", "tcs", "vs")
+MIXTURE = "all sets"
+"""The shipped sets, and all of them as one: a mixture of families, several of which have materials of one colour."""
 SENSOR = observer.sensor()
 SPLITS = 3
 
@@ -40,7 +43,9 @@ class Materials:
 
 @cache
 def spectra(name: str) -> Atlas:
-    """Read a set of measured spectra."""
+    """Read a set of measured spectra, or all shipped sets."""
+    if name == MIXTURE:
+        return read_atlas(*(ATLASES / f"{each}.txt" for each in SHIPPED))
     return read_atlas(MUNSELL if name == "munsell" else ATLASES / f"{name}.txt")
 
 
@@ -70,12 +75,11 @@ def build(some: str | Materials | None, **options: Any) -> Cube:
 
 def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
     """Return cubes of random halves of a set, and the other halves: every material is queried equally often."""
-    pairs = []
-    for seed in range(SPLITS):
-        halves = [materials(name).take(rows) for rows in random_halves(len(materials(name).rgb), seed)]
-        for kept, queried in (halves, halves[::-1]):
-            pairs.append((build(kept, leave_out=shipped_families(name), **options), queried))
-    return pairs
+    some, left_out = materials(name), shipped_families(name)
+    return [
+        (build(some.take(kept), leave_out=left_out, **options), some.take(queried))
+        for kept, queried in halves_both_ways(np.arange(len(some.rgb)), SPLITS)
+    ]
 
 
 def errors(answers: Array, some: Materials) -> dict[str, Any]:

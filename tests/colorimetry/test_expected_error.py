@@ -6,10 +6,12 @@ from scipy.spatial.distance import cdist
 
 from uplift.colorimetry import expected_error as module
 from uplift.colorimetry.expected_error import (
+    COVERAGE,
     LENGTH,
     PRIOR_COUNT,
     expected_error,
     familiar_distance,
+    learn_radii,
     mahalanobis,
     nearest_distances,
 )
@@ -50,9 +52,22 @@ def test_errors_are_weighted_sums(monkeypatch):
     np.testing.assert_allclose(learnt.left_out[:, 0], np.maximum(variance, 0.02) * spread, rtol=1e-12)
 
 
+@pytest.mark.parametrize("count", [8, 12, 24])
+def test_errors_of_few_entries_are_covered(count):
+    """Of normal errors whose variance is that of the other ones, on average over many atlases."""
+    errors = np.random.default_rng(count).normal(size=(4000, count + 1))
+    squares = errors**2
+    known = squares[:, :-1]
+    others = (known.sum(axis=1, keepdims=True) - known) / (count - 1)
+    radii = np.array([learn_radii(row, COVERAGE) for row in np.sqrt(known / others)])
+    within = (np.sqrt(squares[:, -1] / known.mean(axis=1))[:, None] <= radii).mean(axis=0)
+    assert within[0] == pytest.approx(0.68, abs=0.03)
+    assert within[1] == pytest.approx(0.95, abs=0.015)
+
+
 def test_radii_of_few_entries_are_nearly_those_of_normal_errors():
-    few = expected_error(PLACES[:1], np.ones(1), np.zeros(1)).radii
-    assert few == pytest.approx((1, 2), rel=0.1)
+    few = expected_error(PLACES[:8], np.ones(8), np.zeros(8)).radii
+    assert few == pytest.approx((1, 2), rel=0.2)
     assert expected_error(PLACES, np.zeros(12), np.zeros(12)).radii == (1, 2)
     assert few.scale == pytest.approx(1, rel=0.1)
 

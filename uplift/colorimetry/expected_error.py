@@ -14,7 +14,7 @@ PRIOR_COUNT = 2.0
 """Weight of the mean error of all entries, in entries."""
 COVERAGE = ((0.68, 1.0), (0.95, 2.0))
 """Shares of materials within the standard error and within the error bound; their radii if errors were normal."""
-TRUST = 10.0
+TRUST = 20.0
 """Entries at which half of the difference from a normal distribution is applied, on a logarithmic scale."""
 MIN_VARIANCE = 0.02
 """Lower limit of the variance assigned to a left-out entry."""
@@ -112,19 +112,21 @@ def mahalanobis(covariance: Array, difference: Array) -> Array:
     return np.asarray(np.sqrt((along**2 / np.maximum(values, TINY)).sum(axis=1)))
 
 
-def learn_radii(ratio: Array, coverage: Sequence[tuple[float, float]]) -> list[float]:
-    """Learn radii that shares of left-out entries stay within. Errors have heavier tails than a normal.
+def learn_radii(ratio: Array, coverage: Sequence[tuple[float, float]], components: int = 1) -> list[float]:
+    """Learn radii that shares of left-out entries stay within, from their errors over the expected ones (E,).
 
-    The quantiles are those of conformal prediction: they hold on average for one more entry.
-
-    Shapes: ``ratio`` (E,).
+    ``coverage`` pairs a share with its radius if errors of that many ``components`` were normal. Errors have heavier
+    tails. Quantiles are at k / (E + 1), as in conformal prediction: they hold on average for one more entry.
     """
     count = len(ratio)
     trust = count / (count + TRUST)
     radii = []
     for share, normal in coverage:
-        found = float(np.quantile(ratio, min(share * (count + 1) / count, 1), method="higher"))
-        radii.append(normal * (found / normal) ** trust if found > 0 else normal)
+        # Errors in units of a scale that is known from E of them have Student's distribution (Abramowitz & Stegun 1964,
+        # "Handbook of mathematical functions", 26.7.5, to first order in 1 / E).
+        student = normal * (1 + (normal**2 + components) / (4 * count))
+        found = float(np.quantile(ratio, share, method="weibull"))
+        radii.append(student * (found / student) ** trust if found > 0 else normal)
     return radii
 
 

@@ -111,7 +111,7 @@ def lab_errors(data: CubeData, light: Light) -> LabErrors:
     # d² = eᵀ Σ⁻¹ e of each entry, by the covariance Σ that the other entries let expect
     own = expected.radii.scale**2 * expected.left_out.reshape(-1, 3, 3)
     distances = mahalanobis(own[:, 1:, 1:], differences[0][:, 1:])
-    (radius,) = learn_radii(distances, [(LIKELY, NORMAL_RADIUS)])
+    (radius,) = learn_radii(distances, [(LIKELY, NORMAL_RADIUS)], components=2)
     return LabErrors(data, expected, radius)
 
 

@@ -13,7 +13,7 @@ from uplift.colorimetry.lights import HELD_OUT_LIGHTS, SCENE_LIGHTS
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress
 from uplift.lab.study import held_out
-from uplift.lab.study.held_out import HoldoutSplit, holdout, local_linear, split_records
+from uplift.lab.study.held_out import HoldoutSplit, halves_both_ways, holdout, local_linear, split_records
 from uplift.pipeline.build import build
 from uplift.report.fidelity import Answers
 
@@ -30,13 +30,19 @@ def family():
 def test_half_an_atlas_of_similar_spectra_predicts_the_other(family):
     events = []
     splits = holdout(family, 2, events.append, dim=8)
-    assert events == [Progress("builds", done, 4) for done in (2, 3, 4)]
+    assert events == [Progress("builds", done, 6) for done in (2, 3, 4, 5, 6)]
     for split in splits:
         means = {method: errors.means() for method, errors in split.errors.items()}
         assert (means["half the atlas"] < 0.5 * means["without an atlas"]).all()
         assert (means["half the atlas"] < 0.5 * means["sigmoid"]).all()
         assert split.errors["sigmoid"].delta_e.shape == (12, len(HELD_OUT_LIGHTS))
     assert not np.array_equal(splits[0].actual, splits[1].actual)
+
+
+def test_every_row_is_queried_once_per_split():
+    for (known, queried), (other, back) in zip(*[halves_both_ways(np.arange(3, 10), 4)] * 2, strict=True):
+        assert sorted([*known, *queried]) == list(range(3, 10))
+        assert (known.tolist(), queried.tolist()) == (back.tolist(), other.tolist())
 
 
 def test_the_prior_does_not_know_the_atlas(monkeypatch):
@@ -50,7 +56,7 @@ def test_the_prior_does_not_know_the_atlas(monkeypatch):
     atlas = read_atlas(ATLASES / "tcs.txt")
     holdout(atlas, 1, dim=4, coefficients=4)
     holdout(atlas, 1, dim=4, coefficients=4, leave_out=("vs",))
-    assert known == [("tcs",)] * 3 + [("vs",)] * 3
+    assert known == [("tcs",)] * 4 + [("vs",)] * 4
 
 
 def test_records_pool_splits_with_standard_errors():

@@ -1,7 +1,7 @@
 """Errors on held-out measurements: cubes and a plain baseline that know half of an atlas predict the other half."""
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -34,7 +34,7 @@ LOCAL_LINEAR = "local-linear regression"
 
 @dataclass(frozen=True, eq=False)
 class HoldoutSplit:
-    """One split of an atlas and the errors on its held-out half of n entries.
+    """Half of an atlas, and the errors on the other half of n entries.
 
     ``errors``: errors by the name of the cube or of the baseline.
     ``actual`` (n,): ΔE00 of the cube with half the atlas, under its reference illuminant.
@@ -50,11 +50,11 @@ class HoldoutSplit:
 def holdout(
     atlas: Atlas, splits: int = 3, progress: ProgressCallback = ignore_progress, **options: Any
 ) -> tuple[HoldoutSplit, ...]:
-    """Build cubes from random halves of an atlas and predict the other halves.
+    """Divide an atlas in random halves, and predict each half by a cube of the other one: two results per split.
 
     By default the prior does not know the families that contain spectra of the atlas.
     """
-    total = 2 + splits
+    total = 2 + 2 * splits
     options = {"leave_out": families_with(resample(atlas, observer.grid()).values), **options}
     with warnings.catch_warnings(action="ignore", category=UpliftWarning):
         others = {NO_ATLAS: build(**options), SIGMOID: build(**{**options, "model": "sigmoid"})}
@@ -65,13 +65,20 @@ def holdout(
         if len(inside) < MIN_ENTRIES:
             problem = f"a split needs at least {MIN_ENTRIES} entries within {sensor.space}, got {len(inside)}"
             raise AtlasError(problem, code="too-few-entries", hint="use a larger atlas")
-        results = []
-        for seed in range(splits):
-            kept, held_out = (inside[rows] for rows in random_halves(len(inside), seed))
+        results: list[HoldoutSplit] = []
+        for kept, other in halves_both_ways(inside, splits):
             cube = build(Atlas(tuple(atlas.entries[row] for row in kept)), **options)
-            results.append(_evaluate({HALF: cube, **others}, measured[kept], measured[held_out]))
-            progress(Progress("builds", 3 + seed, total))
+            results.append(_evaluate({HALF: cube, **others}, measured[kept], measured[other]))
+            progress(Progress("builds", 2 + len(results), total))
     return tuple(results)
+
+
+def halves_both_ways(rows: Indices, splits: int) -> Iterator[tuple[Indices, Indices]]:
+    """Yield random halves of rows, known and queried, in both directions: every row is queried equally often."""
+    for seed in range(splits):
+        first, second = (rows[half] for half in random_halves(len(rows), seed))
+        yield first, second
+        yield second, first
 
 
 def random_halves(count: int, seed: int) -> tuple[Indices, Indices]:
