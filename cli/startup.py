@@ -35,8 +35,9 @@ def prepare_process() -> None:
             signal.signal(number, _end)
     if os.name == "posix":
         _watch_signals()
-    # Commands have workers of their own; threads of numpy's BLAS wait for work by spinning, from the import on.
+    # Commands have workers of their own; threads of numpy's BLAS and of XLA wait for work by spinning.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    os.environ.setdefault("PJRT_NPROC", "1")
     os.environ["MPLBACKEND"] = "agg"  # which needs no display
     os.environ["PYTHONSAFEPATH"] = "1"  # worker processes load no module from the working folder
     if os.path.lexists("matplotlibrc"):  # matplotlib would obey it

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterator
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,11 @@ def blocks(count: int, size: int) -> Iterator[slice]:
     """Split rows into blocks of at most ``size``."""
     for first in range(0, count, size):
         yield slice(first, min(first + size, count))
+
+
+def largest(rows: Array) -> Array:
+    """Largest element (n,) of each row (n, K), K > 0, by columns: numpy is slow along short axes."""
+    return np.asarray(reduce(np.maximum, rows.T))
 
 
 def distances(first: Array, second: Array) -> Array:

@@ -16,7 +16,7 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.sensor import Light
-from uplift.common.arrays import Array, blocks, distances
+from uplift.common.arrays import Array, blocks, distances, largest
 from uplift.fit.batch import to_storage
 from uplift.fit.entries import FittedEntries, colour_objective
 from uplift.fit.families import FILE, Family, FamilySamples, krige_families, learn_relevance
@@ -77,7 +77,7 @@ class Base:
 
     def brightness(self, rgb: Array) -> Array:
         """Factor k = max(x)^½ (n, 1) between a colour and the brightened one."""
-        return np.asarray(np.maximum(rgb.max(axis=1), MIN_LEVEL)[:, None] ** BRIGHTENING)
+        return np.asarray(np.maximum(largest(rgb), MIN_LEVEL)[:, None] ** BRIGHTENING)
 
 
 def smooth_table(problem: Problem, goal: Array) -> Base:

@@ -11,7 +11,7 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.expected_error import LENGTH, ExpectedError, expected_error
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, largest
 from uplift.fit.base import NO_FREEDOM, Base, learn_base, moment_matrix
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import DEFAULT, MIN_ENTRIES, Kernel, Kriging, kernel_sums, krige, learn_kriging, visible_change
@@ -175,7 +175,7 @@ def _bounded(model: Model, expected: Array, deviation: Array, steep: float = STE
     multipliers, rows, fraction = np.empty_like(expected), np.arange(len(expected)), 1.0
     for _ in range(MAX_SHRINKS + 1):
         multipliers[rows], valid = model.try_from_storage(expected[rows] + fraction * deviation[rows])
-        rows = rows[~valid | ~(np.abs(multipliers[rows]).max(axis=1, initial=0) <= steep)]
+        rows = rows[~valid | ~(largest(np.abs(multipliers[rows])) <= steep)]
         fraction *= SHRINK
     multipliers[rows] = model.from_storage(expected[rows])
     return multipliers

@@ -18,7 +18,7 @@ import numpy as np
 import optimistix
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Array, Indices, blocks
+from uplift.common.arrays import Array, Indices, blocks, largest
 from uplift.fit.batch import map_batches
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import MAX_MULTIPLIER
@@ -199,8 +199,8 @@ def solve(
         before = Solution(*(column[rows] for column in solution))
         given = (before.multipliers, target[rows], options)
         y, residual, taken, changed = map_batches(advance, (forward, tolerance, steps), *given)
-        closer = (residual**2).sum(axis=1) <= (before.residual**2).sum(axis=1)
-        distance = np.where(closer, np.abs(residual).max(axis=1), before.distance)
+        closer = np.einsum("nk,nk->n", residual, residual) <= np.einsum("nk,nk->n", before.residual, before.residual)
+        distance = np.where(closer, largest(np.abs(residual)), before.distance)
         stale = np.where(distance > (1 - MIN_GAIN) * before.distance, stale + 1, 0)
         y, residual = (
             np.where(closer[:, None], *pair) for pair in ((y, before.multipliers), (residual, before.residual))

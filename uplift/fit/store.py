@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Indices, blocks
+from uplift.common.arrays import Indices, blocks, largest
 from uplift.common.progress import Progress
 from uplift.fit.batch import to_storage
 from uplift.fit.growth import BLOCK_POINTS, Growth
@@ -61,7 +61,7 @@ def _store_coefficients(
             multipliers = problem.model.from_storage(coefficients[points].astype(kind))
             goal = nodes.goal(points)
             residual = residuals(problem.forward, multipliers, goal, problem.method)
-            growth.rgb[points], distance[points] = goal - residual, np.abs(residual).max(axis=1)
+            growth.rgb[points], distance[points] = goal - residual, largest(np.abs(residual))
 
     # Block by block; once a block loses too much in single precision, all sensitive nodes so far are evaluated again.
     sensitive = []

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.common.arrays import Array, Complex, Mask, blocks
+from uplift.common.arrays import Array, Complex, Mask, blocks, largest
 from uplift.common.errors import UpliftError
 from uplift.models.arithmetic import arctan
 
@@ -25,7 +25,7 @@ _FIRST_NODES = 48
 _MAX_NODES = 96 << 6
 _SAMPLES = 1 << 18
 """Samples in memory at a time."""
-_ROWS = 1 << 12
+_ROWS = 1 << 13
 """Spectra per block; their temporary arrays fit into the cache."""
 _GREY_WEIGHTS = (1e-10, 1e-8, 1e-6, 1e-4)
 """Weights of grey blended in, in turn, until the recursion succeeds."""
@@ -62,7 +62,7 @@ def moments_from_multipliers(
     pending = np.arange(len(multipliers))
     while True:
         moments[pending] += change
-        pending = pending[np.abs(change).max(axis=1) > converged]
+        pending = pending[largest(np.abs(change)) > converged]
         nodes *= 2
         if not pending.size or nodes >= _MAX_NODES:
             break

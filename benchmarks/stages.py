@@ -1,0 +1,126 @@
+"""CPU time of the stages of commands, imports and tracing included, for docs/speed.md."""
+
+import functools
+import importlib
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from benchmarks import MACBETH, record
+from uplift.lab.timing import spread
+from uplift.samples import sample_path
+
+RUNS, SAMPLE = 3, "wood.png"
+BUILD = {
+    "uplift.pipeline.entries:fit_constraints": "entries",
+    "uplift.pipeline.build:learn_base": "learnt base",
+    "uplift.pipeline.build:fit_prior": "kriging of the entries",
+    "uplift.pipeline.build:initial_guess": "prior of the nodes",
+    "uplift.fit.growth:Growth.attempt": "steps of the solver",
+    "uplift.pipeline.build:store": "storing",
+    "uplift.fit.prior:Prior.standard_error": "standard errors",
+    "uplift.lookup.cube:Cube.save": "file",
+}
+RELIGHT = {
+    "uplift.lookup:load": "packaged cube",
+    "uplift_cli.commands.relight:_cube_of_user": "cube of the atlas",
+    "uplift_cli.commands.relight:read_pictures": "reading of the image",
+    "uplift.report.relight:relight": "spectra and colours",
+    "uplift.report.relight:relit_page": "page",
+    "uplift.io.texture:prepare_relighter": "tables of the lights",
+    "uplift.io.texture:convert": "rows of pixels",
+}
+TEXTURE = {
+    "uplift.io.texture.sequence:load": "packaged cube",
+    "uplift.io.texture.sequence:converter_for": "encoding",
+    "uplift.io.texture:convert": "rows of pixels",
+}
+"""Functions by the stage that they are; what one of them calls is counted there alone."""
+PROGRAMS = ("uplift.fit.batch:_program", "uplift.fit.kriging:_kernel_block")
+"""Functions that JAX traces; the first returns one."""
+
+
+def main() -> None:
+    """Run the commands, each once before to compile, and store."""
+    with tempfile.TemporaryDirectory() as folder:
+        texture = ["texture", str(sample_path(SAMPLE)), "-o"]
+        build = ["build", "--atlas", str(MACBETH), "--force", "-q", "--dim"]
+        commands: dict[str, tuple[list[str], dict[str, str]]] = {
+            **{f"build --dim {dim}": ([*build, str(dim), "-o", f"{folder}/x.uplift"], BUILD) for dim in (32, 64, 128)},
+            "relight -o page.html": (["relight", "-o", f"{folder}/page.html", "--force"], RELIGHT),
+            "relight -o lit.exr": (["relight", "-o", f"{folder}/lit.exr", "--force"], RELIGHT),
+            f"texture {SAMPLE}": ([*texture, f"{folder}/texture.exr", "--force"], TEXTURE),
+        }
+        rows = []
+        for command, (arguments, stages) in commands.items():
+            runs = [_in_child(arguments, stages, Path(folder)) for _ in range(RUNS + 1)][1:]
+            for stage in runs[0]:
+                rows.append({"command": command, "stage": stage, "cpu_s": spread([run.get(stage, 0) for run in runs])})
+    record("stages", runs=RUNS, rows=rows)
+
+
+def _in_child(arguments: list[str], stages: dict[str, str], folder: Path) -> dict[str, float]:
+    """Run a command of uplift in a process, and return the CPU seconds of its stages."""
+    found = folder / "stages.json"
+    code = f"from benchmarks.stages import run; run({arguments}, {stages}, {str(found)!r})"
+    subprocess.run([sys.executable, "-c", code], check=True, stdout=subprocess.DEVNULL)
+    times: dict[str, float] = json.loads(found.read_text(encoding="utf-8"))
+    return times
+
+
+def run(arguments: list[str], stages: dict[str, str], found: str) -> None:
+    """Run a command in this process with a clock around its stages, and write their CPU seconds."""
+    from uplift_cli.startup import enable_jit_cache, prepare_process
+
+    prepare_process()
+    enable_jit_cache()
+    from uplift_cli.main import main as command_line
+
+    times: Counter[str] = Counter()
+    inner: list[float] = [0.0]
+
+    def clocked(function: Callable[..., Any], stage: str) -> Callable[..., Any]:
+        @functools.wraps(function)
+        def call(*given: Any, **options: Any) -> Any:
+            begin = time.process_time()
+            inner.append(0.0)
+            try:
+                return function(*given, **options)
+            finally:
+                spent = time.process_time() - begin
+                times[stage] += spent - inner.pop()
+                inner[-1] += spent
+
+        return call
+
+    importlib.import_module(f"uplift_cli.commands.{arguments[0]}")
+    for place, stage in stages.items():
+        _replace(place, lambda function, stage=stage: clocked(function, stage))
+    if arguments[0] == "build":
+        program, kernel = PROGRAMS
+        _replace(program, lambda make: functools.cache(lambda *given: _first(make(*given), clocked)))
+        _replace(kernel, lambda function: _first(function, clocked))
+    times["imports"] = begin = time.process_time()
+    command_line(arguments, prog_name="uplift", standalone_mode=False)
+    times["rest"] = time.process_time() - begin - inner[0]
+    Path(found).write_text(json.dumps(times), encoding="utf-8")
+
+
+def _first(function: Callable[..., Any], clocked: Callable[..., Any]) -> Callable[..., Any]:
+    """Count the first call of a function that JAX traces as a stage."""
+    calls = iter([clocked(function, "tracing")])
+    return lambda *given: next(calls, function)(*given)
+
+
+def _replace(place: str, change: Callable[[Any], Any]) -> None:
+    """Replace a function, given as 'module:name' or 'module:Class.name'."""
+    module, _, name = place.partition(":")
+    *owner, name = name.split(".")
+    target = functools.reduce(getattr, owner, importlib.import_module(module))
+    setattr(target, name, change(getattr(target, name)))
