@@ -9,6 +9,7 @@ from benchmarks import ATLASES, record
 from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import RELIGHT_LIGHTS
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Indices
 from uplift.fit.families import families_with
 from uplift.io.scene_colours import ColourSet, PixelSample
@@ -72,7 +73,7 @@ def main() -> None:
         atlas = read_atlas(ATLASES / f"{name}.txt")
         sensor = observer.sensor()
         measured = resample(atlas, sensor.wavelengths).values
-        rows = np.flatnonzero(sensor.contains(sensor.rgb(measured)))
+        rows = np.flatnonzero(in_unit_cube(sensor.rgb(measured)))
         atlas, measured = Atlas(tuple(atlas.entries[row] for row in rows)), measured[rows]
         found = [row for seed in range(SCENES) for row in run_scene(atlas, measured, seed)]
         for choice in (ADVICE, PIXELS, COLOURS):

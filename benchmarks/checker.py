@@ -11,6 +11,7 @@ from benchmarks import MACBETH
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
 from uplift.viz.figure import new_figure, show_image, write_png
@@ -49,7 +50,7 @@ def chart() -> Chart:
     sensor, spectra = observer.sensor(), read_atlas(MACBETH)
     measured = on_grid(spectra, sensor.wavelengths)
     rgb = sensor.rgb(measured)
-    return Chart(spectra.names, sensor.wavelengths, measured, np.clip(rgb, 0, 1), ~sensor.contains(rgb))
+    return Chart(spectra.names, sensor.wavelengths, measured, np.clip(rgb, 0, 1), ~in_unit_cube(rgb))
 
 
 @dataclass(frozen=True)

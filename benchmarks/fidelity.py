@@ -30,6 +30,7 @@ from tools.ship_library import FAMILIES, FILE, OTSU_SPREAD, SPREAD
 from uplift.atlas import Atlas, resample
 from uplift.colorimetry import Light, delta_e_spectra, observer
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array
 from uplift.cube import contents
 from uplift.fit.families import LENGTH, NUGGET, shipped_library
@@ -266,7 +267,7 @@ def with_library(name: str) -> Iterator[Row]:
     others = Atlas(tuple(entry for entry in entries if entry.values.tobytes() not in known))
     measured = resample(others, SENSOR.wavelengths).values
     rgb = SENSOR.rgb(measured)
-    inside = SENSOR.contains(rgb)
+    inside = in_unit_cube(rgb)
     queried = Materials(name, measured[inside], np.clip(rgb[inside], 0, 1))
     smooth = means(smooth_cube(9), queried)
     for label, options in {

@@ -20,8 +20,9 @@ from uplift.colorimetry.expected_error import mahalanobis
 from uplift.colorimetry.observer import light
 from uplift.common.arrays import Array
 from uplift.lab.timing import time_calls
-from uplift.lookup import Bounds, Cube, bounds, load
+from uplift.lookup import Cube, load
 from uplift.lookup.light_errors import NORMAL_RADIUS, lab_errors
+from uplift.lookup.metamer_bounds import Bounds, bounds
 from uplift.report.look_page import page
 from uplift.viz.plots import plot_bounds
 

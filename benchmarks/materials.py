@@ -12,6 +12,7 @@ from benchmarks import ATLASES, ROOT
 from uplift.atlas import Atlas, Entry, read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array
 from uplift.fit.families import families_with
 from uplift.lab.study.held_out import halves_both_ways, spectrum_errors
@@ -55,7 +56,7 @@ def materials(name: str) -> Materials:
     measured = resample(spectra(name), SENSOR.wavelengths).values
     rgb = SENSOR.rgb(measured)
     _, first = np.unique(np.round(rgb, 6), axis=0, return_index=True)
-    rows = [row for row in sorted(first) if SENSOR.contains(rgb[row])]
+    rows = [row for row in sorted(first) if in_unit_cube(rgb[row])]
     return Materials(name, measured[rows], np.clip(rgb[rows], 0, 1))
 
 

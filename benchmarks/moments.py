@@ -11,6 +11,7 @@ from uplift.atlas import Atlas, on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, lab
 from uplift.colorimetry.lights import REPORT_LIGHTS
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array
 from uplift.lab.study.moments import ALL_ATLASES, TECHNIQUES, MomentsStudy, Technique, study_moments
 from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
@@ -111,7 +112,7 @@ def cube_errors(atlases: Mapping[str, Atlas], warp: str, count: int) -> dict[str
         [on_grid(each, sensor.wavelengths) for name, each in atlases.items() if name != "macbeth"]
     )
     rgb = sensor.rgb(measured)
-    measured, rgb = measured[sensor.contains(rgb)], np.clip(rgb[sensor.contains(rgb)], 0, 1)
+    measured, rgb = measured[in_unit_cube(rgb)], np.clip(rgb[in_unit_cube(rgb)], 0, 1)
     answers = cube.reflectance(rgb)
     errors = {name: delta_e_spectra(observer.light(name), answers, measured).mean() for name in REPORT_LIGHTS}
     return {"warp": warp, "coefficients": count, "spectra": len(rgb), "errors": errors}

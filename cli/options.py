@@ -112,7 +112,8 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         return self.function(value)
 
 
-NUMBER = Number()
+NUMBER, WHOLE = Number(), Whole()
+WHOLE_OR_AUTO = Whole(word="auto")
 PAGE, PLOT, WAVELENGTHS = Parsed(check_page), Parsed(check_plot), Parsed(parse_wavelengths)
 
 
@@ -260,7 +261,7 @@ scale = choice(  # names of uplift.atlas.MEASURED, which is not imported here
     help="Scale of measured values. auto: as the atlas file states, or else by its values.",
 )
 coefficients = click.option(
-    "--coefficients", type=Whole(), default=9, metavar="N", help="Coefficients per spectrum, 3 to 17."
+    "--coefficients", type=WHOLE, default=9, metavar="N", help="Coefficients per spectrum, 3 to 17."
 )
 output_wavelengths = wavelengths(". [default: those of the cube or table]")
 depth = click.option(

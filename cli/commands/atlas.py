@@ -29,7 +29,7 @@ SOURCE = ("name", "digest", "format", "measured", "notes")
 @options.output_format("table", "json", "csv")
 @options.output("Write all entries to FILE instead of a list.")
 @options.force
-def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, force: bool, **camera: str) -> None:
+def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, force: bool, **camera: Any) -> None:
     """List the entries of atlas files, and how the files were understood.
 
     Without FILE, lists the atlases that are installed with uplift, with source and licence. Their names are valid
@@ -111,6 +111,7 @@ def _list_entries(atlas: Atlas, sensor: Sensor) -> tuple[list[dict[str, Any]], A
     from uplift.colorimetry.gamut import SRGB
     from uplift.colorimetry.observer import sensor as make_sensor
     from uplift.colorimetry.observer import smallest_space
+    from uplift.colorimetry.sensor import in_unit_cube
     from uplift.colorimetry.srgb import to_display_codes
 
     resampled = resample(atlas, sensor.wavelengths)
@@ -122,11 +123,11 @@ def _list_entries(atlas: Atlas, sensor: Sensor) -> tuple[list[dict[str, Any]], A
             "start": float(entry.wavelengths[0]),
             "end": float(entry.wavelengths[-1]),
             "step": entry.step,
-            "rgb": rgb,
-            "in_gamut": bool(sensor.contains(rgb)),
+            "rgb": rgb.tolist(),
+            "in_gamut": bool(in_unit_cube(rgb)),
             "warnings": clips.get(entry.name, ()),
         }
-        for entry, rgb in zip(atlas.entries, sensor.rgb(resampled.values).tolist(), strict=True)
+        for entry, rgb in zip(atlas.entries, sensor.rgb(resampled.values), strict=True)
     ]
     codes = to_display_codes(display.rgb(resampled.values), SRGB).astype(int)
     return rows, codes, smallest_space(resampled.values, sensor.illuminant, sensor.observer)

@@ -15,7 +15,9 @@ from ..output.console import make_table, print_csv, print_fields, print_json_ans
 from .query import Answers, colour_options, result_object
 
 if TYPE_CHECKING:
-    from uplift.lookup import Bounds, Cube, QueryResult
+    from uplift.lookup import Cube
+    from uplift.lookup.metamer_bounds import Bounds
+    from uplift.lookup.query import QueryResult
 
 Block = tuple[Sequence["QueryResult"], Sequence["Bounds"]]
 """Answers, and their bounds under each light."""
@@ -52,7 +54,7 @@ def command(
     import numpy as np
 
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
-    from uplift.lookup import bounds
+    from uplift.lookup.metamer_bounds import bounds
 
     check_outputs((plot_path, html), inputs=(colours["cube_path"], colours["input_path"]), force=force)
     answers = Answers(lights=lights or RELIGHT_LIGHTS, **colours)

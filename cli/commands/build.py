@@ -47,7 +47,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 @click.option(
     "--dim",
     default=32,
-    type=options.Whole(word="auto"),
+    type=options.WHOLE_OR_AUTO,
     metavar="N",
     help="Lattice nodes along each axis. 'auto' chooses the smallest dim, and its axis, that resolves every entry.",
 )
@@ -63,7 +63,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 @options.coefficients
 @click.option(
     "--entry-coefficients",
-    type=options.Whole(),
+    type=options.WHOLE,
     default=17,
     metavar="N",
     help="Coefficients per spectrum of an atlas entry, from --coefficients to 17.",

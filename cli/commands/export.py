@@ -49,7 +49,7 @@ APPLIES = {
 )
 @click.option(
     "--res",
-    type=options.Whole(),
+    type=options.WHOLE,
     help="Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier 33, film 192]",
 )
 @click.option("--light", metavar="NAME", help="Illuminant of a cube, clf or film table.")

@@ -25,7 +25,8 @@ from ..startup import hide_drawing_notes
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Light
     from uplift.common.arrays import Array
-    from uplift.lookup import Cube, QueryResult
+    from uplift.lookup import Cube
+    from uplift.lookup.query import QueryResult
 
 PACKAGED = "packaged"
 """Name of the cube that answers without --cube."""
@@ -76,10 +77,9 @@ class Answers:
         self.wavelengths, self.mode, self.method, self.fill_missing = wavelengths, mode, method, fill_missing
         data = self.cube.data
         atlases = [source["name"] for source in data.provenance.get("atlases", ())]
-        self.origin: dict[str, Any] = {"file": cube_path or PACKAGED, "dim": data.lattice.dim, "atlases": atlases}
-        self.title = (
-            f"{Path(cube_path or PACKAGED).name}: {data.lattice.dim}³ nodes, {', '.join(atlases) or 'no atlas'}"
-        )
+        file, dim = cube_path or PACKAGED, data.lattice.dim
+        self.origin: dict[str, Any] = {"file": file, "dim": dim, "atlases": atlases}
+        self.title = f"{Path(file).name}: {dim}³ nodes, {', '.join(atlases) or 'no atlas'}"
         self.lights: list[Light] = []
         self.to_srgb: dict[str, Array] = {}  # matrices from XYZ under a light to linear sRGB with the same white
         if lights:
@@ -92,7 +92,7 @@ class Answers:
 
     def __iter__(self) -> Iterator[list[QueryResult]]:
         """Answer block by block, and warn at the end of colours that were mapped or filled."""
-        from uplift.lookup import query, query_xyz
+        from uplift.lookup.query import query, query_xyz
 
         if self.source.xyz is not None:
             yield list(query_xyz(self.cube, [self.source.xyz], self.wavelengths, self.mode, self.lights))

@@ -60,9 +60,7 @@ def _print_table(rows: Sequence[Row]) -> None:
 
 @command.command("moments")
 @options.atlas("Atlas", DEFAULT_ATLASES)
-@click.option(
-    "--max-moments", metavar="N", type=options.Whole(), default=15, help="Largest number of moments, up to 32."
-)
+@click.option("--max-moments", metavar="N", type=options.WHOLE, default=15, help="Largest number of moments, up to 32.")
 @options.output("Folder for plots.", metavar="DIR")
 @options.output_format("table", "json", "csv")
 @options.force
@@ -107,7 +105,7 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
 @command.command("held-out")
 @options.atlas("Atlas", DEFAULT_ATLASES)
 @click.option("--splits", type=options.Whole(1, 1000), default=3, help="Number of splits of each atlas.")
-@click.option("--dim", type=options.Whole(), default=32, help="Lattice nodes along each axis.")
+@click.option("--dim", type=options.WHOLE, default=32, help="Lattice nodes along each axis.")
 @options.coefficients
 @options.output_format("table", "json", "csv")
 def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, style: str) -> None:

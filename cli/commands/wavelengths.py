@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 @click.command(
     "wavelengths", cls=options.Command, everyday=("count", "tolerance", "files", "lights", "style", "plot_path")
 )
-@click.option("--count", metavar="N", type=options.Whole(), help="Number of wavelengths, 1 to 40.")
+@click.option("--count", metavar="N", type=options.WHOLE, help="Number of wavelengths, 1 to 40.")
 @click.option(
     "--tolerance",
     metavar="ΔE00",
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     "--orders",
     nargs=3,
     metavar="A C1 C2",
-    type=options.Whole(),
+    type=options.WHOLE,
     help="Meyer's quadrature with these numbers of wavelengths for the three channels, 1 to 10 each.",
 )
 @click.option(
@@ -70,7 +70,7 @@ def command(
     style: str,
     plot_path: str | None,
     force: bool,
-    **camera: str,
+    **camera: Any,
 ) -> None:
     """Choose the wavelengths at which a renderer samples the materials and lights of a scene.
 

@@ -5,6 +5,7 @@ import pytest
 
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit.base import learn_base, match_spectra, moment_matrix
 from uplift.fit.entries import FittedEntries
 from uplift.fit.families import Family, shipped_library
@@ -24,7 +25,7 @@ def problem(sensor):
 def entries_of(sensor, measured):
     """Entries in gamut; only their colours and measurements matter to the base."""
     rgb = sensor.rgb(measured)
-    inside = sensor.contains(rgb)
+    inside = in_unit_cube(rgb)
     rgb, measured = np.clip(rgb[inside], 0, 1), measured[inside]
     return FittedEntries(rgb, measured, np.zeros((len(rgb), 9)), np.zeros(len(rgb)))
 

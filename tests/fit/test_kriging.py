@@ -11,6 +11,7 @@ from tests.conftest import MACBETH
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit import kriging
 from uplift.fit.base import smooth
 from uplift.fit.kriging import (
@@ -142,7 +143,7 @@ def test_visible_change_ranks_metameric_changes_by_delta_e(sensor):
     problem = Problem(sensor, model, (observer.light("A"), observer.light("FL11")))
     forward = problem.forward
     measured = on_grid(read_atlas(MACBETH), sensor.wavelengths)
-    measured = np.tile(measured[sensor.contains(sensor.rgb(measured))], (10, 1))
+    measured = np.tile(measured[in_unit_cube(sensor.rgb(measured))], (10, 1))
     coloured = partial(solve, forward, target=sensor.rgb(measured), tolerance=1e-9, max_passes=32)
     start = model.from_storage(smooth(model, forward).coefficients(sensor.rgb(measured)))
     plain = coloured(start=start).multipliers

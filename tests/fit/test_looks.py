@@ -11,6 +11,7 @@ from tests.conftest import MACBETH
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000_weights, lab, lab_jacobian
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit.entries import fit_entries, join_entries
 from uplift.fit.looks import MET, LookGoal, design_reflectance, fit_designs
 from uplift.fit.prior import fit_prior
@@ -35,7 +36,7 @@ def materials(sensor):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         measured = on_grid(read_atlas(MACBETH), sensor.wavelengths)
-    measured = measured[sensor.contains(sensor.rgb(measured))]
+    measured = measured[in_unit_cube(sensor.rgb(measured))]
     return measured, uplift.load().reflectance(np.clip(sensor.rgb(measured), 0, 1))
 
 

@@ -7,6 +7,7 @@ from tests.conftest import ATLASES
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit.entries import fit_entries
 from uplift.fit.kriging import MIN_ENTRIES
 from uplift.fit.prior import STEEP, _bounded, fit_prior
@@ -27,7 +28,7 @@ def problem(sensor):
 def materials(problem, sensor):
     """The materials of rawtoaces within sRGB."""
     measured = resample(read_atlas(ATLASES / "rawtoaces.txt"), sensor.wavelengths).values
-    measured = measured[sensor.contains(sensor.rgb(measured))]
+    measured = measured[in_unit_cube(sensor.rgb(measured))]
     return fit_entries(problem, measured, sensor.rgb(measured))
 
 

@@ -18,6 +18,7 @@ from uplift.atlas import on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.lights import SCENE_LIGHTS
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit.base import learn_base
 from uplift.fit.entries import fit_entries
 from uplift.fit.families import shipped_library
@@ -91,7 +92,7 @@ def test_all_other_points_start_from_the_prior(prior):
 def stage(sensor):
     """Problem, prior and the entries of the ColorChecker."""
     spectra = on_grid(uplift.read_atlas(MACBETH), sensor.wavelengths)
-    spectra = spectra[sensor.contains(sensor.rgb(spectra))]
+    spectra = spectra[in_unit_cube(sensor.rgb(spectra))]
     lights = tuple(map(observer.light, SCENE_LIGHTS))
     problem = Problem(sensor, Moments(9), lights, lights[1])
     entries = fit_entries(problem, spectra, sensor.rgb(spectra))

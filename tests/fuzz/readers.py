@@ -31,7 +31,8 @@ from uplift.io.texture import Counts, convert
 from uplift.io.texture.uplifter import Converter
 from uplift.lab.chart.table import Requirement, criteria, read_chart, recommend_cube
 from uplift.lattice import Lattice, PointTable
-from uplift.lookup import MODES, Cube, load, query
+from uplift.lookup import MODES, Cube, load
+from uplift.lookup.query import query
 from uplift.pipeline.options import Options
 from uplift.pipeline.rebuild import recorded_atlas
 from uplift.scene.plan import read_scene_file

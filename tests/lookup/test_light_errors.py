@@ -12,6 +12,7 @@ from tests.helpers import raises
 from uplift.atlas import Atlas, read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra, lab
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.cube import CubeData, read, write
 from uplift.lookup import Cube
@@ -30,7 +31,7 @@ def halves(request, sensor):
         warnings.simplefilter("ignore", uplift.UpliftWarning)
         atlas = read_atlas(ATLASES / f"{request.param}.txt")
         measured = resample(atlas, sensor.wavelengths).values
-        rows = np.flatnonzero(sensor.contains(sensor.rgb(measured)))
+        rows = np.flatnonzero(in_unit_cube(sensor.rgb(measured)))
         parts = []
         for seed in range(SPLITS):
             split = np.array_split(np.random.default_rng(seed).permutation(rows), 2)

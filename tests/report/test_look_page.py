@@ -17,7 +17,7 @@ from uplift.colorimetry.delta_e import lab
 from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.srgb import hex_codes, to_display_codes
 from uplift.common.errors import OptionError
-from uplift.lookup import bounds
+from uplift.lookup.metamer_bounds import bounds
 from uplift.report.look_page import page
 
 LIGHTS = ("A", "FL11")

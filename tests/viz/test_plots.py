@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from uplift.colorimetry import observer
-from uplift.lookup import bounds
+from uplift.lookup.metamer_bounds import bounds
 from uplift.viz.plots import plot_bounds
 
 

@@ -48,21 +48,16 @@ class SourceLocation:
 
 @dataclass(frozen=True)
 class Document:
-    """A file; ``digest`` is the SHA-256 (hex) of its bytes."""
+    """A file."""
 
     path: str
+    location: SourceLocation
+    """The file as a whole."""
+    name: str
+    """Its base name, with characters that are not text as escapes."""
     data: bytes
     digest: str
-
-    @property
-    def location(self) -> SourceLocation:
-        """The file as a whole."""
-        return SourceLocation(self.path)
-
-    @property
-    def name(self) -> str:
-        """Base name of the file, with characters that are not text as escapes."""
-        return printable(os.path.basename(self.path))
+    """SHA-256 of its bytes, in hexadecimal digits."""
 
     @property
     def stem(self) -> str:
@@ -72,7 +67,13 @@ class Document:
     @cached_property
     def text(self) -> str:
         """The content as text with LF line ends: UTF-16, UTF-8, or else Latin-1. Raises `AtlasError` for others."""
-        data, encoding, hint = self.data, _utf_16(self.data), "save the atlas as UTF-8 text"
+        data, encoding, hint = self.data, None, "save the atlas as UTF-8 text"
+        # One byte of every ASCII character in UTF-16 is 0: the first one if the order of bytes is big-endian.
+        even, odd = data[:UTF_16_START:2], data[1:UTF_16_START:2]
+        if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+            encoding = "utf-16"
+        elif len(data) >= UTF_16_START and len(data) % 2 == 0 and any(even) != any(odd) and (all(even) or all(odd)):
+            encoding = "utf-16-le" if any(even) else "utf-16-be"
         # Every sequence of bytes is valid Latin-1, so this is the last encoding that is tried.
         try:
             text = data.decode(encoding or "utf-8-sig")
@@ -124,18 +125,9 @@ class Document:
 def read_document(path: StrPath) -> Document:
     """Read a file. Raise `AtlasError` if it is missing, unreadable or too large."""
     data = read_bytes(path, AtlasError, limit=MAX_BYTES, hint="name an atlas file that can be read")
-    return Document(os.fspath(path), data, hashlib.sha256(data).hexdigest())
-
-
-def _utf_16(data: bytes) -> str | None:
-    """Return the name of the UTF-16 encoding of data with a byte-order mark, or whose first letters are ASCII."""
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "utf-16"
-    # One byte of every ASCII character in UTF-16 is 0: the first one if the order of bytes is big-endian.
-    even, odd = data[:UTF_16_START:2], data[1:UTF_16_START:2]
-    if len(data) < UTF_16_START or len(data) % 2 or any(even) == any(odd) or not (all(even) or all(odd)):
-        return None
-    return "utf-16-le" if any(even) else "utf-16-be"
+    path = os.fspath(path)
+    digest = hashlib.sha256(data).hexdigest()
+    return Document(path, SourceLocation(path), printable(os.path.basename(path)), data, digest)
 
 
 def parse_number(token: str, location: SourceLocation, label: str) -> float:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from uplift.colorimetry import tables
 from uplift.colorimetry.camera import CAMERA, Camera, camera_sensor, read_camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
-from uplift.colorimetry.sensor import Light, Sensor
+from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
 from uplift.colorimetry.tables import WAVELENGTHS, samples
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
@@ -31,7 +31,10 @@ def grid() -> Array:
 
 
 def sensor(
-    space: str = "sRGB", illuminant: str = DEFAULT_ILLUMINANT, observer: str | Camera = DEFAULT_OBSERVER
+    space: str = "sRGB",
+    illuminant: str = DEFAULT_ILLUMINANT,
+    observer: str | Camera = DEFAULT_OBSERVER,
+    wavelengths: tuple[float, float, float] = WAVELENGTHS,
 ) -> Sensor:
     """Create a sensor from names of colour-science.
 
@@ -48,6 +51,8 @@ def sensor(
     observer : str or Camera
         Colour-matching functions; for the space ``"camera"`` a camera, see `find_camera`. XYZ of a camera's sensor are
         those of the CIE 1931 observer.
+    wavelengths : tuple of float, default (380, 780, 5)
+        First and last wavelength and step in nm, as `Sensor.range`.
 
     Returns
     -------
@@ -66,6 +71,8 @@ def sensor(
     >>> sensor("sRGB").rgb(np.full(81, 0.5)).round(12).tolist()
     [0.5, 0.5, 0.5]
     """
+    if wavelengths != WAVELENGTHS:
+        return on_range(sensor(space, illuminant, observer), *wavelengths)
     if space == CAMERA:
         camera = find_camera(observer)
         if tables.rgb_space(camera.name) is not None:
@@ -99,7 +106,7 @@ def sensor(
 
 
 def on_range(sensor: Sensor, start: float, end: float, step: float) -> Sensor:
-    """Return a sensor with another range of wavelengths, where the perfect reflector is white again."""
+    """Return a sensor with a range of wavelengths, where the perfect reflector is white again."""
     if sensor.range == (start, end, step):
         return sensor
     wide = light(sensor.illuminant, sensor.observer, start, end, step)
@@ -145,7 +152,7 @@ def display_sensors(
 
     Their linear RGB can be displayed directly: the white of each illuminant becomes the white of the screen.
     """
-    sensors = (on_range(sensor(space, name, observer), start, end, step) for name in illuminants)
+    sensors = (sensor(space, name, observer, (start, end, step)) for name in illuminants)
     return tuple({each.illuminant: each for each in sensors}.values())
 
 
@@ -201,5 +208,5 @@ def smallest_space(
     'sRGB'
     """
     candidates = (sensor(space, illuminant, observer) for space in COMMON_SPACES)
-    holding = (each.space for each in candidates if each.contains(each.rgb(reflectances)).all())
+    holding = (each.space for each in candidates if in_unit_cube(each.rgb(reflectances)).all())
     return next(holding, None)

@@ -15,7 +15,7 @@ SLACK = 1e-9
 
 
 def in_unit_cube(rgb: Values) -> Mask:
-    """Whether (…) RGB (…, 3) lies in [0, 1], up to `SLACK`; False for NaN."""
+    """Test whether (…) RGB (…, 3) are in gamut: in [0, 1], up to `SLACK`; False for NaN."""
     return np.asarray(((rgb >= -SLACK) & (rgb <= 1 + SLACK)).all(axis=-1))
 
 
@@ -192,17 +192,3 @@ class Sensor:
             Linear values in [0, 1], of the same shape.
         """
         return np.interp(np.asarray(codes, dtype=float), np.arange(256), self.decoding)
-
-    def contains(self, rgb: ArrayLike) -> Mask:
-        """Test whether colours are in the gamut of the space, up to rounding.
-
-        Parameters
-        ----------
-        rgb : array_like, shape (..., 3)
-            Linear RGB.
-
-        Returns
-        -------
-        ndarray of bool, shape (...)
-        """
-        return in_unit_cube(np.asarray(rgb, dtype=float))

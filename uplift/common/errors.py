@@ -48,7 +48,7 @@ class Diagnostic(Exception):  # noqa: N818
         self.entry, self.hint = entry, hint
         if code is not None:
             self.code = code
-        super().__init__(str(self))
+        super().__init__(self.describe(hint))
 
     @property
     def where(self) -> str:

@@ -23,7 +23,6 @@ from uplift.cube.container import (
 from uplift.cube.data import AtlasTable, CubeData, EntrySpectra
 from uplift.lattice import CORNERS, Lattice, PointTable, Status
 from uplift.models import from_description
-from uplift.models.model import Model
 
 FORMAT = "uplift cube"
 VERSION = 4
@@ -146,14 +145,17 @@ def digest(data: CubeData) -> str:
 def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
     """Return the arrays by their names in the file, and the metadata without the digest."""
     atlas = data.atlas
-    arrays = {
+    arrays: dict[str, Any] = {
         "nodes": data.lattice.nodes,
         **{f"sensor.{name}": getattr(data.sensor, name) for name in SENSOR},
-        **_table_arrays(atlas, "atlas", data.model),
-        **({} if atlas.outside is None else _table_arrays(atlas.outside, "outside", data.model)),
         "atlas.left_out": atlas.left_out,
         **{name: getattr(data.points, name) for name in POINTS},
     }
+    for prefix, table in (("atlas", atlas), ("outside", atlas.outside)):
+        if table is not None:
+            spectra = None if table.spectra.model == data.model else table.spectra.coefficients
+            columns = table.rgb, table.coefficients, table.half_width, table.error, spectra, table.measured
+            arrays |= {f"{prefix}.{name}": column for name, column in zip((*TABLE, "measured"), columns, strict=True)}
     tensors = {}
     for name, array in arrays.items():
         if array is not None:  # in a type that its file may have: its own, or else the most precise one
@@ -181,12 +183,6 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
         "provenance": dict(data.provenance),
     }
     return tensors, metadata
-
-
-def _table_arrays(table: AtlasTable, prefix: str, model: Model) -> dict[str, Any]:
-    spectra = None if table.spectra.model == model else table.spectra.coefficients
-    arrays = table.rgb, table.coefficients, table.half_width, table.error, spectra, table.measured
-    return {f"{prefix}.{name}": array for name, array in zip((*TABLE, "measured"), arrays, strict=True)}
 
 
 def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
@@ -257,7 +253,7 @@ def _check(data: CubeData) -> None:
     for condition_met, problem in (
         (len(set(names)) == len(names), "the names of entries must be unique"),
         (looks == atlas.names[len(atlas.names) - atlas.looks :], "the looks must be the last entries, by their names"),
-        (atlas.left_out is None or atlas.measured_count > 0, "left-out spectra need entries"),
+        (atlas.left_out is None or atlas.looks < len(atlas.names), "left-out spectra need entries"),
         (has_basis, "the model must have a range of wavelengths"),
         ((nodes[0], nodes[-1]) == (0, 1), "the nodes must run from 0 to 1"),
         (data.points.entry.max(initial=-1) < len(atlas.names), "every entry must be in the atlas table"),

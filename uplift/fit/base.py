@@ -15,10 +15,10 @@ from importlib.resources import files
 import numpy as np
 
 from uplift.colorimetry.delta_e import rgb_to_lab
-from uplift.colorimetry.sensor import Light
+from uplift.colorimetry.sensor import Light, in_unit_cube
 from uplift.common.arrays import Array, blocks, distances, largest
 from uplift.fit.batch import to_storage
-from uplift.fit.entries import FittedEntries, colour_objective
+from uplift.fit.entries import FittedEntries, objective
 from uplift.fit.families import FILE, Family, FamilySamples, krige_families, learn_relevance
 from uplift.fit.kriging import average_close
 from uplift.fit.problem import Problem, nodes_of
@@ -91,10 +91,11 @@ def smooth_table(problem: Problem, goal: Array) -> Base:
     return smooth(problem.model, problem.forward, goal)
 
 
-def smooth(model: Model, forward: ForwardMap, goal: Array = TABLE.points) -> Base:
-    """Solve the table for smooth spectra of brightened colours ``goal`` (17³, 3), each from its grey."""
+def smooth(model: Model, forward: ForwardMap, goal: Array | None = None) -> Base:
+    """Solve the table for smooth spectra of brightened colours ``goal`` (17³, 3), its nodes by default."""
     if model.count == NO_FREEDOM:
         return Base(model, None)
+    goal = TABLE.points if goal is None else goal  # each is solved from its grey
     solution = solve(forward, _grey(model, goal), goal, tolerance=1e-5, max_passes=8)
     return Base(model, to_storage(model, solution.multipliers))
 
@@ -152,7 +153,7 @@ def _samples(plain: Base, problem: Problem, family: Family, entries: FittedEntri
     """Deviations of the spectra of a family from smooth ones, brightened; spectra of atlas entries are left out."""
     sensor = problem.sensor
     rgb = sensor.rgb(family.measured)
-    rows = np.flatnonzero(sensor.contains(rgb))
+    rows = np.flatnonzero(in_unit_cube(rgb))
     rgb, measured = np.clip(rgb[rows], 0, 1), family.measured[rows]
     locations = rgb_to_lab(sensor, rgb)
     if entries is not None:
@@ -172,7 +173,7 @@ def match_spectra(model: Moments, wavelengths: Array, reflectances: Array, light
     colour under other lights if they are few. One Gauss–Newton step of the objective (6) restores it; spectra that it
     would not bring nearer stay.
     """
-    goal = colour_objective(model, model.basis(wavelengths), lights, COLOUR_WEIGHT)
+    goal = objective(model, model.basis(wavelengths), lights, COLOUR_WEIGHT, smoothness=None)
     multipliers = model.from_storage(blocked_matmul(reflectances, moment_matrix(model, wavelengths)))
     for block in blocks(len(multipliers), MATCH_ROWS):
         p, measured = multipliers[block], reflectances[block]

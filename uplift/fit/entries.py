@@ -5,14 +5,14 @@ needs to be compiled for a few entries, and those that have converged leave the 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_spectra, lab, lab_jacobian
 from uplift.colorimetry.sensor import Light
-from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.arrays import Array, Mask
 from uplift.fit.problem import Problem
 from uplift.fit.solver import BatchSolver, Options, iterate_rows, solve_in_numpy
 from uplift.models.model import Model
@@ -78,21 +78,24 @@ class Objective:
         return np.concatenate([change, self.weight * colours.reshape(*shape, -1, count), own], axis=-2)
 
 
-def colour_objective(model: Model, basis: Array, lights: Sequence[Light], weight: float) -> Objective:
-    """Make the objective of spectra and of their colours under lights alone; the first is the mean square."""
+def objective(
+    model: Model,
+    basis: Array,
+    lights: Sequence[Light],
+    weight: float = LIGHTS_WEIGHT,
+    smoothness: float | None = SMOOTHNESS,
+) -> Objective:
+    """Make the objective of spectra, whose mean square difference counts, and of their colours under lights.
+
+    ``weight`` is that of a unit of CIE L*a*b*, ``smoothness`` that of the multipliers; None leaves them free.
+    """
     xyz, whites = (np.stack([getattr(light, name) for light in lights]) for name in ("xyz", "white"))
-    return Objective(model, basis, float(np.sqrt(1 / len(basis))), xyz, whites, weight, np.zeros(model.count))
-
-
-def objective(problem: Problem, lights: float = LIGHTS_WEIGHT, smoothness: float = SMOOTHNESS) -> Objective:
-    """Make the objective of entries."""
-    model = problem.model
-    # M = diag(1 + j²), but the constant multiplier is left to the measurement.
-    smooth = np.maximum(smoothness * np.sqrt(model.metric_diagonal()), FLATNESS)
-    return replace(
-        colour_objective(model, problem.forward.basis, problem.lights, lights),
-        multipliers=np.where(model.constant() > 0, FLATNESS, smooth),
-    )
+    own = np.zeros(model.count)
+    if smoothness is not None:
+        # M = diag(1 + j²), but the constant multiplier is left to the measurement.
+        smooth = np.maximum(smoothness * np.sqrt(model.metric_diagonal()), FLATNESS)
+        own = np.where(model.constant() > 0, FLATNESS, smooth)
+    return Objective(model, basis, float(np.sqrt(1 / len(basis))), xyz, whites, weight, own)
 
 
 class MarquardtState(NamedTuple):
@@ -162,12 +165,14 @@ class Marquardt(BatchSolver):
 
 def minimise(goal: Objective, measured: Array) -> Array:
     """Multipliers (E, C) that minimise the objective of measured reflectances (E, N), starting from grey."""
-    colours, grey = goal.colours(measured), np.zeros((len(measured), goal.model.count))
-
-    def fn(y: Array, rows: Indices) -> tuple[Array, None]:
-        return goal.residuals(y, measured[rows], colours[rows]), None
-
-    return iterate_rows(Marquardt(), fn, grey, lambda _: {"jacobian": goal.jacobian}, MAX_STEPS)
+    colours = goal.colours(measured)
+    return iterate_rows(
+        Marquardt(),
+        lambda y, rows: (goal.residuals(y, measured[rows], colours[rows]), None),
+        np.zeros((len(measured), goal.model.count)),
+        lambda _: {"jacobian": goal.jacobian},
+        MAX_STEPS,
+    )
 
 
 class FittedEntries(NamedTuple):
@@ -193,7 +198,8 @@ def fit_entries(problem: Problem, measured: Array, rgb: Array, **weights: float)
     ``weights`` are those of `objective`, min ‖g − m‖² + Σ |w ΔL*a*b*|². The order of the entries does not change the
     rounding of sums.
     """
-    goal, order = objective(problem, **weights), np.lexsort(rgb.T)
+    goal = objective(problem.model, problem.forward.basis, problem.lights, **weights)
+    order = np.lexsort(rgb.T)
     measured, rgb = measured[order], rgb[order]
     near = minimise(goal, measured)
     # The minimum has nearly the colour; of all spectra that have it exactly, the nearest to the minimum is taken.

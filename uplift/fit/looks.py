@@ -22,7 +22,7 @@ from uplift.models import evaluate
 
 MET = 0.1
 """ΔE00 within which a target is met."""
-FIT_WEIGHTS, REACHED = ({"lights": 1.0}, {"lights": 0.3, "smoothness": 3e-3}), 0.5
+FIT_WEIGHTS, REACHED = ({"weight": 1.0}, {"weight": 0.3, "smoothness": 3e-3}), 0.5
 """Weights of the fit of a design: the lights count as much as the spectrum allows, or less where that ends at more than
 so many ΔE00 from the colours of the design, as then the spectrum would be bent towards them without end."""
 SHAPES = (0.3, 0.03)

@@ -90,11 +90,6 @@ class Prior:
         shares = primaries / primaries.sum(axis=0)
         return replace(self, shares=shares @ moment_matrix(self.model, self.sensor.wavelengths))
 
-    def describe(self) -> dict[str, float]:
-        """Return the learnt parameters of the kriging, for the provenance of cubes; empty without an atlas."""
-        bound = {} if self.errors is None else {"error_bound": self.errors.radii.bound / self.errors.radii.standard}
-        return {} if self.kriging is None else self.kriging.kernel._asdict() | bound
-
     def standard_error(self, rgb: Array) -> Array | None:
         """ΔE00 (n,) within which 68 % of measurements are expected to lie from answers to linear RGB (n, 3).
 

@@ -92,11 +92,6 @@ class LeastChangeState(NamedTuple):
     anchor_weight: Any
     """(n,) 1, or 0 once a step was rejected: a problem that hard is no longer pulled towards its prior."""
 
-    @property
-    def distance(self) -> Any:
-        """(n,) max |target − RGB|."""
-        return abs(self.residual).max(axis=1)
-
 
 class LeastChange(BatchSolver):
     """Damped steps that reach the colour and change the prior least, for a batch of problems with three residuals each.
@@ -130,7 +125,7 @@ class LeastChange(BatchSolver):
         left, aux = fn(trial, args)
         # A step is accepted where it reduces the squared residual; μ follows the success of the linearisation.
         better = ((left**2).sum(axis=1) < (state.residual**2).sum(axis=1)) & (abs(trial).max(axis=1) <= MAX_MULTIPLIER)
-        accept = (better & (state.distance > self.atol))[:, None]
+        accept = (better & ~self.done(state))[:, None]
         after = LeastChangeState(
             residual=where(accept, left, state.residual),
             displacement=where(accept, state.displacement + change, state.displacement),
@@ -140,7 +135,7 @@ class LeastChange(BatchSolver):
         return where(accept, trial, y), after, aux
 
     def done(self, state: LeastChangeState) -> Any:
-        return state.distance <= self.atol
+        return abs(state.residual).max(axis=1) <= self.atol
 
     def resume(self, options: Options, y: Any, state: LeastChangeState) -> Options:
         """Go on with the damping and the weight reached."""
@@ -286,8 +281,10 @@ def iterate_rows(
 def solve_in_numpy(forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int) -> Array:
     """Find multipliers (n, C) of linear RGB (n, 3), each nearest to its own start."""
 
-    def fn(y: Array, rows: Indices) -> tuple[Array, None]:
-        return forward.residual(y, target[rows]), None
-
-    solver = LeastChange(forward, tolerance)
-    return iterate_rows(solver, fn, start, lambda block: LeastChange.options(start[block], None), max_steps)
+    return iterate_rows(
+        LeastChange(forward, tolerance),
+        lambda y, rows: (forward.residual(y, target[rows]), None),
+        start,
+        lambda block: LeastChange.options(start[block], None),
+        max_steps,
+    )

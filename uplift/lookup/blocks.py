@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from uplift.colorimetry.sensor import SLACK, Sensor, as_rgb, raise_out_of_gamut
+from uplift.colorimetry.sensor import SLACK, Sensor, as_rgb, in_unit_cube, raise_out_of_gamut
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, OptionError
 from uplift.cube import CubeData
@@ -53,7 +53,7 @@ def as_colours(rgb: ArrayLike, sensor: Sensor) -> Array:
     array = np.asarray(as_rgb(rgb), dtype=float)
     # Faster than a test of each colour; NaN fails both comparisons.
     if array.size and not (array.min() >= -SLACK and array.max() <= 1 + SLACK):
-        raise_out_of_gamut(array[~sensor.contains(array)])
+        raise_out_of_gamut(array[~in_unit_cube(array)])
     return np.clip(array, 0, 1)
 
 

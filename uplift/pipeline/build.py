@@ -240,10 +240,9 @@ def build(
 def problem_of(options: Options, observer: str | Camera, solver: str | Solver) -> tuple[Options, Problem]:
     """Return the problem of a build, and options with the names of the space and of a camera, not aliases or files."""
     # r = W g, on the wavelengths of the build (docs/mathematics.md, 1)
-    sensor = observers.sensor(
-        options.space, options.illuminant, observer if isinstance(observer, Camera) else options.observer
-    )
-    sensor = observers.on_range(sensor, options.shortest, options.longest, options.step)
+    camera = observer if isinstance(observer, Camera) else options.observer
+    wavelengths = options.shortest, options.longest, options.step
+    sensor = observers.sensor(options.space, options.illuminant, camera, wavelengths)
     lights = tuple(observers.light(name, sensor.observer, *sensor.range) for name in options.lights)
     error_light = observers.light(ERROR_ILLUMINANT, sensor.observer, *sensor.range)
     problem = Problem(sensor, options.spectrum_model(), lights, error_light, options.threshold)
@@ -355,6 +354,10 @@ def build_stages(
         fitted = spectra.fit_constraints(problem, entry_model, outside)
         beyond = fitted.table(model, half_width, known[1])
     table = constraints.table(model, boxes.half_width, known[0], prior.left_out, beyond)
+    # What the kriging learnt, if there is an atlas, and the errors, if it is large enough
+    learnt = {} if prior.kriging is None else prior.kriging.kernel._asdict()
+    if prior.errors is not None:
+        learnt["error_bound"] = prior.errors.radii.bound / prior.errors.radii.standard
     provenance = {
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
@@ -365,7 +368,7 @@ def build_stages(
         ],
         "left_out": [name for name in atlas.names if name not in set(measured.names)],
         "skipped": [entry.name for entry in atlas.skipped],
-        "prior": prior.describe(),
+        "prior": learnt,
         "improvements": [{"step": step, "tried": tried, "mended": fixed} for step, tried, fixed in improvements],
         **({} if scene is None else {"scene": scene.describe()}),
         "libraries": [{"name": source.name, "digest": source.digest} for source, _ in libraries],

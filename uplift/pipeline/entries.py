@@ -10,7 +10,7 @@ import numpy as np
 
 from uplift.atlas import Atlas, Source, on_grid, read_atlas, resample
 from uplift.colorimetry.observer import COMMON_SPACES, grid, smallest_space
-from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.sensor import Sensor, in_unit_cube
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import AtlasError, OptionError, UpliftWarning
 from uplift.common.text import listed
@@ -98,7 +98,7 @@ def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, Measu
     measured = on_grid(atlas, sensor.wavelengths)
     # t = W m of measured reflectances m
     rgb = sensor.rgb(measured)
-    inside = sensor.contains(rgb)
+    inside = in_unit_cube(rgb)
     count = len(atlas.entries)
     hint = ""
     if not inside.all():
@@ -176,7 +176,7 @@ def families_of(options: Options, libraries: Sequence[tuple[Source, Atlas]], sen
     own = []
     for source, library in libraries:
         resampled = resample(library, sensor.wavelengths)
-        outside = int((~sensor.contains(sensor.rgb(resampled.values))).sum())
+        outside = int((~in_unit_cube(sensor.rgb(resampled.values))).sum())
         if resampled.clips:
             problem = f"clipped to [0, 1]: {len(resampled.clips)} spectra, first '{resampled.clips[0].name}'"
             warn(f"library '{source.name}': {problem}", code="entry-clipped")

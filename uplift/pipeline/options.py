@@ -174,4 +174,4 @@ def check_memory(options: Options) -> None:
     largest = int(max(((free_memory() or 0) - PROCESS_BYTES) / node, 8) ** (1 / 3))
     hint = f"use dim={largest} or less" if largest > 2 else "use a machine with more memory"
     need = PROCESS_BYTES + min(options.dim, 10**90) ** 3 * node  # a float overflows for absurd values of dim
-    machine.check_memory(need, f"dim {format_value(options.dim)}", OptionError, hint)
+    machine.check_memory(need, "a lattice of this dim", OptionError, hint)

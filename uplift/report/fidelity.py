@@ -110,7 +110,7 @@ def from_other_atlas(data: CubeData, atlas: Atlas) -> EntryQuery:
     """Query entries that the cube was not built from, as far as they lie in its RGB space."""
     measured = resample(atlas, data.sensor.wavelengths).values
     rgb = data.sensor.rgb(measured)
-    return take(EntryQuery(atlas.names, np.clip(rgb, 0, 1), measured, None), np.flatnonzero(data.sensor.contains(rgb)))
+    return take(EntryQuery(atlas.names, np.clip(rgb, 0, 1), measured, None), np.flatnonzero(in_unit_cube(rgb)))
 
 
 def from_stored_entries(data: CubeData) -> EntryQuery:
@@ -186,7 +186,7 @@ def _without_atlas(target: Array, assessed: Sensor) -> Array:
     """Reflectance (E, N) of the packaged cube at the colours of measured spectra (E, N)."""
     cube = load()
     rgb = on_range(cube.data.sensor, *assessed.range).rgb(target)
-    inside = cube.data.sensor.contains(rgb)
+    inside = in_unit_cube(rgb)
     answer = np.full_like(target, np.nan)
     answer[inside] = cube.reflectance(np.clip(rgb[inside], 0, 1), assessed.wavelengths)
     return answer

@@ -16,7 +16,8 @@ from uplift.colorimetry.lights import DESCRIPTIONS
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
-from uplift.lookup import Bounds, Cube
+from uplift.lookup import Cube
+from uplift.lookup.metamer_bounds import Bounds
 from uplift.models import Moments
 from uplift.models.moments import MAX_COUNT
 from uplift.viz.html import render, resource

@@ -12,8 +12,10 @@ from uplift.colorimetry.gamut import SRGB, Gamut
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array, StrPath
-from uplift.lookup import Bounds, Cube, QueryResult
+from uplift.lookup import Cube
 from uplift.lookup.light_errors import LIKELY
+from uplift.lookup.metamer_bounds import Bounds
+from uplift.lookup.query import QueryResult
 from uplift.viz.figure import (
     ACCENT,
     GREY,

@@ -9,6 +9,7 @@ from colour.recovery import RGB_to_sd_Mallett2019, RGB_to_sd_Smits1999
 from tests.helpers import raises
 from tests.parts import LLVM, need
 from uplift.atlas import Atlas, Entry, merge, on_grid, read_atlas
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import AtlasError, OptionError
 from uplift.common.processes import call_in_child
 from uplift.fit.families import families_with
@@ -32,7 +33,7 @@ def test_every_second_entry_builds_and_the_others_test(repository):
     rows = {tuple(row) for row in found.own.round(12)}
     assert not rows & {tuple(row) for row in found.unseen.round(12)}
     every = on_grid(merge(atlases.values()), found.sensor.wavelengths)
-    assert len(found.own) + len(found.unseen) == found.sensor.contains(found.sensor.rgb(every)).sum()
+    assert len(found.own) + len(found.unseen) == in_unit_cube(found.sensor.rgb(every)).sum()
 
 
 def test_edges_contain_every_corner_and_grey_once():

@@ -10,6 +10,7 @@ from uplift.atlas import Atlas, Entry, read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS, SCENE_LIGHTS
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import AtlasError
 from uplift.common.progress import Progress
 from uplift.lab.study import held_out
@@ -84,7 +85,7 @@ def data():
 @pytest.fixture(scope="module")
 def known(sensor):
     spectra = resample(read_atlas(ATLASES / "rawtoaces.txt"), sensor.wavelengths).values
-    return spectra[sensor.contains(sensor.rgb(spectra))][::3]
+    return spectra[in_unit_cube(sensor.rgb(spectra))][::3]
 
 
 def test_local_linear_reproduces_spectra_that_are_linear_in_rgb(data):

@@ -87,11 +87,6 @@ class Fields:
             raise self.location.error(f"the field '{key}' is missing", f"add a line '{key} : …' to the entry")
         return value, self.location.at(self.lines[key.lower()].number)
 
-    def number(self, key: str) -> float:
-        """Return a required number, which may have the unit ``nm``. Raise `AtlasError`."""
-        text, location = self.required(key)
-        return parse_number(without_unit(text), location, f"'{key}'")
-
     def check_known(self, known: Iterable[str]) -> None:
         """Check for unknown fields, such as misspelt ones. Raise `AtlasError`."""
         names = {name.lower(): name for name in known}
@@ -229,16 +224,17 @@ def _sampled(sampling: Fields, samples: str, start: SourceLocation) -> tuple[Arr
     if known is None:
         raise location.error(f"unknown sampling type '{truncate(kind)}'", "write 'regular' or 'point sampled'")
     sampling.check_known(known)
-    scale = check_scale(sampling.number(SCALE), f"'{SCALE}'", sampling.required(SCALE)[1])
+    stated = {key: sampling.required(key) for key in known if key != "Type"}
+    numbers = {key: parse_number(without_unit(text), at, f"'{key}'") for key, (text, at) in stated.items()}
+    scale = check_scale(numbers[SCALE], f"'{SCALE}'", stated[SCALE][1])
     with np.errstate(over="ignore", invalid="ignore"):  # Entry reports values that are not finite
         if "Start" not in known:
             wavelengths, values = np.array(_pairs(samples, start)).T
         else:
-            first, increment = sampling.number("Start"), sampling.number("Increment")
             if "{" in samples or "}" in samples:
                 raise start.error("braces within a regular sample list", WRITE_VALUES)
             values = np.array(_numbers(samples, 0, len(samples), start))
-            wavelengths = first + increment * np.arange(len(values), dtype=np.float64)
+            wavelengths = numbers["Start"] + numbers["Increment"] * np.arange(len(values), dtype=np.float64)
         return wavelengths, values / scale
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from uplift.atlas import Atlas, merge, resample
 from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import AtlasError, OptionError
@@ -110,7 +111,7 @@ def make_task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effo
         merge(Atlas(atlas.entries[start::2], (), atlas.sources) for atlas in atlases.values()) for start in (0, 1)
     )
     measured = [resample(part, sensor.wavelengths).values for part in (kept, others)]
-    own, unseen = (spectra[sensor.contains(sensor.rgb(spectra))] for spectra in measured)
+    own, unseen = (spectra[in_unit_cube(sensor.rgb(spectra))] for spectra in measured)
     if min(len(own), len(unseen)) < MIN_SPECTRA:
         problem = f"at least {MIN_SPECTRA} entries within sRGB must build and test cubes each"
         hint = "give an atlas of 8 or more entries"

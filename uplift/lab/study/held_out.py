@@ -13,6 +13,7 @@ from uplift.atlas import Atlas, resample
 from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS, SCENE_LIGHTS
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import AtlasError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
@@ -61,7 +62,7 @@ def holdout(
         progress(Progress("builds", 2, total))
         sensor = others[SIGMOID].data.sensor
         measured = resample(atlas, sensor.wavelengths).values
-        inside = np.flatnonzero(sensor.contains(sensor.rgb(measured)))
+        inside = np.flatnonzero(in_unit_cube(sensor.rgb(measured)))
         if len(inside) < MIN_ENTRIES:
             problem = f"a split needs at least {MIN_ENTRIES} entries within {sensor.space}, got {len(inside)}"
             raise AtlasError(problem, code="too-few-entries", hint="use a larger atlas")

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas import Atlas, read_atlas, resample
+from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback
@@ -58,7 +59,7 @@ class CandidateSpace:
         self.images = Images(scene.textures, scene.encoding)
         reflectances = resample(self.atlas or Atlas(), self.sensor.wavelengths).values
         rgb = self.sensor.rgb(reflectances)
-        inside = self.sensor.contains(rgb)
+        inside = in_unit_cube(rgb)
         self.colours = sample_colours(self.images, self.sensor, (grid.predicting, grid.confirming), progress)
         self.reflectances, self.materials = reflectances[inside], np.clip(rgb[inside], 0, 1)
         self.learnt: dict[tuple[Model, Model], Learnt] = {}
