@@ -41,6 +41,10 @@ HINTS = {
 """Hints in place of the library's, {}, which name parameters of Python, by the code of an error or a warning."""
 
 
+MEMORY_PROBLEMS = ("RESOURCE_EXHAUSTED", "failed to map segment")
+"""What JAX and the loader of libraries say without memory."""
+
+
 def hint_for(diagnostic: Diagnostic) -> str:
     """Return the hint of the command line for an error or warning, or else the library's own."""
     return HINTS.get(diagnostic.code, "{}").format(diagnostic.hint)
@@ -73,7 +77,7 @@ def _as_uplift_error(cause: BaseException) -> UpliftError:
     if isinstance(cause, KeyboardInterrupt):
         hint = "; ".join(getattr(cause, "__notes__", ())) or "unfinished files are removed"
         return UpliftError("interrupted", code="interrupted", hint=hint)
-    if isinstance(cause, MemoryError) or "RESOURCE_EXHAUSTED" in str(cause):  # of JAX
+    if isinstance(cause, MemoryError) or any(text in str(cause) for text in MEMORY_PROBLEMS):
         return UpliftError("not enough memory", code="out-of-memory", hint="use a smaller input, or more memory")
     if isinstance(cause, OSError):
         path = cause.filename if isinstance(cause.filename, str) else None

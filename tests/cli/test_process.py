@@ -13,6 +13,7 @@ import pytest
 from PIL import Image
 from uplift_cli.startup import enable_jit_cache
 
+from tests.conftest import ROOT
 from tests.helpers import warns
 
 UPLIFT = f"{sys.executable} -m uplift_cli"
@@ -248,9 +249,19 @@ def test_a_missing_device_of_jax_is_no_internal_error(tmp_path):
 
 
 @needs_proc
-def test_too_little_memory_is_an_error_not_an_abort(tmp_path):
-    done = shell(f"ulimit -v 1500000; {UPLIFT} build --dim 8 -o {tmp_path}/cube.uplift")
-    assert (done.returncode, b"of memory" in done.stderr) == (2, True)
+@pytest.mark.parametrize(
+    ("limit", "command"),
+    [
+        (1_500_000, "build --dim 8 -o out"),
+        (300_000, "build -o out"),
+        (1_500_000, "lights build -o out"),
+        (1_500_000, f"check {ROOT}/cubes/sigmoid-8.uplift"),
+    ],
+)
+def test_too_little_memory_is_an_error_not_an_abort(tmp_path, limit, command):
+    done = shell(f"cd {tmp_path}; ulimit -v {limit}; {UPLIFT} {command}")
+    assert (done.returncode in (1, 2), done.stderr.count(b"\n"), b"memory" in done.stderr) == (True, 1, True)
+    assert b"version" not in done.stderr  # of a cube's options
 
 
 DEAF = """

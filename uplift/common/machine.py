@@ -5,10 +5,11 @@ import os
 import re
 import threading
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from uplift.common.errors import UpliftError
+from uplift.common.errors import OptionError, UpliftError
 
 _LOCK = threading.Lock()
 _CALLERS: set[object] = set()
@@ -45,6 +46,8 @@ def single_threaded_blas() -> Iterator[None]:
 
 
 AVAILABLE = re.compile(r"^(?:MemAvailable|SwapFree): +(\d+)", re.MULTILINE)
+PROCESS_BYTES = 500_000_000
+"""Memory of a build without its lattice."""
 THREADS = 1_200_000_000
 """Addresses that the threads of XLA reserve, which a limit of addresses must leave."""
 CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
@@ -78,3 +81,9 @@ def check_memory(need: float, subject: str, error: type[UpliftError], hint: str)
     if free is not None and need > free:
         problem = f"{subject} needs about {need / 1e9:.3g} GB of memory, {free / 1e9:.3g} GB are free"
         raise error(problem, code="out-of-memory", hint=hint)
+
+
+@cache
+def require_memory_of_xla() -> None:
+    """Raise `OptionError` if XLA, which ends the process without memory for its threads, would not have it."""
+    check_memory(PROCESS_BYTES, "a fit", OptionError, "use a machine with more memory")

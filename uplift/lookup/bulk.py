@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from uplift.colorimetry.sensor import Sensor, as_rgb
 from uplift.common.arrays import Array, Indices
+from uplift.common.machine import require_memory_of_xla
 from uplift.lattice import EntryBoxes, Lattice
 from uplift.lookup.blocks import (
     as_coefficient_count,
@@ -287,5 +288,6 @@ def _sampler(table: NodeTable, threads: int) -> Sampler:
 
 
 def _on_device(sensor: Sensor, grid: Grid, threads: int, exact: Exact | None) -> Sampler:
+    require_memory_of_xla()
     with jax.enable_x64(True):
         return Sampler(sensor, jax.device_put(grid), threads, exact)

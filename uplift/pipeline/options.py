@@ -12,7 +12,7 @@ from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP
 from uplift.common import machine
 from uplift.common.errors import OptionError, unknown_name
-from uplift.common.machine import free_memory
+from uplift.common.machine import PROCESS_BYTES, free_memory
 from uplift.common.text import format_value
 from uplift.cube.file import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
 from uplift.lattice import AXES
@@ -43,8 +43,6 @@ MAX_RANGE = 300.0, 1000.0
 """Limits of the range in nm: illuminants and observers have no shorter wavelengths, atlases hardly longer ones."""
 STEPS = (1.0, 5.0, 10.0)
 """Steps of the sensor's wavelengths in nm."""
-PROCESS_BYTES = 500_000_000
-"""Memory of a build without its lattice."""
 Dim = int | Literal["auto"]
 TYPES: dict[Any, tuple[Any, type, str]] = {
     Dim: (Integral, int, "a whole number or 'auto'"),

@@ -75,6 +75,8 @@ def rebuild(
             looks = recorded_looks(stored.data.provenance)
             return build(atlas, library=library, looks=looks, scene=scene, progress=progress, **given)
         except (LookError, OptionError, UnknownNameError) as error:
+            if error.code == "out-of-memory":
+                raise
             raise _unknown_options(error, path) from error
 
 
