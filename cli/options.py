@@ -147,16 +147,26 @@ def stacked(*decorators: Decorator) -> Decorator:
     return lambda function: reduce(lambda inner, each: each(inner), reversed(decorators), function)
 
 
+def repeatable(option: str, name: str, help: str, default: str = "", **settings: Any) -> Decorator:
+    """An option that may be given several times, as the tuple ``name``."""
+    text = f"{help}; repeatable." + (f" [default: {default}]" if default else "")
+    return click.option(option, name, multiple=True, help=text, **settings)
+
+
+def tolerance(help: str, name: str = "tolerance", **settings: Any) -> Decorator:
+    """``--tolerance``, a ΔE00."""
+    return click.option("--tolerance", name, metavar="ΔE00", type=NUMBER, help=help, **settings)
+
+
 def atlas(help: str, default: str = "") -> Decorator:
     """``--atlas`` as ``files``."""
-    text = f"{help}; repeatable." + (f" [default: {default}]" if default else "")
-    return click.option("--atlas", "files", multiple=True, metavar="FILE", help=text, shell_complete=complete_atlas)
+    return repeatable("--atlas", "files", help, default, metavar="FILE", shell_complete=complete_atlas)
 
 
 def light(help: str, default: str) -> Decorator:
     """``--light`` as ``lights``; why defaults differ is in `uplift help lights`."""
-    text = f"{help}, such as led, 3200K or FL11; repeatable. [default: {default}]"
-    return click.option("--light", "lights", multiple=True, metavar="NAME", help=text, shell_complete=complete_light)
+    help = f"{help}, such as led, 3200K or FL11"
+    return repeatable("--light", "lights", help, default, metavar="NAME", shell_complete=complete_light)
 
 
 OF_PACKAGE = ", or ACEScg for the packaged ACEScg cube{}. [default: the packaged sRGB cube]"
@@ -296,9 +306,7 @@ def colours(xyz: str, space: str) -> Decorator:
 fill = click.option(
     "--fill-missing", is_flag=True, help="Take colours that a cube built with --scene lacks from the packaged cube."
 )
-atlas_folders = click.option(
-    "--atlas-dir", "folders", multiple=True, metavar="DIR", help="Folder to search for atlases; repeatable."
-)
+atlas_folders = repeatable("--atlas-dir", "folders", "Folder to search for atlases", metavar="DIR")
 force = click.option("--force", is_flag=True, help="Replace existing files.")
 quiet = click.option("-q", "--quiet", is_flag=True, help="Print only warnings and errors.")
 verbose = click.option("-v", "--verbose", is_flag=True, help="Print a line for every round and improvement step.")

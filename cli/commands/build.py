@@ -51,13 +51,8 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     metavar="N",
     help="Lattice nodes along each axis. 'auto' chooses the smallest dim, and its axis, that resolves every entry.",
 )
-@click.option(
-    "--tolerance",
-    "auto_tolerance",
-    type=options.NUMBER,
-    metavar="ΔE00",
-    default=0.5,
-    help="Largest difference to the entries that the lattice of --dim auto may have.",
+@options.tolerance(
+    "Largest difference to the entries that the lattice of --dim auto may have.", "auto_tolerance", default=0.5
 )
 @click.option("--model", default="moments", help="Spectrum model: moments or sigmoid.")
 @options.coefficients
@@ -86,29 +81,24 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 @click.option(
     "--neutral", default="expected", help="Spectra of greys: expected (of real materials) or flat (docs/prior.md)."
 )
-@click.option(
-    "--library",
-    multiple=True,
-    metavar="FILE",
-    help="Measured spectra that shape the learnt prior without being constraints; repeatable.",
+@options.repeatable(
+    "--library", "library", "Measured spectra that shape the learnt prior without being constraints", metavar="FILE"
 )
 @click.option(
     "--look", "looks", metavar="LOOKS.toml", help="File of looks: colours, and what they are to be under other lights."
 )
-@click.option(
+@options.repeatable(
     "--exclude-family",
     "leave_out",
-    multiple=True,
+    "Family of the shipped library that the learnt prior must not know, for tests on it",
     metavar="FAMILY",
-    help="Family of the shipped library that the learnt prior must not know, for tests on it; repeatable.",
 )
 @click.option("--threshold", type=options.NUMBER, default=1e-4, help="Largest residual of a node, |linear RGB|.")
-@click.option(
+@options.repeatable(
     "--scene",
     "images",
-    multiple=True,
+    "Build only the cells that the colours of this image, or quoted pattern, need",
     metavar="IMAGE",
-    help="Build only the cells that the colours of this image, or quoted pattern, need; repeatable.",
 )
 @click.option(
     "--growth",

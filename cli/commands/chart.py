@@ -25,13 +25,7 @@ FILES = ("chart.csv", "chart.png", "chart.html")
 
 @click.command("chart")
 @options.output("Folder to write to.", metavar="DIR", default="chart")
-@click.option(
-    "--method",
-    "patterns",
-    metavar="PATTERN",
-    multiple=True,
-    help="Methods by name, with '*' as a wildcard; repeatable.",
-)
+@options.repeatable("--method", "patterns", "Methods by name, with '*' as a wildcard", metavar="PATTERN")
 @options.atlas("Measured spectra", DEFAULT_ATLASES)
 @click.option("--quick", is_flag=True, help="Few methods and repeats: about a minute instead of half an hour.")
 @click.option("--from", "source", metavar="CSV", help="Table of an earlier chart to draw or to recommend from.")
@@ -41,9 +35,7 @@ FILES = ("chart.csv", "chart.png", "chart.html")
     help="Recommend a cube for common situations, or for limits, by the packaged chart or --from.",
 )
 @click.option("--time-ns", type=options.NUMBER, help="With --recommend: largest CPU time per RGB, in ns.")
-@click.option(
-    "--tolerance", "delta_e", metavar="ΔE00", type=options.NUMBER, help="With --recommend: largest mean ΔE00."
-)
+@options.tolerance("With --recommend: largest mean ΔE00.", "delta_e")
 @click.option(
     "--light", help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: mean of five]"
 )
@@ -53,8 +45,6 @@ FILES = ("chart.csv", "chart.png", "chart.html")
     is_flag=True,
     help="With --recommend: ΔE00 of the atlas entries instead of unseen materials.",
 )
-@click.option("--no-atlas", "plain", is_flag=True, help="With --recommend: a cube without an atlas.")
-@click.option("--smallest", is_flag=True, help="With --recommend: the smallest sufficient cube, not the fastest.")
 @options.force
 def command(
     output: str,

@@ -25,12 +25,7 @@ SPECTRA = ("surfaces.csv", "lights.csv")
 @click.command("compare")
 @options.atlas("Surfaces", DEFAULT_ATLASES)
 @options.light("Illuminant", "A, B, C, and FL2, FL7, FL11")
-@click.option(
-    "--tolerance",
-    metavar="ΔE00",
-    type=options.NUMBER,
-    help="Print the cheapest representation with 97.5 % of errors below this value.",
-)
+@options.tolerance("Print the cheapest representation with 97.5 % of errors below this value.")
 @click.option(
     "--filters", is_flag=True, help="Also search the best low-pass filters for point sampling, which takes minutes."
 )

@@ -17,12 +17,9 @@ from ..output.progress import progress_bar
 @click.argument("second", metavar="CUBE", shell_complete=options.complete_cube)
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
 @options.light("Illuminant", "D65 A FL2 FL11 LED-B3")
-@click.option(
-    "--tolerance",
-    type=options.NUMBER,
-    metavar="ΔE00",
-    help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by more, if one cube alone lacks a "
-    "colour, or if entries were added or removed.",
+@options.tolerance(
+    "Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by more, if one cube alone lacks a colour, "
+    "or if entries were added or removed."
 )
 @click.option("--worst", type=options.Whole(0), default=5, help="Number of worst colours of each set.")
 @options.pixels()

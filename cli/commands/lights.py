@@ -182,11 +182,9 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
 @options.colours("where white of the table's space has Y = 1", "that of the table")
 @table_option
 @options.output_wavelengths
-@click.option(
-    "--out-of-gamut",
-    "outside",
-    type=click.Choice(("error", "clip")),
-    default="error",
+@options.choice(
+    *("--out-of-gamut", "error", "clip"),
+    name="outside",
     help="Treatment of colours that no light has: raise an error, or take the nearest one towards white.",
 )
 @options.output_format("table", "json", "csv")

@@ -37,13 +37,7 @@ LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of th
     metavar="FILE",
     help="Picture for the page: an 8-bit image of labels, or EXR channels with the names of the materials.",
 )
-@click.option(
-    "--label",
-    "labels",
-    multiple=True,
-    metavar="NAME=#RRGGBB",
-    help="Colour of a material in --image; repeatable. [default: greys 1, 2, …]",
-)
+@options.repeatable("--label", "labels", "Colour of a material in --image", "greys 1, 2, …", metavar="NAME=#RRGGBB")
 @options.output_format("table", "json")
 @options.force
 def command(

@@ -186,12 +186,11 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
 @click.argument("cube", metavar="[CUBE]", required=False)
 @options.atlas_folders
 @click.option("--entries", type=options.Whole(0), default=24, help="Number of atlas entries to change, one at a time.")
-@click.option(
+@options.repeatable(
     "--method",
     "methods",
-    multiple=True,
+    "Published method whose queries are perturbed too, such as otsu2018 or mallett2019",
     metavar="NAME",
-    help="Published method whose queries are perturbed too, such as otsu2018 or mallett2019; repeatable.",
 )
 @options.output("Folder for plots.", metavar="DIR")
 @options.output_format("table", "json")

@@ -66,11 +66,9 @@ image_options = options.stacked(
 @options.depth
 @options.pixels()
 @options.fill
-@click.option(
-    "--errors",
-    multiple=True,
+@options.repeatable(
+    *("--errors", "errors", "Add a channel with the standard error, ΔE00, under an illuminant, such as error.A"),
     metavar="NAME",
-    help="Add a channel with the standard error, ΔE00, under an illuminant, such as error.A; repeatable.",
     shell_complete=options.complete_light,
 )
 def command(

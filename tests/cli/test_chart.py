@@ -115,7 +115,7 @@ def test_recommendations(quick, run, refuse):
     ("arguments", "code"),
     [
         (("--method", "x"), "option"),
-        (("--recommend", "--smallest"), "option"),
+        (("--recommend", "--light", "D65"), "option"),
         (("--recommend", "--tolerance", 1, "--light", "FL12"), "unknown-name"),
         (("--from", "none.csv"), "file-not-found"),
         (("-o", "file"), "output"),
