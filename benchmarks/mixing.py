@@ -277,15 +277,15 @@ def _plot(cube: Cube, strips: dict[str, Array], path: Path) -> None:
 
 
 def _tools(cube: Cube) -> dict[str, Array]:
-    """Return the ramp of two artists' paints by RGB, by us before and now, and as other tools publish it."""
+    """Return the ramp of two artists' paints by RGB, by us, and as other tools publish it."""
     steps, mixbox = published("coloraide", cube), published("mixbox", cube).expected[:1]
     ends = steps.paints[:2]
     parts = np.concatenate([[[1, 0]], steps.shares, [[0, 1]]])
     by_name = {mixer.name: mixer for mixer in mixers(cube)}
     return {
         "mean of sRGB codes": np.clip(cube.decode(parts @ cube.encode(ends)), 0, 1),
-        "uplift mix --scattering root, the default before": by_name["pigments, S = √R"].mix(ends, parts),
-        "uplift mix, the default now": by_name["pigments"].mix(ends, parts),
+        "uplift mix --scattering root": by_name["pigments, S = √R"].mix(ends, parts),
+        "uplift mix": by_name["pigments"].mix(ends, parts),
         "coloraide's spectral, after spectral.js (published)": np.concatenate([ends[:1], steps.expected, ends[1:]]),
         "Mixbox 1:1 (published)": np.concatenate([ends[:1], mixbox, ends[1:]]),
     }

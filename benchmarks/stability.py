@@ -1,15 +1,20 @@
-"""Failures of fits and sensitivity of stored cubes, for docs/stability.md and its pictures."""
+"""Failures of fits, sensitivity of stored cubes, and exported programs, for docs/stability.md and its pictures."""
 
 from typing import Any
 
+import numpy as np
+
 import uplift
-from benchmarks import CUBES, DOCS, record, show
+from benchmarks import CUBES, DOCS, MACBETH, Row, record, show
+from benchmarks.performance import CHECKED, MODES, run_header
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
+from uplift.common.arrays import Array
 from uplift.lab.chart.measure import perturb_method, select_methods
 from uplift.lab.study.plots import plot_locality, plot_map
 from uplift.lab.study.sensitivity import COLOURS, MOVED_DELTA_E, NOISE, perturb, study_sensitivity
 from uplift.lab.study.stability import NO_ATLAS, SYNTHETIC_ATLASES, DesignSpace, study_stability
+from uplift.lookup import Cube
 from uplift.pipeline.rebuild import recorded_atlas
 
 FOLDER = DOCS / "stability"
@@ -24,12 +29,17 @@ KINDS = {
     "one entry left out": " left out",
 }
 """Kinds of changed atlases by a part of their descriptions."""
+EXPORT_DIM, VISIBLE = 12, 1e-3
+SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB", "ACES2065-1")
+EXPORTED = ((9, 9, None), (3, 3, None), (9, 13, MACBETH))
+"""Coefficients of nodes and of entries, and the atlas, of exported cubes."""
 
 
 def main() -> None:
     """Measure, draw and store."""
     FOLDER.mkdir(exist_ok=True)
     published()
+    exports()
     cubes = {name: cube_sensitivity(name) for name in STORED}
     record(
         "stability",
@@ -86,3 +96,31 @@ def summary(title: str, part: str, changes: list[dict[str, Any]]) -> dict[str, A
         "delta_e": max(one["delta_e_most"] for one in kind),
         "rms": max(one["rms_mean"] for one in kind),
     }
+
+
+def exports() -> None:
+    """Compare exported programs with Python in wide gamuts, and store it."""
+    rows: list[Row] = []
+    for space in SPACES:
+        for count, entry_count, atlas in EXPORTED:
+            cube = uplift.build(atlas, space=space, dim=EXPORT_DIM, coefficients=count, entry_coefficients=entry_count)
+            rgb = realisable(cube)
+            rows += [
+                {"space": space, "coefficients": count, "entries": entry_count if atlas else None, "mode": mode}
+                | difference(cube, mode, rgb)
+                for mode in MODES
+            ]
+    record("stability", "exports", dim=EXPORT_DIM, colours=CHECKED, visible=VISIBLE, rows=rows)
+
+
+def realisable(cube: Cube) -> Array:
+    """Return random colours (CHECKED, 3), float32, farther inside the solid than the threshold."""
+    rgb = np.random.default_rng(0).uniform(0, 1, (4 * CHECKED, 3)).astype(np.float32)
+    return rgb[cube.data.solid.signed_distance(rgb.astype(float)) < -cube.data.threshold][:CHECKED]
+
+
+def difference(cube: Cube, mode: str, rgb: Array) -> Row:
+    """Return the largest and mean difference of reflectances of each colour, and the share of visible ones."""
+    found, _ = run_header(cube, mode, rgb, 0)
+    error = np.abs(found - cube.reflectance(rgb.astype(float), mode=mode)).max(axis=1)
+    return {"largest": error.max(), "mean": error.mean(), "visible": (error > VISIBLE).mean()}

@@ -254,7 +254,7 @@ def plot_methods(comparisons: Mapping[tuple[str, ...], Mapping[str, Errors]]) ->
     panels = figure.subplots(1, len(comparisons), sharey=True)
     for axes, (lights, comparison) in zip(panels, comparisons.items(), strict=True):
         for method, colour in zip(METHODS, COLOURS, strict=True):
-            means = [comparison["unseen"][method, count].mean for count in COUNTS]
+            means = [comparison["unseen"][method, count].mean() for count in COUNTS]
             axes.plot(COUNTS, means, "o-", color=colour, markersize=3, label=method)
         axes.set(xlabel="wavelengths", yscale="log")
         axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
