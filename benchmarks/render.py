@@ -1,6 +1,14 @@
-"""The ColorChecker rendered with several methods, for docs/scene.md and its picture."""
+"""The ColorChecker rendered with several methods, and rates of textures in Mitsuba, for docs/scene.md and its picture.
 
+Rates of every variant are measured in a child process, as an LLVM too old for Mitsuba ends it. All textures take turns
+in every round; a ratio is that of the CPU times of one round.
+"""
+
+import sys
 import tempfile
+import time
+import warnings
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -8,12 +16,13 @@ from typing import Any
 import numpy as np
 
 import uplift
-from benchmarks import DOCS, MACBETH, checker, record
+from benchmarks import CUBES, DOCS, MACBETH, checker, record
 from benchmarks.checker import Chart, Layout, Reflectances
 from benchmarks.checker import render as render_chart
 from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.observer import light, sensor
 from uplift.common.arrays import Array
+from uplift.common.processes import call_in_child
 
 LIGHTS = ("D65", "A", "FL11")
 REFERENCE, MITSUBA, PLAIN, ATLAS, ATLAS_17 = (
@@ -26,6 +35,16 @@ REFERENCE, MITSUBA, PLAIN, ATLAS, ATLAS_17 = (
 OTHER_SEED = "measured spectra, another seed"
 DIM = 32
 LAYOUT, SPP = Layout(patch=32, gap=4), 256
+VARIANTS = ("llvm_ad_spectral", "cuda_ad_spectral")
+BITMAP = "Mitsuba's bitmap"
+SIZE = 512
+"""Rows and columns of the texture and of the image."""
+RATE_SPP = 8
+ROUNDS = 5
+LIMIT = 3600
+"""Seconds after which a variant counts as hung."""
+DEPTHS = (2, 5)
+PLAIN_CUBE, ATLAS_CUBE = (str(CUBES / f"moments-16{suffix}.uplift") for suffix in ("", "-macbeth"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +72,7 @@ def main() -> None:
         samples=LAYOUT.patch**2 * SPP,
         **figures(painted, renders),
     )
+    rates()
 
 
 def methods(painted: Chart, folder: Path, dim: int) -> dict[str, Reflectances]:
@@ -104,4 +124,120 @@ def figures(painted: Chart, renders: Renders) -> dict[str, Any]:
             for method in (MITSUBA, PLAIN, ATLAS, ATLAS_17, OTHER_SEED)
         ],
         "patches": [{"patch": patch, **of_patch(row)} for row, patch in enumerate(painted.names)],
+    }
+
+
+def rates() -> None:
+    """Measure the rates of all variants and store."""
+    rows: list[dict[str, Any]] = []
+    for variant in VARIANTS:
+        try:
+            rows += call_in_child(measure_rates, variant, seconds=LIMIT)
+        except Exception as error:  # code of other packages may raise anything
+            print(f"{variant}: {error}", file=sys.stderr)
+            rows.append({"variant": variant, "work": None})
+    import mitsuba
+
+    figures = {"size": SIZE, "rounds": ROUNDS, "reference": BITMAP}
+    record("render", "render-rates", mitsuba=mitsuba.__version__, **figures, rows=rows)
+
+
+def measure_rates(variant: str) -> list[dict[str, Any]]:
+    """Measure a variant in this process."""
+    import mitsuba
+
+    from uplift.io.mitsuba import register
+
+    warnings.simplefilter("ignore", uplift.UpliftWarning)
+    mitsuba.set_variant(variant)
+    register()
+    with tempfile.TemporaryDirectory() as folder:
+        textures = {name: mitsuba.load_dict(texture) for name, texture in _textures(Path(folder)).items()}
+    return [row for depth in DEPTHS for row in _rows(variant, depth, textures)]
+
+
+def _rows(variant: str, depth: int, textures: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    runs = {name: _rendering(texture, depth) for name, texture in textures.items()}
+    seconds: dict[str, list[float]] = {name: [] for name in textures}
+    for seed in range(ROUNDS + 1):
+        for name, run in runs.items():
+            begin = time.process_time()
+            run(seed)
+            if seed:  # the first compiles
+                seconds[name].append(time.process_time() - begin)
+    reference = np.array(seconds[BITMAP])
+    for name, each in seconds.items():
+        ratios = reference / each
+        yield {
+            "variant": variant,
+            "work": f"rendering, path depth {depth}",
+            "texture": name,
+            "ns": 1e9 * float(np.median(each)) / (SIZE * SIZE * RATE_SPP),
+            "rate": float(np.median(ratios)),
+            "lowest": float(ratios.min()),
+            "highest": float(ratios.max()),
+        }
+
+
+def _textures(folder: Path) -> dict[str, dict[str, Any]]:
+    import mitsuba
+
+    from uplift.io import texture
+    from uplift.io.texture.uplifter import PixelEncoding
+
+    image = _image(SIZE)
+    mitsuba.Bitmap(image).write(str(folder / "image.exr"))
+
+    def convert(encoding: PixelEncoding) -> dict[str, Any]:
+        target = folder / f"{encoding.name}.exr"
+        texture.convert(texture.prepare(uplift.load(PLAIN_CUBE), encoding), folder / "image.exr", target)
+        return {"type": "uplift", "filename": str(target)}
+
+    spectra, multipliers = convert(texture.Spectrum()), convert(texture.Multipliers())
+    entries = {"type": "uplift", "cube": ATLAS_CUBE, "filename": str(folder / "image.exr")}
+    return {
+        BITMAP: {"type": "bitmap", "bitmap": mitsuba.Bitmap(image)},
+        "9 coefficients": multipliers,
+        "9 coefficients, stochastic": {**multipliers, "filter_type": "stochastic"},
+        "17 coefficients": entries,
+        "17 coefficients, stochastic": {**entries, "filter_type": "stochastic"},
+        "81 wavelengths": spectra,
+    }
+
+
+def _image(size: int) -> Any:
+    """Return tiles of random colours with noise, float32 (size, size, 3)."""
+    rng = np.random.default_rng(8)
+    tiles = np.kron(0.05 + 0.9 * rng.random((16, 16, 3)), np.ones((size // 16, size // 16, 1)))
+    return (tiles * (1 - 0.1 * rng.random((size, size, 1)))).astype(np.float32)
+
+
+def _rendering(texture: Any, depth: int) -> Callable[[int], None]:
+    """Return a function of a seed that renders the scene."""
+    import drjit as dr
+    import mitsuba as mi
+
+    scene = mi.load_dict(_scene(texture, SIZE, depth))
+
+    def run(seed: int) -> None:
+        dr.eval(mi.render(scene, spp=RATE_SPP, seed=seed))
+        dr.sync_thread()
+
+    return run
+
+
+def _scene(texture: Any, size: int, depth: int) -> dict[str, Any]:
+    """Describe a plane and a sphere of the texture under uniform light."""
+    import mitsuba as mi
+
+    paint = {"type": "diffuse", "reflectance": texture}
+    view = mi.ScalarTransform4f().look_at([0, -1.2, 1.6], [0, 0, 0], [0, 0, 1])
+    film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
+    return {
+        "type": "scene",
+        "integrator": {"type": "path", "max_depth": depth, "hide_emitters": True},
+        "light": {"type": "constant"},
+        "camera": {"type": "perspective", "fov": 45, "to_world": view, "film": film},
+        "plane": {"type": "rectangle", "to_world": mi.ScalarTransform4f().scale(2), "bsdf": paint},
+        "ball": {"type": "sphere", "radius": 0.4, "center": [0, 0, 0.4], "bsdf": paint},
     }

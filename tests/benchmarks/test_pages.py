@@ -22,7 +22,7 @@ DOCS = ROOT / "docs"
 
 @pytest.mark.parametrize("name", pages())
 def test_every_program_can_be_imported(name):
-    if name in ("render", "render-rates", "looks", "showcase"):
+    if name in ("render", "looks", "showcase"):
         need(MITSUBA)
     assert callable(importlib.import_module(f"benchmarks.{name.replace('-', '_')}").main)
 
