@@ -56,13 +56,8 @@ def run_scene(entries: Atlas, measured: Array, seed: int) -> list[dict[str, Any]
         for step, swatch in enumerate(order, 1):
             remaining = remaining.measured(int(swatch))
             if step in COUNTS:
-                row = {
-                    "choice": name,
-                    "swatches": step,
-                    "delta_e": error(build(order[:step])),
-                    "expected": remaining.mean,
-                }
-                rows.append(row)
+                found = {"delta_e": error(build(order[:step])), "expected": remaining.mean}
+                rows.append({"choice": name, "swatches": step, **found})
     return rows
 
 

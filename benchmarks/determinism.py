@@ -72,14 +72,7 @@ def main() -> None:
         folder = Path(name)
         run("default", {}, folder)
         same, apart = ([measure(key, each[key], folder) for key in each] for each in (SAME, APART))
-    record(
-        "determinism",
-        "stability-determinism",
-        cubes=list(CASES),
-        same=same,
-        apart=apart,
-        limits=dict(LIMITS),
-    )
+    record("determinism", "stability-determinism", cubes=list(CASES), same=same, apart=apart, limits=dict(LIMITS))
     failed = [row["setting"] for row in same if row["different"]]
     failed += [row["setting"] for row in apart if row["different_nodes"]]
     print(f"settings that change bytes, or nodes across instruction sets: {', '.join(failed) or 'none'}")

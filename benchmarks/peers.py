@@ -6,7 +6,6 @@ tools must be installed: a record without them would replace one that has them.
 
 import json
 import os
-import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -120,13 +119,12 @@ def ceres(runs: int) -> list[Peer]:
 
 def _build_ceres() -> Path:
     """Build the program. Raises `RuntimeError` without cmake, a compiler or Ceres."""
-    if shutil.which("cmake") is not None:
+    try:
         for words in (["-S", CERES_SOURCE, "-B", CERES_BUILT], ["--build", CERES_BUILT]):
-            if subprocess.run(["cmake", *words], capture_output=True, check=False).returncode:
-                break
-        else:
-            return CERES_BUILT / "fit"
-    raise RuntimeError(CERES_NEEDS)
+            subprocess.run(["cmake", *words], capture_output=True, check=True)
+    except (OSError, subprocess.CalledProcessError) as error:
+        raise RuntimeError(CERES_NEEDS) from error
+    return CERES_BUILT / "fit"
 
 
 def _ceres_row(program: Path, name: str, count: int, unknowns: str, least: float, runs: int) -> Peer:

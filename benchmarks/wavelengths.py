@@ -160,14 +160,12 @@ def compare_methods(materials: Array, lights: tuple[str, ...]) -> dict[str, Erro
     odd = np.arange(len(materials)) % 2 == 1
     fitted, tested = setup.only(~odd), setup.only(odd)
     keys = [(method, count) for count in COUNTS for method in METHODS]
-    unseen = {
-        (method, count): evaluate(tested, METHODS[method](tested if method in OTHERS else fitted, count))
-        for method, count in keys
-    }
-    return {
-        "unseen": unseen,
-        "all": {(method, count): choose(setup, count=count, method=method).errors for method, count in keys},
-    }
+
+    def unseen(method: str, count: int) -> Array:
+        return evaluate(tested, METHODS[method](tested if method in OTHERS else fitted, count))
+
+    every = {key: choose(setup, method=key[0], count=key[1]).errors for key in keys}
+    return {"unseen": {key: unseen(*key) for key in keys}, "all": every}
 
 
 def tables(lights: tuple[str, ...], comparison: Mapping[str, Errors]) -> Iterator[tuple[Row, list[Row]]]:
