@@ -18,7 +18,7 @@ import numpy as np
 import optimistix
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Array, Indices, blocks, largest
+from uplift.common.arrays import Array, Indices, blocks, largest, squared
 from uplift.fit.batch import map_batches
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import MAX_MULTIPLIER
@@ -194,7 +194,7 @@ def solve(
         before = Solution(*(column[rows] for column in solution))
         given = (before.multipliers, target[rows], options)
         y, residual, taken, changed = map_batches(advance, (forward, tolerance, steps), *given)
-        closer = np.einsum("nk,nk->n", residual, residual) <= np.einsum("nk,nk->n", before.residual, before.residual)
+        closer = squared(residual) <= squared(before.residual)
         distance = np.where(closer, largest(np.abs(residual)), before.distance)
         stale = np.where(distance > (1 - MIN_GAIN) * before.distance, stale + 1, 0)
         y, residual = (
