@@ -47,6 +47,8 @@ SETS = ("macbeth", "babelcolor", "pmc", "rawtoaces", "cie2017")
 """Shipped sets of at least 20 entries. The others are too small to split."""
 SMALL = tuple(name for name in SETS if name not in LARGE)
 TESTED = ("macbeth", "cie2017", "rawtoaces")
+PARTS = (2, 4, 10)
+"""Parts of the mixture, of which cubes know all but one."""
 LIBRARY_SETS = tuple(name for names in FAMILIES.values() for name in names)
 PUBLISHED = ("otsu2018", "mallett2019", "smits1999")
 Splits = tuple[HoldoutSplit, ...]
@@ -86,6 +88,7 @@ def main() -> None:
         choices=[asdict(choice) for choice in CHOICES],
         sets=[compare_methods(name) for name in (*SETS, MIXTURE)],
     )
+    record("fidelity", "mixture", dim=DIM, splits=SPLITS, rows=[learning_curve(parts) for parts in PARTS])
     sets = (*LIBRARY_SETS, *(["munsell"] if MUNSELL.exists() else []))
     size = FILE.stat().st_size
     record(
@@ -199,6 +202,23 @@ def compare_methods(name: str) -> Row:
         for method, values in found.items()
     ]
     return {"set": name, "spectra": len(some.rgb), "rows": rows}
+
+
+def learning_curve(parts: int) -> Row:
+    """Return the errors at each part of the mixture of cubes that know the other ones: what more measurements give."""
+    some, left_out, found = materials(MIXTURE), shipped_families(MIXTURE), []
+    rows = np.arange(len(some.rgb))
+    for seed in range(SPLITS):
+        for queried in np.array_split(np.random.default_rng(seed).permutation(rows), parts):
+            cube = build(some.take(np.setdiff1d(rows, queried)), dim=DIM, leave_out=left_out)
+            held = some.take(queried)
+            found.append(held_out.spectrum_errors(cube.reflectance(held.rgb), held.measured).delta_e)
+    by_light = np.concatenate(found).mean(axis=0)
+    return {
+        "known": 1 - 1 / parts,
+        "mean": by_light.mean(),
+        "errors": dict(zip(HELD_OUT_LIGHTS, by_light.tolist(), strict=True)),
+    }
 
 
 @cache
