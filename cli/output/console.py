@@ -98,11 +98,9 @@ def print_json_answers(objects: Iterable[Any], *, single: bool) -> None:
 
 def print_csv(header: Sequence[object], rows: Iterable[Sequence[object]]) -> None:
     """Print a table as CSV, each row before the next one is computed."""
-    from uplift.common.csv import CsvWriter
+    from uplift.common.csv import write_csv
 
-    writer = CsvWriter(_Lines())
-    for row in chain([header], rows):
-        writer.write(row)
+    write_csv(_Lines(), chain([header], rows))
 
 
 def print_csv_text(text: str) -> None:

@@ -14,14 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.lights import (
-    COMMON_NAMES,
-    DAYLIGHT_FROM,
-    NOMINAL,
-    TEMPERATURES,
-    black_body,
-    standard_name,
-)
+from uplift.colorimetry import lights
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import unknown_name
@@ -83,7 +76,7 @@ def names(kind: str) -> tuple[str, ...]:
 
 def stated_name(kind: str, name: str) -> str:
     """Return the name that colour-science states for a name, which may be an alias or have other capitals."""
-    name, _ = standard_name(name) if kind == "illuminant" else (name, None)
+    name, _ = lights.standard_name(name) if kind == "illuminant" else (name, None)
     if name in names(kind):
         return str(_file()[f"{kind}: stated"][names(kind).index(name)])
     return str(look_up(kind, name).name)
@@ -95,9 +88,9 @@ def samples(kind: str, name: str, start: float = START, end: float = END, step: 
 
     ``kind`` is one of the keys of `TABLES`, such as ``"display"`` for the power of the primaries of a display.
     """
-    name, kelvin = standard_name(name) if kind == "illuminant" else (name, None)
-    if kelvin is not None and kelvin < DAYLIGHT_FROM:
-        values = black_body(kelvin, np.arange(start, end + step / 2, step))
+    name, kelvin = lights.standard_name(name) if kind == "illuminant" else (name, None)
+    if kelvin is not None and kelvin < lights.DAYLIGHT_FROM:
+        values = lights.black_body(kelvin, np.arange(start, end + step / 2, step))
     elif kind in SPECTRA and (start, end, step) == WAVELENGTHS and name in names(kind):
         values = _file()[f"{kind}: samples"][names(kind).index(name)]
     else:
@@ -132,7 +125,7 @@ def look_up(kind: str, name: str) -> Any:
     table = getattr(colour_science(), TABLES[kind])
     known = list(table)
     if kind == "illuminant":
-        (name, kelvin), known = standard_name(name), [*known, *COMMON_NAMES, "3200K"]
+        (name, kelvin), known = lights.standard_name(name), [*known, *lights.COMMON_NAMES, "3200K"]
         if kelvin is not None:
             return _of_temperature(kelvin, name)
     try:
@@ -144,10 +137,10 @@ def look_up(kind: str, name: str) -> Any:
 def _of_temperature(kelvin: float, name: str) -> Any:
     """Return a black body or CIE daylight as an object of colour-science."""
     colour = colour_science()
-    if kelvin < DAYLIGHT_FROM:
+    if kelvin < lights.DAYLIGHT_FROM:
         wavelengths = np.arange(300.0, 1001.0)
-        return colour.SpectralDistribution(black_body(kelvin, wavelengths), wavelengths, name=name)
-    kelvin = min(kelvin * NOMINAL, TEMPERATURES[1])
+        return colour.SpectralDistribution(lights.black_body(kelvin, wavelengths), wavelengths, name=name)
+    kelvin = min(kelvin * lights.NOMINAL, lights.TEMPERATURES[1])
     found = colour.sd_CIE_illuminant_D_series(colour.temperature.CCT_to_xy_CIE_D(kelvin))
     found.name = name
     return found

@@ -16,20 +16,15 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _NEUTRALISED = re.compile(r"'+[=+\-@\t\r\n＝＋－＠]")
 
 
-class CsvWriter:
-    """Writer of rows with LF line ends, to a text file opened with ``newline=""``, or anything else with ``write``.
+def write_csv(file: Any, rows: Iterable[Iterable[object]], *, quote_text: bool = False) -> None:
+    """Write rows with LF line ends, each before the next is computed, to a text file or anything else with ``write``.
 
-    With ``quote_text`` all text is quoted, which distinguishes a name such as ``1`` from a number.
+    Floats have all significant digits, None is an empty cell, and text is neutralised. With ``quote_text`` all text is
+    quoted, which distinguishes a name such as ``1`` from a number.
     """
-
-    def __init__(self, file: Any, *, quote_text: bool = False) -> None:
-        self._writer = csv.writer(
-            file, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC if quote_text else csv.QUOTE_MINIMAL
-        )
-
-    def write(self, row: Iterable[object]) -> None:
-        """Write floats with all significant digits, None as an empty cell, and neutralised text."""
-        self._writer.writerow([_safe_cell(cell) for cell in row])
+    quoting = csv.QUOTE_NONNUMERIC if quote_text else csv.QUOTE_MINIMAL
+    writer = csv.writer(file, lineterminator="\n", quoting=quoting)
+    writer.writerows([_safe_cell(cell) for cell in row] for row in rows)
 
 
 def csv_text(header: Sequence[object], rows: Iterable[Sequence[object]], *, quote_text: bool = False) -> str:
@@ -41,9 +36,7 @@ def csv_text(header: Sequence[object], rows: Iterable[Sequence[object]], *, quot
     '=1+2,
     """
     text = io.StringIO()
-    writer = CsvWriter(text, quote_text=quote_text)
-    for row in (header, *rows):
-        writer.write(row)
+    write_csv(text, (header, *rows), quote_text=quote_text)
     return text.getvalue()
 
 
@@ -63,7 +56,7 @@ def parse_csv(data: bytes) -> list[dict[str, str]]:
 
 
 def plain_cell(cell: str) -> str:
-    """Return a cell without the apostrophe that `CsvWriter` puts before a formula."""
+    """Return a cell without the apostrophe that `write_csv` puts before a formula."""
     return cell[1:] if _NEUTRALISED.match(cell) else cell
 
 
