@@ -13,8 +13,8 @@ from tests.parts import LLVM, need
 from uplift.colorimetry.gamut import map_to_gamut
 from uplift.common.errors import TextureError
 from uplift.io import texture as textures
+from uplift.io.mitsuba.texels import read_texels
 from uplift.io.mitsuba.texture import blend
-from uplift.io.mitsuba.texture_file import read_texels
 from uplift.models import Moments, Sigmoid, evaluate
 
 pytestmark = pytest.mark.filterwarnings("ignore:the texture calls Python:uplift.UpliftWarning")

@@ -17,7 +17,7 @@ from uplift.common.errors import ColourError, TextureError
 from uplift.common.progress import Progress
 from uplift.cube import EntrySpectra
 from uplift.io import texture
-from uplift.io.mitsuba.texture_file import read_colours
+from uplift.io.mitsuba.texels import read_colours
 from uplift.io.scene_colours import Images
 from uplift.io.texture.picture import read_picture
 from uplift.models import evaluate

@@ -12,9 +12,17 @@ from uplift.colorimetry.gamut import METHODS, map_to_gamut
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array
 from uplift.common.errors import ColourError, CubeFileError, OptionError, UpliftError, UpliftWarning, needs_extra
-from uplift.io.mitsuba.texels import THREADS, Placement, Texels, light_texels, prepare_texels, uplift_texels
+from uplift.io.mitsuba.texels import (
+    THREADS,
+    Placement,
+    Texels,
+    light_texels,
+    prepare_texels,
+    read_colours,
+    read_texels,
+    uplift_texels,
+)
 from uplift.io.mitsuba.texture import make_environment, make_texture
-from uplift.io.mitsuba.texture_file import read_colours, read_texels
 from uplift.io.texture.colours import Counts
 from uplift.io.texture.exr_file import is_exr
 from uplift.io.texture.image import Values
