@@ -152,10 +152,8 @@ def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileErr
     """The error if no candidate is within the tolerance, or within the limits as well."""
     enough = sufficient(measured, scene.tolerance, scene.minimise, {})
     if enough:
-        limits = scene.limits.items()
-        excess = [sum(max(getattr(each.cost, key) / limit, 1) for key, limit in limits) for each in enough]
-        cost = enough[int(np.argmin(excess))].cost
-        over = [key for key, limit in limits if getattr(cost, key) > limit]
+        cost = enough[0].cost
+        over = [key for key, limit in scene.limits.items() if getattr(cost, key) > limit]
         needs, allowed = (
             " and ".join(cost_text(each, key) for key in over) for each in (cost, cost._replace(**scene.limits))
         )

@@ -49,9 +49,6 @@ Lights = Annotated[
     AfterValidator(_light_names),
 ]
 Observer = Annotated[str, resolves(observer.matching_functions)]
-Limit = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Tolerance = Annotated[float, Field(strict=True, ge=MIN_TOLERANCE, le=MAX_TOLERANCE, allow_inf_nan=False)]
-Quantile = Annotated[float, Field(strict=True, ge=0.5, le=1, allow_inf_nan=False)]
 
 
 @dataclass(frozen=True)
@@ -91,10 +88,10 @@ class SceneFile:
     textures: Paths
     atlases: Paths = ()
     lights: Lights = SCENE_LIGHTS
-    tolerance: Tolerance = 1.0
-    quantile: Quantile = 0.975
+    tolerance: Annotated[float, Field(strict=True, ge=MIN_TOLERANCE, le=MAX_TOLERANCE, allow_inf_nan=False)] = 1.0
+    quantile: Annotated[float, Field(strict=True, ge=0.5, le=1, allow_inf_nan=False)] = 0.975
     minimise: Minimised = "balance"
-    limits: dict[CostName, Limit] = field(default_factory=dict)
+    limits: dict[CostName, Annotated[float, Field(gt=0, allow_inf_nan=False)]] = field(default_factory=dict)
     sparse: bool = True
     encoding: Annotated[str, resolves(check_encoding)] = "auto"
     space: Annotated[str, resolves(observer.sensor)] = "sRGB"

@@ -134,10 +134,8 @@ class CandidateSpace:
 
     def measure(self, choice: Options | None, candidates: Sequence[Candidate]) -> list[Candidate]:
         """Build the cube that candidates share, and measure their errors."""
-        cube = None
-        if choice is not None:
-            self.progress(Progress(f"cube {candidates[0].cube_name}", 0, 1))
-            cube = self._cube(choice)
+        self.progress(Progress(candidates[0].name, 0, 1))
+        cube = None if choice is None else self._cube(choice)
         return self.errors(cube, candidates, self.tests, self.cubes[self.reference])
 
     def errors(
