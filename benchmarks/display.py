@@ -14,7 +14,7 @@ from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.gamut import METHODS, SRGB, Primaries, conversion, map_to_gamut
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array
-from uplift.lab.timing import Spread, time_laps
+from uplift.lab.timing import TimingStats, time_laps
 from uplift.viz.figure import new_figure, write_png
 
 BRIGHTEST, DARKEST = 9, 2
@@ -141,7 +141,7 @@ def errors(found: Chips, mapped: Array) -> dict[str, Any]:
     }
 
 
-def cost(method: str) -> Spread:
+def cost(method: str) -> TimingStats:
     """Return the CPU time per mapped colour in nanoseconds."""
     rgb = np.random.default_rng(0).normal(0.5, 1, (3 * TIMED, 3))
     rgb = rgb[((rgb < 0) | (rgb > 1)).any(axis=1)][:TIMED]

@@ -194,9 +194,9 @@ def spokes(table: EmissionTable, directions: int, steps: int) -> Array:
     """Return u′v′ (directions · steps, 2) from white to the spectral locus, both included."""
     angle = np.arange(directions) * 2 * np.pi / directions
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    rim = direction / table.data.lattice.polar(direction)[2][:, None]
+    locus = direction / table.data.lattice.polar(direction)[2][:, None]
     share = np.linspace(0, 1, steps)[:, None]
-    return np.asarray((table.data.lattice.white + rim[:, None] * share).reshape(-1, 2))
+    return np.asarray((table.data.lattice.white + locus[:, None] * share).reshape(-1, 2))
 
 
 def exactness(table: EmissionTable, uv: Array) -> Iterator[Row]:

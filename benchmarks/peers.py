@@ -21,7 +21,7 @@ from benchmarks import ROOT, record
 from uplift.colorimetry import Sensor, observer
 from uplift.common.arrays import Array
 from uplift.common.processes import call_in_child
-from uplift.lab.timing import Spread, spread, time_calls
+from uplift.lab.timing import TimingStats, time_calls, timing_stats
 from uplift.lattice import Lattice, axis_nodes
 from uplift.models import Moments, Sigmoid, evaluate, reflectance
 
@@ -45,7 +45,7 @@ class Peer:
     model: str
     count: int
     points: int
-    cpu_us: Spread
+    cpu_us: TimingStats
     share: float
     worst: float
     notes: str
@@ -70,7 +70,7 @@ def lattice() -> Lattice:
     return Lattice(axis_nodes("srgb", DIM))
 
 
-def judge(rgb: ArrayLike, target: ArrayLike, *, least: float) -> dict[str, float]:
+def check_answers(rgb: ArrayLike, target: ArrayLike, *, least: float) -> dict[str, float]:
     """Compare linear RGB (n, 3) with ``target`` (n, 3): the share within `THRESHOLD`, and the largest residual.
 
     Raises `RuntimeError` if fewer than the share ``least`` come within `THRESHOLD`: some tools leave a few nodes
@@ -94,7 +94,7 @@ def ours(runs: int) -> list[Peer]:
         cube = build()  # compiles
         cpu = time_calls(build, runs)[1].scaled(1e6 / dim**3)
         spectra = reflectance(cube.data.model, cube.data.points.coefficients, sensor().wavelengths)
-        answer = judge(sensor().rgb(spectra), cube.data.lattice.points, least=1.0)
+        answer = check_answers(sensor().rgb(spectra), cube.data.lattice.points, least=1.0)
         rows.append(Peer("uplift", name, count, dim**3, cpu, **answer, notes=f"{dim}³, compiled before"))
     return rows
 
@@ -132,8 +132,8 @@ def _ceres_row(program: Path, name: str, count: int, unknowns: str, least: float
     done = [_run_ceres(program, unknowns, count) for _ in range(runs)]
     solution, facts = done[-1]
     multipliers = model.from_storage(solution) if unknowns == "moments" else solution
-    answer = judge(sensor().rgb(evaluate(model, multipliers, sensor().wavelengths)), points, least=least)
-    cpu = spread([each["cpu"] for _, each in done]).scaled(1e6 / len(points))
+    answer = check_answers(sensor().rgb(evaluate(model, multipliers, sensor().wavelengths)), points, least=least)
+    cpu = timing_stats([each["cpu"] for _, each in done]).scaled(1e6 / len(points))
     starts = facts["solves"] / len(points)
     notes = f"{DIM}³, {UNKNOWNS[unknowns]}numeric differences, C++; grown from the middle, {starts:.1f} starts a point"
     return Peer(f"Ceres {facts['ceres']}", name, count, len(points), cpu, **answer, notes=notes)

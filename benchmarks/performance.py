@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks import MACBETH, ROOT, Row, record
-from uplift.lab.timing import spread, time_calls, time_process
+from uplift.lab.timing import time_calls, time_process, timing_stats
 
 UPLIFT = str(Path(sys.executable).parent / "uplift")
 RUNS, FEW_RUNS = 5, 3
@@ -129,7 +129,9 @@ def time_processes() -> list[Row]:
             runs = RUNS if dim < max(DIMS) else 1
             caches = [{"JAX_COMPILATION_CACHE_DIR": f"{folder}/cache-{dim}-{run}"} for run in range(runs)]
             walls, peaks = zip(*(time_process(command, 1, cache) for cache in caches), strict=True)
-            rows.append((f"uplift build --dim {dim}, first run", spread([wall.median for wall in walls]), max(peaks)))
+            rows.append(
+                (f"uplift build --dim {dim}, first run", timing_stats([wall.median for wall in walls]), max(peaks))
+            )
             what = f"uplift build --dim {dim}, compiled before"
             rows.append((what, *time_process(command, runs, caches[0])))
     starts = {

@@ -21,7 +21,7 @@ from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.io.scene_colours import MAX_LIST, MAX_PIXELS, Images
 from uplift.lab.panels import Panel, Point, write_panels
-from uplift.lab.timing import Spread, time_calls
+from uplift.lab.timing import TimingStats, time_calls
 from uplift.lookup import Cube
 from uplift.samples import copy_samples
 from uplift.scene.plan.candidates import SearchGrid
@@ -34,7 +34,7 @@ LATTICES = (("sRGB", 32), ("sRGB", 64), ("sRGB", 128), ("ACEScg", 32))
 RUNS = 3
 SAMPLE = 20_000
 """Colours of an image at which complete and sparse cubes are compared."""
-Measured = tuple[Cube, Spread, int]
+Measured = tuple[Cube, TimingStats, int]
 """A cube, the CPU seconds of its build, and the bytes of its file."""
 PICTURE = DOCS / "plan" / "front.png"
 TWO = ("D65", "FL11")

@@ -31,7 +31,7 @@ from uplift.lab.comparison.compare import (
 )
 from uplift.lab.comparison.fitted import scene_representations
 from uplift.lab.comparison.pictures import cost_panels, names, render_comparison, write_boxes, write_costs
-from uplift.lab.timing import Spread
+from uplift.lab.timing import TimingStats
 from uplift.lights.lamps import read_lamps
 from uplift.scene.representations import find_representation
 from uplift.scene.representations.composite import enhanced_riemann, sun_composite
@@ -158,7 +158,7 @@ def test_named_lights_form_one_set():
 
 def row(name, high, floats, light_floats=8.0, ns=5.0, lights="smooth"):
     found = compute_statistics([high])
-    return RepresentationResult(name, "made up", lights, found, floats, light_floats, Spread(ns, ns, ns, 3))
+    return RepresentationResult(name, "made up", lights, found, floats, light_floats, TimingStats(ns, ns, ns, 3))
 
 
 ROWS = (

@@ -8,7 +8,7 @@ from uplift.lab import timing
 
 
 def test_spread_is_median_min_and_max():
-    found = timing.spread([3.0, 1.0, 2.0])
+    found = timing.timing_stats([3.0, 1.0, 2.0])
     assert (found.median, found.min, found.max, found.runs) == (2, 1, 3, 3)
     assert f"{found.scaled(10):.0f}" == "20 (10–30)"
 

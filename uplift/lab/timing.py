@@ -31,7 +31,7 @@ MIN_RUNS, MAX_LAPS = 3, 75
 
 
 @dataclass(frozen=True)
-class Spread:
+class TimingStats:
     """Median, smallest and largest value of several runs."""
 
     median: float
@@ -42,17 +42,17 @@ class Spread:
     def __format__(self, spec: str) -> str:
         return f"{self.median:{spec}} ({self.min:{spec}}–{self.max:{spec}})"
 
-    def scaled(self, factor: float) -> "Spread":
+    def scaled(self, factor: float) -> "TimingStats":
         """Multiply all values by a factor."""
-        return Spread(self.median * factor, self.min * factor, self.max * factor, self.runs)
+        return TimingStats(self.median * factor, self.min * factor, self.max * factor, self.runs)
 
 
-def spread(values: list[float]) -> Spread:
+def timing_stats(values: list[float]) -> TimingStats:
     """Summarise the values of several runs."""
-    return Spread(statistics.median(values), min(values), max(values), len(values))
+    return TimingStats(statistics.median(values), min(values), max(values), len(values))
 
 
-def time_calls(function: Callable[[], object], runs: int) -> tuple[Spread, Spread]:
+def time_calls(function: Callable[[], object], runs: int) -> tuple[TimingStats, TimingStats]:
     """Measure wall and CPU seconds of repeated calls.
 
     The caller has called the function once to warm up. Asynchronous results must be complete when it returns.
@@ -63,10 +63,10 @@ def time_calls(function: Callable[[], object], runs: int) -> tuple[Spread, Sprea
         function()
         wall.append(time.perf_counter() - begin)
         cpu.append(time.process_time() - begin_cpu)
-    return spread(wall), spread(cpu)
+    return timing_stats(wall), timing_stats(cpu)
 
 
-def time_laps(function: Callable[[], object], lap: float, runs: int) -> Spread:
+def time_laps(function: Callable[[], object], lap: float, runs: int) -> TimingStats:
     """Measure the CPU seconds of a call after one that warms up, by up to ``runs`` runs of at least ``lap`` seconds."""
     function()
     once = max(time_calls(function, 1)[1].median, 1e-7)
@@ -80,7 +80,7 @@ def time_laps(function: Callable[[], object], lap: float, runs: int) -> Spread:
     return time_calls(run, min(affordable, runs))[1].scaled(1 / calls)
 
 
-def time_process(command: list[str], runs: int, variables: dict[str, str] | None = None) -> tuple[Spread, float]:
+def time_process(command: list[str], runs: int, variables: dict[str, str] | None = None) -> tuple[TimingStats, float]:
     """Measure the wall seconds of a process, and its peak memory in MB (Linux counts in kB)."""
     wall, peak = [], 0
     for _ in range(runs):
@@ -92,7 +92,7 @@ def time_process(command: list[str], runs: int, variables: dict[str, str] | None
         peak = max(peak, usage.ru_maxrss)
         if status:
             raise RuntimeError(f"{' '.join(command)} failed")
-    return spread(wall), peak / 1024
+    return timing_stats(wall), peak / 1024
 
 
 def environment() -> dict[str, str]:

@@ -134,15 +134,15 @@ def test_set_up_is_charged(small_task, build):
     assert numbers["setup_s"] == (build or 0) + numbers["load_s"]
 
 
-def test_judge_is_the_stated_sensor_at_1_nm(small_task):
-    """Spectra that are exact for one judge are not for another, and the tables of cubes come second."""
+def test_reference_sensor_is_the_stated_sensor_at_1_nm(small_task):
+    """Spectra that are exact for one sensor are not for another, and the tables of cubes come second."""
     weights = np.linalg.pinv(ours().matrix)
 
     def exact(rgb, wavelengths):
         return rgb @ weights.T if len(wavelengths) == len(ours().wavelengths) else grey(rgb, wavelengths)
 
     free = {"claimed_range": (-10, 10)}
-    numbers = measure_method(method_of(exact, judge=ours, **free), small_task).numbers
+    numbers = measure_method(method_of(exact, reference_sensor=ours, **free), small_task).numbers
     assert numbers["round_trip_max"] < 1e-6
     assert numbers["coarse_round_trip_mean"] > 1
     assert 1e-3 < measure_method(method_of(exact, **free), small_task).numbers["round_trip_mean"] < 0.1

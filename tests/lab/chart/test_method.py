@@ -126,8 +126,8 @@ def test_vectorised_mitsuba_gives_the_reflectances_of_its_table(small_task, colo
         np.testing.assert_allclose(compiled, table, atol=1e-4)
 
 
-def test_judges_have_the_range_of_the_cie_and_their_white():
-    sensors = {method.judge() for method in METHODS}
+def test_reference_sensors_have_the_range_of_the_cie_and_their_white():
+    sensors = {method.reference_sensor() for method in METHODS}
     assert sorted(sensor.illuminant for sensor in sensors) == ["D65", "D65", "D65", "E"]
     for sensor in sensors:
         assert sensor.range == RANGE

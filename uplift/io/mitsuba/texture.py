@@ -26,7 +26,7 @@ def blend(model: Model, multipliers: Sequence[Any], weights: Sequence[Any], wave
         linear = first * each[0]
         for order, function in enumerate(functions, start=1):
             linear = dr.fma(function, each[order], linear)
-        total = dr.fma(weight, _squash(model, linear), total)
+        total = dr.fma(weight, _to_reflectance(model, linear), total)
     return total
 
 
@@ -47,7 +47,7 @@ def _basis(model: Model, wavelengths: Any) -> list[Any]:
     return functions
 
 
-def _squash(model: Model, linear: Any) -> Any:
+def _to_reflectance(model: Model, linear: Any) -> Any:
     """Return the reflectance of a linear part x.
 
     The arc tangent is x c f(c) with c = 1 / √(1 + x²), its cosine, and f a polynomial. This needs no division, no

@@ -202,7 +202,7 @@ def _method(options: CubeOptions, lookup: str) -> Method:
         prepare = partial(prepare_lookup, mode=mode, dtype=fields["dtype"])
         call = f'cube.reflectance(rgb, mode="{mode}"{of_dtype})'
     fields |= {"method": name, "title": title, "label": label, "family": family, "mode": mode, "call": call}
-    fields |= {"build": options.command, "judge": ours, "claimed_error": 0.01 if exact else None}
+    fields |= {"build": options.command, "reference_sensor": ours, "claimed_error": 0.01 if exact else None}
     return Method(source="this package", prepare=partial(prepare, options=options), **fields)
 
 

@@ -33,7 +33,7 @@ from uplift.lab.chart.method import (
 from uplift.lab.chart.table import REFERENCE, Chart, MethodResult, State
 from uplift.lab.study.held_out import spectrum_errors
 from uplift.lab.study.sensitivity import COLOURS, perturb_answers
-from uplift.lab.timing import Spread, environment, time_laps
+from uplift.lab.timing import TimingStats, environment, time_laps
 
 METHODS = (*published.METHODS, *mitsuba3.METHODS, *cubes.METHODS)
 QUICK_METHODS = (
@@ -91,7 +91,7 @@ def call_times(uplift: UpliftRgb, dtype: str, effort: Effort) -> dict[str, float
     return numbers | {"time_ns": numbers[f"ns_{reference}"]}
 
 
-def _time_batch(uplift: UpliftRgb, dtype: str, count: int, effort: Effort) -> Spread:
+def _time_batch(uplift: UpliftRgb, dtype: str, count: int, effort: Effort) -> TimingStats:
     inputs = cycle(_colours(max(1, min(INPUTS, INPUT_COLOURS // count)), count, dtype))
     return time_laps(lambda: uplift(next(inputs)), effort.lap, effort.runs).scaled(1e9 / count)
 
@@ -199,7 +199,7 @@ def _text(error: Exception) -> str:
 
 def _round_trips(method: Method, prepared: PreparedMethod, uplift: UpliftRgb, task: Task) -> dict[str, float]:
     """Judge at 1 nm with the stated white and matrix, and with the tables that cubes are fitted to."""
-    sensor = method.judge()
+    sensor = method.reference_sensor()
     rgb, spectra = _spectra(method, _guarded(method, prepared, sensor.wavelengths), task, task.rgb)
     errors, claimed = delta_e_rgb(sensor, rgb, sensor.rgb(spectra)), method.claimed_error
     if claimed is not None and errors.mean() > MAX_CLAIM_RATIO * claimed:

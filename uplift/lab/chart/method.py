@@ -192,7 +192,7 @@ class Method(Description):
     """A method of spectral upsampling. A method far off the claims of its authors is broken and is not drawn.
 
     ``prepare``: from a `Task` to a `PreparedMethod`. Raises `NotInstalledError`.
-    ``judge``: returns the sensor of the white and the matrix that the method states; see `uplift.lab.chart.method`.
+    ``reference_sensor``: returns the sensor of the white and the matrix that the method states, see `published_srgb`.
     ``claimed_error``: mean ΔE00 of round trips that its authors claim.
     ``claimed_range``: range of reflectances that its authors claim.
     ``batch``: whether it accepts many colours per call; otherwise it loops over them.
@@ -201,7 +201,7 @@ class Method(Description):
     """
 
     prepare: Callable[[Task], PreparedMethod]
-    judge: Callable[[], Sensor] = published_srgb
+    reference_sensor: Callable[[], Sensor] = published_srgb
     claimed_error: float | None = None
     claimed_range: tuple[float, float] = (0.0, 1.0)
     batch: bool = True

@@ -38,7 +38,7 @@ LLVM = "LLVM 19, with which Mitsuba 3.9 works: apt install libllvm19, or name it
 
 
 @cache
-def judge() -> Sensor:
+def reference_sensor() -> Sensor:
     """Return the sensor of the matrix of rgb2spec, under D65."""
     return stated_sensor(XYZ_TO_RGB)
 
@@ -114,7 +114,7 @@ _table = partial(
     Method,
     family="Mitsuba 3",
     source="Jakob et al., Mitsuba 3, the table of Jakob & Hanika 2019 for sRGB",
-    judge=judge,
+    reference_sensor=reference_sensor,
     claimed_error=0.1,
 )
 METHODS = (

@@ -102,7 +102,7 @@ def _smits_weights(rgb: Values) -> Values:
 
 
 @cache
-def smits_judge() -> Sensor:
+def smits_sensor() -> Sensor:
     """Return the sensor of the stated space, sRGB primaries with an equal-energy white."""
     space = colour_science().recovery.smits1999.RGB_COLOURSPACE_SMITS1999
     return stated_sensor(space.matrix_XYZ_to_RGB, space.whitepoint_name)
@@ -141,7 +141,7 @@ SMITS = _method(
     "Smits, An RGB-to-spectrum conversion for reflectances, Journal of Graphics Tools 4(4), 1999",
     partial(prepare_basis, read=_smits_basis, weights=_smits_weights),
     claimed_range=(0, 1.02),
-    judge=smits_judge,
+    reference_sensor=smits_sensor,
     note="table of colour-science, used with sRGB; reflectances up to 1.015",
 )
 METHODS = (
@@ -160,7 +160,7 @@ METHODS = (
         JAKOB,
         prepare_jakob_table,
         claimed_error=0.1,
-        judge=mitsuba3.judge,
+        reference_sensor=mitsuba3.reference_sensor,
         note="looked up by colour-science in the table of Mitsuba 3",
     ),
     MALLETT,

@@ -21,7 +21,7 @@ from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError, UpliftError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lab.timing import Spread, environment, time_laps
+from uplift.lab.timing import TimingStats, environment, time_laps
 from uplift.scene.plan.candidates import front
 from uplift.scene.representations import filters, samples
 from uplift.scene.representations.filters import Filter
@@ -126,7 +126,7 @@ class RepresentationResult:
     statistics: Statistics
     floats: float
     light_floats: float
-    ns: Spread
+    ns: TimingStats
 
 
 @dataclass(frozen=True)
@@ -204,7 +204,7 @@ def error_statistics(representation: Representation, light_set: LightSet) -> Sta
     return compute_statistics(errors)
 
 
-def _time(representation: Representation, light_set: LightSet, quick: bool) -> Spread:
+def _time(representation: Representation, light_set: LightSet, quick: bool) -> TimingStats:
     """CPU time of a product, in ns: each light of a set in turn, with many surfaces per call."""
     rows, lap, runs = QUICK_TIMING if quick else TIMING
     surfaces = representation.encode_surface(np.resize(light_set.reflectances, (rows, len(light_set.wavelengths))))
