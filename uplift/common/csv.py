@@ -22,8 +22,7 @@ def write_csv(file: Any, rows: Iterable[Iterable[object]], *, quote_text: bool =
     Floats have all significant digits, None is an empty cell, and text is neutralised. With ``quote_text`` all text is
     quoted, which distinguishes a name such as ``1`` from a number.
     """
-    quoting = csv.QUOTE_NONNUMERIC if quote_text else csv.QUOTE_MINIMAL
-    writer = csv.writer(file, lineterminator="\n", quoting=quoting)
+    writer = csv.writer(file, lineterminator="\n", quoting=csv.QUOTE_NONNUMERIC if quote_text else csv.QUOTE_MINIMAL)
     writer.writerows([_safe_cell(cell) for cell in row] for row in rows)
 
 
