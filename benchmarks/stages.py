@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks import MACBETH, record
-from uplift.lab.timing import spread
+from uplift.lab.timing import timing_stats
 from uplift.samples import sample_path
 
 RUNS, SAMPLE = 3, "wood.png"
@@ -61,7 +61,9 @@ def main() -> None:
         for command, (arguments, stages) in commands.items():
             runs = [_in_child(arguments, stages, Path(folder)) for _ in range(RUNS + 1)][1:]
             for stage in runs[0]:
-                rows.append({"command": command, "stage": stage, "cpu_s": spread([run.get(stage, 0) for run in runs])})
+                rows.append(
+                    {"command": command, "stage": stage, "cpu_s": timing_stats([run.get(stage, 0) for run in runs])}
+                )
     record("stages", runs=RUNS, rows=rows)
 
 
