@@ -26,7 +26,7 @@ START, END, STEP = WAVELENGTHS
 
 
 def grid() -> Array:
-    """Return the wavelengths of every sensor, shape (81,): 380–780 nm at 5 nm."""
+    """Return the wavelengths of a sensor by default, shape (81,): 380–780 nm at 5 nm."""
     return np.arange(START, END + STEP / 2, STEP)
 
 
