@@ -65,9 +65,7 @@ class ExpectedError:
     def __call__(self, lab: Array) -> Array:
         """Expected squares (n, K) less `floor` at L*a*b* (n, 3)."""
         found = np.empty((len(lab), len(self.floor)))
-        rows = max(BLOCK_NUMBERS // len(self.locations), 1)
-        for first in range(0, len(lab), rows):
-            part = slice(first, first + rows)
+        for part in blocks(len(lab), max(BLOCK_NUMBERS // len(self.locations), 1)):
             weights = np.exp(distances(lab[part], self.locations) / -LENGTH)
             found[part] = self.combine(weights @ self.columns, weights.max(axis=1))
         return found
@@ -134,9 +132,8 @@ def nearest_distances(lab: Array, locations: Array) -> Array:
     """ΔE*ab (n,) from L*a*b* (n, 3) to the nearest of the entries (E, 3); infinite without entries."""
     if not len(locations):
         return np.full(len(lab), np.inf)
-    rows = max(BLOCK_NUMBERS // len(locations), 1)
-    parts = [distances(lab[first : first + rows], locations).min(axis=1) for first in range(0, len(lab), rows)]
-    return np.concatenate(parts) if parts else np.zeros(0)
+    parts = blocks(len(lab), max(BLOCK_NUMBERS // len(locations), 1))
+    return np.concatenate([np.zeros(0), *(distances(lab[part], locations).min(axis=1) for part in parts)])
 
 
 def familiar_distance(locations: Array) -> float:

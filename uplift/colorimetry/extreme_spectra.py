@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.arrays import Array, Indices, Mask, blocks
 
 FEASIBLE = 1e-9
 """Violation of [0, 1] that counts as rounding."""
@@ -44,9 +44,7 @@ def extreme_spectra(matrix: Array, rgb: Array, response: Array, basis: Indices |
     """Find the reflectances of colours (n, 3) with the largest responses (n, N), from a ``basis`` (n, 3)."""
     start = np.tile(first_basis(matrix), (len(rgb), 1)) if basis is None else basis
     found = ExtremeSpectra(np.empty(response.shape), start.copy(), np.zeros(len(rgb), dtype=bool))
-    rows = max(BLOCK_NUMBERS // matrix.shape[1], 1)
-    for first in range(0, len(rgb), rows):
-        block = slice(first, first + rows)
+    for block in blocks(len(rgb), max(BLOCK_NUMBERS // matrix.shape[1], 1)):
         part = ExtremeSpectra(found.reflectance[block], found.basis[block], found.solved[block])
         _solve(matrix, rgb[block], _perturbed(response[block]), part)
     return found

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.sensor import as_rgb, format_rgb, in_unit_cube, raise_out_of_gamut
-from uplift.common.arrays import Array, Mask, Values
+from uplift.common.arrays import Array, Mask, Values, blocks
 from uplift.common.errors import ColourError, OptionError, unknown_name
 
 BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
@@ -305,8 +305,7 @@ def map_to_gamut(rgb: ArrayLike, gamut: Gamut, method: str = "error") -> GamutMa
             raise ColourError(problem, hint="fix its source")
         if method != "clip":  # which leaves other channels as they are
             rows *= np.minimum(1, LARGEST / np.maximum(np.abs(rows).max(axis=1, keepdims=True), 1))
-        blocks = (rows[first : first + BLOCK] for first in range(0, len(rows), BLOCK))
-        mapped = np.concatenate([MAPPINGS[method](block, gamut) for block in blocks])
+        mapped = np.concatenate([MAPPINGS[method](rows[block], gamut) for block in blocks(len(rows), BLOCK)])
         inside[outside] = np.clip(mapped, 0, 1)  # removes rounding errors
     return GamutMapped(requested, inside, outside)
 

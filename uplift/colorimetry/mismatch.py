@@ -25,7 +25,7 @@ from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_jacobian
 from uplift.colorimetry.extreme_spectra import extreme_spectra, first_basis
 from uplift.colorimetry.sensor import Light, Sensor, format_rgb
 from uplift.colorimetry.solid import solid
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array, Indices, blocks
 from uplift.common.errors import ColourError
 
 COUNTS = (12, 42, 162, 642, 2562)
@@ -154,8 +154,7 @@ def mismatch_volumes(sensor: Sensor, light: Light, rgb: Array, divisions: int = 
     response = directions.directions @ np.linalg.solve(scale, light.xyz)
     xyz = np.empty((len(rgb), len(response), 3))
     basis = np.empty(xyz.shape, dtype=np.intp)
-    rows = max(BLOCK_PROBLEMS // len(response), 1)
-    for block in (slice(first, first + rows) for first in range(0, len(rgb), rows)):
+    for block in blocks(len(rgb), max(BLOCK_PROBLEMS // len(response), 1)):
         _solve(sensor, light, rgb[block], response, directions.parents, xyz[block], basis[block])
     return MismatchVolumes(sensor, light, rgb, directions, scale, xyz, basis)
 
