@@ -65,7 +65,7 @@ def main() -> None:
         "accuracy",
         "growth",
         runs=RUNS,
-        orders=[growth(name, space) for space in SPACES for name in ("outward", "neighbours")],
+        orders=[growth(name, space) for space in SPACES for name in ("outward", "coarse-to-fine", "neighbours")],
         solvers=[solver(name) for name in SOLVERS],
         order_dim=ORDER_DIM,
         solver_dim=SOLVER_DIM,

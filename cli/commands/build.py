@@ -103,7 +103,8 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 @click.option(
     "--growth",
     default="outward",
-    help="outward from the entries, each node from its expected spectrum, or neighbours: from those of its neighbours.",
+    help="Order of the nodes: outward from the entries, coarse-to-fine, or neighbours: outward, each node from the "
+    "spectra of its neighbours.",
 )
 @click.option(
     "--solver",

@@ -14,6 +14,7 @@ from uplift.colorimetry import observer
 from uplift.common.progress import ignore_progress
 from uplift.fit.base import smooth
 from uplift.fit.growth import Growth, improve
+from uplift.fit.growth_coarse import grow_coarse_to_fine, strides
 from uplift.fit.growth_outward import grow_outward, shells
 from uplift.fit.prior import Prior
 from uplift.fit.problem import Nodes, Problem, nodes_of
@@ -74,15 +75,26 @@ def test_points_that_fail_from_their_start_are_fitted_from_their_neighbours(sens
     middle = LATTICE.size // 2
     start = np.full((LATTICE.size, 9), -1e9) * MODEL.constant()
     start[middle] = 0
-    grown = grow_outward(
+    grown = grow_coarse_to_fine(
         Problem(sensor, MODEL), all_nodes(LATTICE), lambda at, _: start[at], np.array([middle]), rounds.append
     )
     steps = np.abs(LATTICE.position(np.arange(LATTICE.size)) - LATTICE.position(np.array(middle))).max(axis=1)
     fitted = grown.round != NOT_FITTED
     assert fitted.sum() > 300
     assert (grown.round[fitted & (steps > 0)] >= steps[fitted & (steps > 0)]).sum() > 300
+    assert sorted({done.step for done in rounds}) == list(range(rounds[-1].step + 1))
     assert rounds[-1].done == fitted.sum()
     assert all(done.total == LATTICE.size for done in rounds)
+
+
+def test_growth_proceeds_from_a_coarse_lattice_to_finer_ones(sensor):
+    lattice = Lattice(axis_nodes("srgb", 17))
+    assert strides(lattice.dim) == [4, 2, 1]
+    points, improvements = fitted(MODEL, sensor, lattice, grow=grow_coarse_to_fine)
+    position = lattice.position(np.arange(lattice.size))
+    for number, stride in enumerate(strides(lattice.dim)):
+        np.testing.assert_array_equal(points.round <= number, (position % stride == 0).all(axis=1))
+    assert improvements == []
 
 
 def test_growth_proceeds_outward_in_shells(sensor):
@@ -102,15 +114,14 @@ def test_growth_proceeds_outward_in_shells(sensor):
 
 
 @pytest.mark.parametrize("rgb", [NO_COLOURS, np.array([[0.2, 0.3, 0.4]])], ids=["no seeds", "seeds"])
-def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, rgb):
-    """Outward from the seeds, from a corner, and all at once; few points differ."""
-    lattice, spectra = Lattice(axis_nodes("srgb", 17)), []
-    for first in (None, np.array([0]), np.arange(lattice.size)):
-
-        def grow(problem, nodes, expected, seeds, progress, first=first):
-            return grow_outward(problem, nodes, expected, seeds if first is None else first, progress)
-
-        points, _ = fitted(MODEL, sensor, lattice, rgb, grow)
+def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch, rgb):
+    """Outward, all at once, and from coarse lattices to finer ones; few points differ."""
+    lattice = Lattice(axis_nodes("srgb", 17))
+    spectra = [reflectance(MODEL, fitted(MODEL, sensor, lattice, rgb)[0].coefficients, sensor.wavelengths)]
+    for order in ([1], [4, 2, 1]):
+        monkeypatch.setattr("uplift.fit.growth_coarse.strides", lambda dim, order=order: order)
+        points = fitted(MODEL, sensor, lattice, rgb, grow_coarse_to_fine)[0]
+        assert points.round.max() == len(order) - 1
         spectra.append(reflectance(MODEL, points.coefficients, sensor.wavelengths))
     for other in spectra[1:]:
         difference = np.abs(other - spectra[0]).max(axis=1)

@@ -124,6 +124,12 @@ class Lattice:
         """Cells with a corner in a set of nodes."""
         return self.complete_cells(np.ones(self.size, dtype=bool)) & ~self.complete_cells(~points)
 
+    def thinned(self, stride: int) -> tuple["Lattice", Indices]:
+        """Return the coarser lattice of every ``stride``-th node and the last, and its nodes (m,) in this lattice."""
+        kept = np.append(np.arange(0, self.dim - 1, stride), self.dim - 1)
+        grid = np.meshgrid(kept, kept, kept, indexing="ij")
+        return Lattice(self.nodes[kept]), self.index(np.stack(grid, axis=-1).reshape(-1, 3))
+
     def neighbours(self, index: Indices) -> tuple[Indices, Mask]:
         """Neighbours (n, 26) of nodes (n,), diagonal ones included, and which of them lie inside the lattice."""
         position = self.position(index)[:, None, :] + NEIGHBOURS

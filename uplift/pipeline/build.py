@@ -25,6 +25,7 @@ from uplift.cube import CubeData
 from uplift.fit.base import learn_base
 from uplift.fit.families import Family
 from uplift.fit.growth import STEPS, THESIS_STEPS, Growth, improve
+from uplift.fit.growth_coarse import grow_coarse_to_fine
 from uplift.fit.growth_outward import grow_outward
 from uplift.fit.growth_thesis import grow_from_neighbours
 from uplift.fit.prior import Prior, fit_prior
@@ -64,7 +65,11 @@ if TYPE_CHECKING:
     from uplift.fit.stock_solvers import Solver
     from uplift.pipeline.look import LooksLike
 
-GROWTH: dict[str, Callable[..., Growth]] = {"outward": grow_outward, "neighbours": grow_from_neighbours}
+GROWTH: dict[str, Callable[..., Growth]] = {
+    "outward": grow_outward,
+    "coarse-to-fine": grow_coarse_to_fine,
+    "neighbours": grow_from_neighbours,
+}
 
 
 class SceneLike(Protocol):
@@ -167,9 +172,10 @@ def build(
         Start all eight corners of the cell of each atlas entry from the entry, as Tódová 2020 does. By default, seven
         of them start half-way between entry and prior, and at colours unlike the entry's nearer to the prior.
         ``growth="neighbours"`` always does.
-    growth : {"outward", "neighbours"}, default "outward"
-        Lattice points are fitted outward from the atlas entries, from the spectra that the atlas lets expect at their
-        colours, or from the spectra of fitted neighbours (Tódová 2020, section 3.1).
+    growth : {"outward", "coarse-to-fine", "neighbours"}, default "outward"
+        Order in which lattice points are fitted: outward from the atlas entries, in shells, or from a coarse lattice to
+        finer ones. Both start from the spectrum that the atlas lets expect at a colour, and have the same answers.
+        ``"neighbours"`` goes outward and starts from the spectra of fitted neighbours (Tódová 2020, section 3.1).
     solver : str or optimistix.AbstractLeastSquaresSolver, default "least-change"
         Solver of lattice points, all of optimistix: ``"least-change"``, our own, ``"dogleg"``,
         ``"levenberg-marquardt"``, ``"gauss-newton"``, or any least-squares solver or minimiser. The default is fastest;

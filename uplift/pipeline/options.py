@@ -24,7 +24,7 @@ AUTO: Literal["auto"] = "auto"
 ModelName = Literal["moments", "sigmoid"]
 PriorName = Literal["learnt", "smooth"]
 NeutralName = Literal["expected", "flat"]
-GrowthName = Literal["outward", "neighbours"]
+GrowthName = Literal["outward", "coarse-to-fine", "neighbours"]
 SolverName = Literal["least-change", "dogleg", "levenberg-marquardt", "gauss-newton"]
 MODELS, SOLVERS = get_args(ModelName), get_args(SolverName)
 CUSTOM = "custom"
@@ -138,8 +138,8 @@ class Options:
 def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
     """Return options read from a cube under their present names."""
     current = {RENAMED.get(name, name): value for name, value in options.items()}
-    if current.get("growth") in ("prior", "coarse-to-fine"):  # earlier orders, with the same answers
-        current["growth"] = "outward"
+    if current.get("growth") == "prior":  # the default up to file version 4
+        current["growth"] = "coarse-to-fine"
     if "coefficients" in current:  # up to file version 3 entries had as many
         current.setdefault("entry_coefficients", current["coefficients"])
     current = {"prior": "smooth", "leave_out": (), **current}  # the defaults up to file version 3
