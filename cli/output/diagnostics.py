@@ -39,10 +39,8 @@ HINTS = {
     "unknown-illuminant": "{} 'uplift help lights' lists all names",
 }
 """Hints in place of the library's, {}, which name parameters of Python, by the code of an error or a warning."""
-
-
 MEMORY_PROBLEMS = ("RESOURCE_EXHAUSTED", "failed to map segment")
-"""What JAX and the loader of libraries say without memory."""
+"""Texts of JAX and of the loader of libraries without memory."""
 
 
 def hint_for(diagnostic: Diagnostic) -> str:
