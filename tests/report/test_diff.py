@@ -10,6 +10,7 @@ import uplift
 from tests.helpers import raises, with_points
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.colorimetry.observer import light
+from uplift.common import machine
 from uplift.common.errors import OptionError
 from uplift.lattice import Status
 from uplift.lookup import Cube
@@ -116,6 +117,12 @@ def test_colours_that_neither_cube_has_do_not_fail(two_scenes):
     assert found.is_within(0)
     assert [cubes for _, cubes, _ in found.lacking] == ["a and b"]
     assert len(found.nodes.compared) + found.lacking[0][2] == len(found.nodes.rgb)
+
+
+def test_more_nodes_than_memory_are_refused(plain_cube, monkeypatch):
+    monkeypatch.setattr(machine, "free_memory", lambda: 10_000)
+    with raises(OptionError, "out-of-memory"):
+        diff_cubes({"a": plain_cube, "b": plain_cube}, LIGHTS)
 
 
 def test_spaces_must_agree(small_cube):

@@ -56,7 +56,7 @@ def parse_csv(data: bytes) -> list[dict[str, str]]:
 
 def plain_cell(cell: str) -> str:
     """Return a cell without the apostrophe that `write_csv` puts before a formula."""
-    return cell[1:] if _NEUTRALISED.match(cell) else cell
+    return cell[1:] if cell.startswith("'") and _NEUTRALISED.match(cell) else cell
 
 
 def _safe_cell(cell: object) -> Any:

@@ -358,6 +358,7 @@ def build_stages(
     learnt = {} if prior.kriging is None else prior.kriging.kernel._asdict()
     if prior.errors is not None:
         learnt["error_bound"] = prior.errors.radii.bound / prior.errors.radii.standard
+    used = set(measured.names)
     provenance = {
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
@@ -366,7 +367,7 @@ def build_stages(
             | ({} if source.measured == "auto" else {"measured": source.measured})
             for source in atlas.sources
         ],
-        "left_out": [name for name in atlas.names if name not in set(measured.names)],
+        "left_out": [name for name in atlas.names if name not in used],
         "skipped": [entry.name for entry in atlas.skipped],
         "prior": learnt,
         "improvements": [{"step": step, "tried": tried, "mended": fixed} for step, tried, fixed in improvements],

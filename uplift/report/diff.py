@@ -7,6 +7,8 @@ import numpy as np
 
 from uplift.colorimetry.observer import light
 from uplift.common.arrays import Array, Indices
+from uplift.common.errors import OptionError
+from uplift.common.machine import check_memory
 from uplift.cube import CubeData, common_sensor
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
@@ -14,6 +16,8 @@ from uplift.report.measures import delta_e_under, mean_p95_max
 
 NODES, ENTRIES = "nodes", "entries"
 """Names of the sets of colours that come from the cubes."""
+NODE_BYTES = 200
+"""Memory of the comparison of a node."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +132,8 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
     first, second = cubes.values()
     under = [light(name, sensor.observer, *sensor.range) for name in lights]
 
+    size = sum(cube.data.lattice.size for cube in cubes.values())
+    check_memory(size * NODE_BYTES, f"{size:,} nodes", OptionError, "use cubes of a smaller dim")
     nodes, others = (cube.data.lattice.points for cube in (first, second))
     nodes = nodes if np.array_equal(nodes, others) else np.concatenate([nodes, others])
     colours = {NODES: nodes, **{name: rgb.reshape(-1, 3) for name, rgb in (images or {}).items()}}

@@ -54,16 +54,20 @@ def compute_smoothness(data: CubeData) -> tuple[NDArray[np.float32], Array]:
     The lattice is processed by planes of equal red: spectra of two planes are in memory at a time.
     """
     dim, wavelengths, parts = data.lattice.dim, data.sensor.wavelengths, []
-    spectra = np.full((dim, dim, len(wavelengths)), np.nan)  # of a plane; NaN for absent nodes
-    for nodes in np.arange(dim**3).reshape(dim, dim, dim):
-        before, spectra, present = spectra, np.full_like(spectra, np.nan), data.points.present[nodes]
+    none = spectra = np.full((dim, dim, len(wavelengths)), np.nan)  # of a plane; NaN for absent nodes
+    for first in range(0, dim**3, dim**2):
+        before, spectra, nodes = spectra, none, first + np.arange(dim**2).reshape(dim, dim)
+        present = data.points.present[nodes]
+        if not present.any():
+            continue
+        spectra = none.copy()
         spectra[present] = reflectance(data.model, data.points.coefficients[nodes[present]], wavelengths)
-        for first, second, high, step in (
+        for low, second, high, step in (
             (spectra[:, :-1], spectra[:, 1:], nodes[:, 1:], 1),  # along blue
             (spectra[:-1], spectra[1:], nodes[1:], dim),  # along green
             (before, spectra, nodes, dim**2),  # along red
         ):
-            rms = np.sqrt(((second - first) ** 2).mean(axis=-1))
+            rms = np.sqrt(((second - low) ** 2).mean(axis=-1))
             known = ~np.isnan(rms)
             parts.append((rms[known], high[known], high[known] - step))
     rms, high, low = map(np.concatenate, zip(*parts, strict=True))

@@ -198,7 +198,10 @@ def read_grid(rows: Sequence[Row], location: SourceLocation, comments: str = "")
     for number, row in enumerate(body, 1):
         label = f"sample {number}" if name is None else row[name].text
         cells = row[table.first : table.last]
-        values = [parse_number(cell.text, location.at(cell.line, label), "value") for cell in cells]
+        try:
+            values = [parse_float(cell.text) for cell in cells]
+        except ValueError:  # the first of them is named, by its own line
+            values = [parse_number(cell.text, location.at(cell.line, label), "value") for cell in cells]
         spectra.append(Spectrum(label, nm, values, None if name is None else row[name].line))
     unused = not_used_note(header[index].text for index in table.others if index != name)
     refusal = _refusal(table, rows, location, comments)
