@@ -2,6 +2,7 @@
 
 import dataclasses
 import inspect
+import re
 import warnings
 
 import numpy as np
@@ -19,7 +20,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError, UpliftWarning
 from uplift.cube import digest
 from uplift.lattice import Status
-from uplift.pipeline.options import Options
+from uplift.pipeline.options import Options, check_memory
 
 GRID = observer.grid()
 
@@ -199,3 +200,14 @@ def test_defaults_of_build_are_those_of_the_recorded_options():
     parameters = inspect.signature(uplift.build).parameters
     for field in dataclasses.fields(Options):
         assert parameters[field.name].default == field.default, field.name
+
+
+def test_the_dim_that_an_error_names_fits_into_free_memory(monkeypatch):
+    for name in ("uplift.common.machine.free_memory", "uplift.pipeline.options.free_memory"):
+        monkeypatch.setattr(name, lambda: 2_000_000_000)
+    with raises(OptionError, "out-of-memory") as caught:
+        check_memory(Options(dim=3000))
+    largest = int(re.search(r"dim=(\d+)", caught.value.hint)[1])
+    check_memory(Options(dim=largest))
+    with raises(OptionError, "out-of-memory"):
+        check_memory(Options(dim=largest + 1))
