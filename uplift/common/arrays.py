@@ -28,11 +28,6 @@ def largest(rows: Array) -> Array:
     return np.asarray(reduce(np.maximum, rows.T))
 
 
-def squared(rows: Array) -> Array:
-    """Squared norm (n,) of each row (n, K), K > 0, by columns, whose rounding is the same on every processor."""
-    return np.asarray(reduce(np.add, rows.T**2))
-
-
 def distances(first: Array, second: Array) -> Array:
     """Compute the Euclidean distances (n, m) of points (n, K) and (m, K), by components, as products would cancel."""
     squares = np.zeros((len(first), len(second)))

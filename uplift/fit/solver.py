@@ -7,7 +7,7 @@ other solver of optimistix (`uplift.fit.stock_solvers`), over batches of fixed s
 
 import abc
 from collections.abc import Callable, Iterator
-from functools import cache
+from functools import cache, reduce
 from itertools import chain, islice, repeat
 from typing import Any, NamedTuple, Protocol
 
@@ -18,7 +18,7 @@ import numpy as np
 import optimistix
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Array, Indices, blocks, largest, squared
+from uplift.common.arrays import Array, Indices, blocks, largest
 from uplift.fit.batch import map_batches
 from uplift.models.arithmetic import blocked_matmul
 from uplift.models.duality import MAX_MULTIPLIER
@@ -194,7 +194,8 @@ def solve(
         before = Solution(*(column[rows] for column in solution))
         given = (before.multipliers, target[rows], options)
         y, residual, taken, changed = map_batches(advance, (forward, tolerance, steps), *given)
-        closer = squared(residual) <= squared(before.residual)
+        # Sums by columns, whose rounding is the same on every processor
+        closer = reduce(np.add, residual.T**2) <= reduce(np.add, before.residual.T**2)
         distance = np.where(closer, largest(np.abs(residual)), before.distance)
         stale = np.where(distance > (1 - MIN_GAIN) * before.distance, stale + 1, 0)
         y, residual = (
