@@ -239,6 +239,7 @@ def main(first: int, count: int) -> int:
         print(*found, sep="\n", end="\n" * bool(found), flush=True)
     print(f"{laws.total()} laws broken by {count} builds")
     figures = {"command": "make nightly", "environment": environment(), "first": first, "builds": count, "broken": laws}
+    figures["limits"] = {"colour": EXACT, "programs": SAME, "sums": SUM, "boundary": DEEP}
     KEPT.mkdir(parents=True, exist_ok=True)
     (KEPT / "builds.json").write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     return laws.total()
