@@ -8,8 +8,9 @@ from tests.io.texture.conftest import planes, write_exr
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
 from uplift.common.errors import TextureError, UpliftWarning
+from uplift.common.progress import ignore_progress
 from uplift.io.scene_colours import Images, sample_colours
-from uplift.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet
+from uplift.scene.plan.evaluation import WORST_DELTA_E, EvaluationSet, renderings
 from uplift.scene.wavelengths import make_setup
 
 LIGHTS = ("D65", "FL11")
@@ -47,6 +48,22 @@ def test_errors_agree_with_a_slow_oracle(tests):
         assert part.mean == pytest.approx(np.average(delta_e, weights=tests.weights[rows]), rel=1e-9)
         assert part.largest == pytest.approx(delta_e.max(), rel=1e-9)
     assert error.quantile == max(part.quantile for part in error.parts)
+
+
+def test_other_representations_cost_less_or_are_more_accurate_than_fitted_wavelengths(tests, plain_cube):
+    """Each of them against all others, by its own numbers; the fitted ones are as without."""
+
+    def numbers(each):
+        return np.array([each.samples, each.operations, each.surface, each.error.quantile])
+
+    counts, floor = (3, 16), 1e-3
+    fitted = renderings(counts, tests, plain_cube, floor, ignore_progress, None)
+    found = renderings(counts, tests, plain_cube, floor, ignore_progress, observer.DEFAULT_OBSERVER)
+    others = found[len(fitted) :]
+    assert [each.name for each in found[: len(fitted)]] == [each.name for each in fitted]
+    assert any(each.sampling is None for each in others)
+    for row, each in enumerate(others, start=len(fitted)):
+        assert not any((numbers(before) <= numbers(each)).all() for before in found[:row])
 
 
 def test_reference_spectra_have_no_error_and_nan_has_the_largest(tests):

@@ -18,7 +18,7 @@ from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import refined_multipliers
 from uplift.models import Sigmoid, evaluate, reflectance
 from uplift.pipeline.options import Options
-from uplift.scene.plan.evaluation import ErrorSummary, Rendering
+from uplift.scene.plan.evaluation import UNMEASURED, ErrorSummary, Rendering
 
 MODELS: Mapping[str, tuple[int, ...]] = {
     "none": (3, 5, 7, 9, 11, 13, 15, 17),
@@ -32,9 +32,10 @@ MODELS: Mapping[str, tuple[int, ...]] = {
 class SearchGrid:
     """Candidates, in ascending order, and sizes of the pixel samples.
 
-    ``models`` are numbers of coefficients of moments by warp, ``samples`` numbers of wavelengths. The reference has the
-    last number of coefficients without a warp, and ``reference`` nodes along each axis. Candidates are chosen by
-    ``predicting`` pixels and verified on ``confirming`` ones.
+    ``models`` are numbers of coefficients of moments by warp. ``samples`` are numbers of wavelengths, which other
+    representations are compared with if ``others``. The reference has the last number of coefficients without a warp,
+    and ``reference`` nodes along each axis. Candidates are chosen by ``predicting`` pixels and verified on
+    ``confirming`` ones.
     """
 
     models: Mapping[str, tuple[int, ...]] = field(default_factory=lambda: MODELS)
@@ -44,9 +45,12 @@ class SearchGrid:
     reference: int = 96
     predicting: int = 1500
     confirming: int = 4000
+    others: bool = True
 
 
-QUICK = SearchGrid({"none": (5, 9, 13, 17)}, (8, 16, 32, 48), AXES[:1], (3, 5, 6, 7, 8, 10), 64, 400, 1000)
+QUICK = SearchGrid(
+    {"none": (5, 9, 13, 17)}, (8, 16, 32, 48), AXES[:1], (3, 5, 6, 7, 8, 10), 64, 400, 1000, others=False
+)
 """Fewer candidates and pixels: seconds."""
 
 CostName = Literal["memory", "time", "samples"]
@@ -141,7 +145,6 @@ PIXELS = (
 
 WITHOUT_SPECTRA = "RGB × light"
 """What a renderer traces without spectra: RGB, by a matrix for each light."""
-UNMEASURED = ErrorSummary(())
 
 
 @dataclass(frozen=True)
@@ -172,7 +175,7 @@ class Candidate:
     @property
     def traced(self) -> str:
         """Short text."""
-        return f"{len(self.rendering.sampling)} wavelengths" if self.rendering else WITHOUT_SPECTRA
+        return self.rendering.name if self.rendering else WITHOUT_SPECTRA
 
     @property
     def name(self) -> str:

@@ -1,16 +1,21 @@
 """Colour errors on test colours under the lights of the scene: of any XYZ, of few wavelengths, of RGB times light."""
 
-from collections.abc import Mapping, Sequence
+import contextlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab_jacobian
+from uplift.colorimetry.observer import DEFAULT_OBSERVER, illuminant_spd
 from uplift.common.arrays import Array, Indices
+from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.lookup import Cube
+from uplift.scene.representations import Representation, all_representations, samples
 from uplift.scene.wavelengths import Sampling, choose
-from uplift.scene.wavelengths.sampling import RenderSetup
+from uplift.scene.wavelengths.sampling import RenderSetup, interp_curves
 
 TEXTURES, MATERIALS = "textures", "materials"
 WORST_DELTA_E = 100.0
@@ -19,6 +24,12 @@ FEW = 200
 """Colours of each group that wavelengths are fitted to."""
 DIGITS = 2
 """Decimals of a wavelength in nm, so that the measured wavelengths are those of the command line."""
+SAMPLE_OPERATIONS = 7
+"""Operations for a product of light and surface at one wavelength, and its share in the sum to XYZ."""
+MAX_MEYER = 12
+"""Meyer's wavelengths that are tried; more take long."""
+FAMILIES = ("PS", "PF", "RS", "RE", "CS", "GQ", "LM")
+"""Representations that are tried: no models, which cubes have, and none with noise."""
 
 
 @dataclass(frozen=True)
@@ -49,12 +60,33 @@ class ErrorSummary:
         return self.worst.quantile
 
 
+UNMEASURED = ErrorSummary(())
+
+
 @dataclass(frozen=True, eq=False)
 class Rendering:
-    """Wavelengths that a renderer traces, and the ``error`` of the spectra of the reference there."""
+    """Numbers that a renderer traces in place of a spectrum, and the ``error`` of the spectra of the reference.
 
-    sampling: Sampling
-    error: ErrorSummary
+    ``samples`` of a ray, ``operations`` of a product of light and surface with its share in the sum to XYZ, numbers of
+    a ``surface``, and ``xyz``, from reflectances (n, W) at ``wavelengths`` (W,) in nm to XYZ (K, n, 3) under the
+    lights. ``sampling`` is None for representations that are not wavelengths.
+    """
+
+    name: str
+    samples: float
+    operations: float
+    surface: float
+    wavelengths: Array
+    xyz: Callable[[Array], Array]
+    sampling: Sampling | None = None
+    error: ErrorSummary = UNMEASURED
+
+    @classmethod
+    def of_sampling(cls, name: str, sampling: Sampling) -> "Rendering":
+        """Return the rendering with the wavelengths of a sampling."""
+        count = len(sampling)
+        operations, nm = SAMPLE_OPERATIONS * count, sampling.wavelengths
+        return cls(f"{count} {name}", count, operations, count, nm, sampling.xyz, sampling)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,26 +149,71 @@ def renderings(
     reference: Cube,
     floor: float,
     progress: ProgressCallback,
+    others: str | None,
 ) -> list[Rendering]:
     """Fit wavelengths, of ``counts`` in ascending order, up to an error of ``floor``; without it, all wavelengths.
 
-    Those that do not lower the error are left out.
+    Those that do not lower the error are left out. Meyer's wavelengths and other representations follow for an
+    observer of that name, ``others``, where they cost less than wavelengths of their error.
     """
+
+    def measured(each: Rendering) -> Rendering:
+        return replace(each, error=tests.error(each.xyz(reference.reflectance(tests.rgb, each.wavelengths))))
+
     setup = tests.setup.only(tests.subsample(FEW))
-    found, smallest = list[Rendering](), np.inf
+    found = list[Rendering]()
     for done, count in enumerate((*counts, None)):
         progress(Progress("wavelengths", done, len(counts)))
         if count is None:
             sampling = Sampling(setup.wavelengths, setup.cmfs, setup.lights, setup.powers)
         else:
             sampling = _rounded(choose(setup, count=count).sampling)
-        error = tests.error(sampling.xyz(reference.reflectance(tests.rgb, sampling.wavelengths)))
-        if error.quantile < smallest:
-            found.append(Rendering(sampling, error))
-            smallest = error.quantile
-        if smallest <= floor:
+        each = measured(Rendering.of_sampling("wavelengths", sampling))
+        if not found or each.error.quantile < found[-1].error.quantile:
+            found.append(each)
+        if found[-1].error.quantile <= floor:
             break
+    for each in _others(setup, tests, others) if others else ():
+        if each.samples < found[-1].samples and not _is_dominated(each := measured(each), found, floor):
+            found.append(each)
     return found
+
+
+def _is_dominated(rendering: Rendering, others: Sequence[Rendering], floor: float) -> bool:
+    """Whether another rendering costs no more and is as accurate; errors below the floor are equal."""
+
+    def numbers(each: Rendering) -> Array:
+        return np.array([each.samples, each.operations, each.surface, max(each.error.quantile, floor)])
+
+    return any((numbers(each) <= numbers(rendering)).all() for each in others)
+
+
+def _others(setup: RenderSetup, tests: EvaluationSet, observer_name: str) -> Iterator[Rendering]:
+    """Meyer's wavelengths, and representations, which are defined for one observer."""
+    for count in range(4, MAX_MEYER + 1):
+        with contextlib.suppress(OptionError):  # no rule of this order
+            sampling = _rounded(choose(setup, count=count, method="meyer").sampling)
+            yield Rendering.of_sampling("wavelengths of Meyer", sampling)
+    if observer_name != DEFAULT_OBSERVER:
+        return
+    powers = np.stack([illuminant_spd(light, step=samples.STEP) for light in setup.lights])
+    powers /= powers @ samples.xyz_weights()[:, 1:2]
+    surfaces = interp_curves(samples.wavelengths(), setup.wavelengths, setup.reflectances)
+    for each in all_representations(powers, surfaces):
+        if each.name[:2] in FAMILIES:
+            surface = float(each.storage(each.encode_surface(surfaces)).mean())
+            light = float(each.storage(each.encode_light(powers)).mean())
+            xyz = partial(_represented_xyz, each, powers, tests)
+            yield Rendering(each.name, light, surface + 6 * light, surface, samples.wavelengths(), xyz)
+
+
+def _represented_xyz(representation: Representation, powers: Array, tests: EvaluationSet, reflectances: Array) -> Array:
+    """XYZ (K, n, 3) of dense reflectances (n, 401): those of the 5 nm table, and what the representation changes."""
+    surfaces = representation.encode_surface(reflectances)
+    lit = [representation.encode_light(np.broadcast_to(power, reflectances.shape)) for power in powers]
+    found = np.stack([representation.xyz(representation.multiply(light, surfaces)) for light in lit])
+    exact = (powers[:, None] * reflectances) @ samples.xyz_weights()
+    return tests.xyz(reflectances[:, :: samples.TABLE_STRIDE]) + found - exact
 
 
 def _rounded(sampling: Sampling) -> Sampling:

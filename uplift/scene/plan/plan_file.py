@@ -76,10 +76,11 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
 
 
 def _rendering_json(plan: Plan) -> dict[str, Any]:
-    """Wavelengths and their weights, or matrices of RGB."""
+    """Wavelengths and their weights, the name of a representation, or matrices of RGB."""
     if plan.chosen.rendering is None:
         return {"rgb_to_xyz": dict(zip(plan.scene.lights, plan.matrices.tolist(), strict=True))}
-    sampling = plan.chosen.rendering.sampling
+    if (sampling := plan.chosen.rendering.sampling) is None:
+        return {"representation": plan.chosen.rendering.name}
     powers = dict(zip(sampling.lights, sampling.powers.tolist(), strict=True))
     return {"wavelengths": sampling.wavelengths.tolist(), "to_xyz": sampling.to_xyz.tolist(), "powers": powers}
 
@@ -107,8 +108,9 @@ def commands(plan: Plan, path: Path) -> tuple[str, ...]:
     target = f"{scene.textures[0].stem}-uplifted.exr" if len(scene.textures) == 1 else "uplifted"
     words = ["uplift", "texture", *map(str, scene.textures), "-o", target, "--cube", cube]
     words += ["--representation", pixel.form, "--depth", pixel.depth]
-    if pixel.form == Spectrum.name and plan.chosen.rendering is not None:
-        words += ["--wavelengths", ",".join(f"{each:g}" for each in plan.chosen.rendering.sampling.wavelengths)]
+    rendering = plan.chosen.rendering
+    if pixel.form == Spectrum.name and rendering is not None and rendering.sampling is not None:
+        words += ["--wavelengths", ",".join(f"{each:g}" for each in rendering.wavelengths)]
     if scene.encoding != SceneFile.encoding:
         words += ["--encoding", scene.encoding]
     return build, shlex.join(words)

@@ -118,7 +118,7 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     textures, few = space.colours.predicting, space.colours.few
     spectra = None
     if chosen.pixel.form == INDEX and chosen.rendering is not None and few is not None:
-        wavelengths = chosen.rendering.sampling.wavelengths
+        wavelengths = chosen.rendering.wavelengths
         spectra = few, space.cube(few, space.reference).reflectance(few, wavelengths)
     return Plan(
         scene=scene,

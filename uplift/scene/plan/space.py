@@ -28,7 +28,15 @@ from uplift.models.model import Model
 from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
 from uplift.pipeline.options import Options
 from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, Pixel, SearchGrid
-from uplift.scene.plan.evaluation import MATERIALS, TEXTURES, ErrorSummary, EvaluationSet, Rendering, renderings
+from uplift.scene.plan.evaluation import (
+    MATERIALS,
+    SAMPLE_OPERATIONS,
+    TEXTURES,
+    ErrorSummary,
+    EvaluationSet,
+    Rendering,
+    renderings,
+)
 from uplift.scene.plan.scene_file import SceneFile
 from uplift.scene.wavelengths import make_setup
 
@@ -42,8 +50,6 @@ PROBE = 9
 """Coefficients of the cubes that measure lattices."""
 LEAST_BYTES, POINT_NUMBER = 4, 4
 """Bytes of a coefficient, unless colours need 8, and of the number of a point in a sparse file."""
-SAMPLE_OPERATIONS = 7
-"""Operations for a product of light and surface at one wavelength, and its share in the sum to XYZ."""
 
 
 class CandidateSpace:
@@ -66,7 +72,8 @@ class CandidateSpace:
         self.floor, self.ceiling = (share * scene.tolerance for share in (FLOOR, CEILING))
         progress(Progress("reference cube", 0, 1))
         tests, reference = self.evaluation_set(self.colours.predicting)
-        self.renderings = renderings(grid.samples, tests, reference, self.floor, progress)
+        others = self.sensor.observer if grid.others else None
+        self.renderings = renderings(grid.samples, tests, reference, self.floor, progress, others)
         self.cubes = {self.reference: reference}
         self.tests, self.matrices = tests, tests.matrices()
         self.base = tests.xyz(reference.reflectance(tests.rgb))
@@ -124,9 +131,9 @@ class CandidateSpace:
         (self.without_spectra,) = (each.error for each in self.measure(None, found))
         if colours.few is not None:
             for each in self.renderings:
-                count = len(each.sampling)
-                cost = Cost(colours.pixels + 2 * len(colours.few) * count, SAMPLE_OPERATIONS * count, count)
-                found.append(Candidate(Pixel(INDEX, "half"), cost, each))
+                if each.sampling is not None:
+                    cost = Cost(colours.pixels + 2 * len(colours.few) * each.surface, each.operations, each.samples)
+                    found.append(Candidate(Pixel(INDEX, "half"), cost, each))
         self.considered = len(found)
         if colours.few is None and self.without_spectra.quantile > self.floor:
             found += self._with_cubes()
@@ -143,7 +150,7 @@ class CandidateSpace:
     ) -> list[Candidate]:
         """Measure the errors of candidates that share a cube, on test colours with the reference cube of these."""
         traced = list(dict.fromkeys(each.rendering for each in candidates if each.rendering))
-        needed = [each.sampling.wavelengths for each in traced]
+        needed = [each.wavelengths for each in traced]
         nm, ends = np.concatenate([[], *needed]), np.cumsum([0, *map(len, needed)])
         columns = dict(zip(traced, map(slice, ends, ends[1:]), strict=False))
         spectra: dict[Pixel, Array] = {}
@@ -155,7 +162,7 @@ class CandidateSpace:
                 if each.pixel not in spectra:
                     pixel = Pixel(texture.Spectrum.name, each.pixel.depth) if cube is None else each.pixel
                     spectra[each.pixel] = pixel.decoded(cube or reference, tests.rgb, nm)
-                xyz = each.rendering.sampling.xyz(spectra[each.pixel][:, columns[each.rendering]])
+                xyz = each.rendering.xyz(spectra[each.pixel][:, columns[each.rendering]])
             found.append(replace(each, error=tests.error(xyz)))
         return found
 
@@ -180,16 +187,18 @@ class CandidateSpace:
     def _with_pixels(
         self, choice: Options, points: tuple[int, int], rendering: Rendering, bound: float
     ) -> Iterator[Candidate]:
-        """Candidates of a cube, of ``points`` with all cells and with those of the textures, and of wavelengths."""
-        colours, count = self.colours, len(rendering.sampling)
+        """Candidates of a cube, of ``points`` with all cells and with those of the textures, and of a rendering."""
+        colours, count = self.colours, round(rendering.surface)
         for sparse, pixel in product((False, True)[: 1 + self.scene.sparse], PIXELS):
             if choice.model == Sigmoid.name and pixel.form == texture.Moments.name:
                 continue
+            if rendering.sampling is None and pixel.form != texture.Spectrum.name:
+                continue  # a texture has the numbers of the representation
             row = self.row_bytes + POINT_NUMBER * sparse + LEAST_BYTES * choice.coefficients
             texels = colours.pixels * pixel.size(choice.coefficients, count) if pixel.depth else colours.size
             memory = self.other_bytes + points[sparse] * row + texels
-            time = pixel.operations(choice, count) + SAMPLE_OPERATIONS * count
-            yield Candidate(pixel, Cost(memory, time, count), rendering, choice, sparse, bound)
+            time = pixel.operations(choice, count) + rendering.operations
+            yield Candidate(pixel, Cost(memory, time, rendering.samples), rendering, choice, sparse, bound)
 
     def _models(self) -> dict[Options, Array]:
         """Changes of XYZ (K, n, 3) by models of spectra, on a fine lattice: the sigmoid, and moments of each warp."""
