@@ -29,6 +29,7 @@ from uplift.atlas.sources import write_atlas
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
+from uplift.common.files import write_text
 from uplift.cube import digest
 from uplift.fit import base, batch
 from uplift.io import texture
@@ -231,17 +232,21 @@ def broken(seed: int, kind: Kind = SMALL) -> list[str]:
 
 
 def main(first: int, count: int) -> int:
-    """Try seeds, every fiftieth with a large cube, print the laws that they break, and return their number."""
+    """Try seeds, every fiftieth with a large cube, print the laws that they break, and return their number.
+
+    The figures of the page are written after each build: an interrupted run counts those that it had.
+    """
     laws = Counter[str]()
+    KEPT.mkdir(parents=True, exist_ok=True)
+    figures = {"command": "make nightly", "environment": environment(), "first": first}
+    figures["limits"] = {"colour": EXACT, "programs": SAME, "sums": SUM, "boundary": DEEP}
     for seed in range(first, first + count):
         found = broken(seed, LARGE if seed % 50 == 0 else SMALL)
         laws.update(law.split(":")[1].strip() for law in found)
         print(*found, sep="\n", end="\n" * bool(found), flush=True)
+        figures |= {"builds": seed - first + 1, "broken": laws}
+        write_text(json.dumps(figures, indent=1) + "\n", KEPT / "builds.json", force=True)
     print(f"{laws.total()} laws broken by {count} builds")
-    figures = {"command": "make nightly", "environment": environment(), "first": first, "builds": count, "broken": laws}
-    figures["limits"] = {"colour": EXACT, "programs": SAME, "sums": SUM, "boundary": DEEP}
-    KEPT.mkdir(parents=True, exist_ok=True)
-    (KEPT / "builds.json").write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     return laws.total()
 
 
