@@ -173,8 +173,7 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
 
     table = None if table_path is None else os.path.abspath(find_table(table_path))
     own = load_emission(table_path).wavelengths  # a table that cannot be read is reported before images are
-    if wavelengths is not None:
-        check_range(wavelengths, own)
+    check_range(wavelengths, own)
     convert((table,), Spectrum(as_tuple(wavelengths)), emission=True, **settings)
 
 
@@ -217,8 +216,7 @@ def query(
     check_outputs((plot_path,), inputs=(table_path, colours["input_path"]), force=force)
     source = find_colours(**colours)
     table = load_emission(table_path)
-    if wavelengths is not None:
-        check_range(wavelengths, table.wavelengths)
+    check_range(wavelengths, table.wavelengths)
     blocks = [np.array([source.xyz])] if source.xyz else map(table.xyz, source.blocks(sensor(table.space)))
     at = table.wavelengths if wavelengths is None else wavelengths
     results: Iterable[dict[str, Any]] = _answers(table, blocks, at, outside)

@@ -174,8 +174,7 @@ def command(
     check_outputs((plot_path, output), inputs=(cube_path, over, *files), force=force)
     cube = load(cube_path)
     sensor, space = cube.data.sensor, None if input_space is None else find_input_space(input_space)
-    if wavelengths is not None:
-        check_range(wavelengths, cube.wavelengths)
+    check_range(wavelengths, cube.wavelengths)
     further = np.array([]) if theories or over is not None else as_wavelengths(wavelengths, cube.wavelengths)
     grid = np.concatenate([sensor.wavelengths, further])  # for colours, followed by those of the output
     resolver = SpectrumResolver(cube, read_atlas(*files) if files else Atlas(), grid, space)

@@ -72,8 +72,7 @@ class Answers:
         self.source = find_colours(**colours)
         self.single = self.source.path is None
         self.cube = load(cube_path)
-        if wavelengths is not None:
-            check_range(wavelengths, self.cube.wavelengths)
+        check_range(wavelengths, self.cube.wavelengths)
         self.wavelengths, self.mode, self.method, self.fill_missing = wavelengths, mode, method, fill_missing
         data = self.cube.data
         atlases = [source["name"] for source in data.provenance.get("atlases", ())]
@@ -86,9 +85,8 @@ class Answers:
             from uplift.colorimetry.observer import display_sensors, light
 
             setting = self.cube.observer, *data.sensor.range
-            self.lights = [light(name, *setting) for name in dict.fromkeys(lights)]
-            names = [each.name for each in self.lights]
-            self.to_srgb = {each.illuminant: each.xyz_to_rgb for each in display_sensors(names, *setting)}
+            self.to_srgb = {each.illuminant: each.xyz_to_rgb for each in display_sensors(lights, *setting)}
+            self.lights = [light(name, *setting) for name in self.to_srgb]
 
     def __iter__(self) -> Iterator[list[QueryResult]]:
         """Answer block by block, and warn at the end of colours that were mapped or filled."""

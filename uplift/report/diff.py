@@ -72,13 +72,11 @@ def pair_entries(first: CubeData, second: CubeData) -> EntryPairs:
     shared = tuple(name for name in row_of[0] if name in row_of[1])
     rows = [np.array([each[name] for name in shared], dtype=np.int64) for each in row_of]
     wavelengths = first.sensor.wavelengths
+    one, other = (table.spectra.reflectance(row, wavelengths) for table, row in zip(tables, rows, strict=True))
     return EntryPairs(
         names=shared,
         rgb=tables[0].rgb[rows[0]],
-        spectra=(
-            tables[0].spectra.reflectance(rows[0], wavelengths),
-            tables[1].spectra.reflectance(rows[1], wavelengths),
-        ),
+        spectra=(one, other),
         removed=tuple(name for name in row_of[0] if name not in row_of[1]),
         added=tuple(name for name in row_of[1] if name not in row_of[0]),
     )

@@ -10,7 +10,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData
 from uplift.io.export.program import cube_program
-from uplift.io.export.table import COLUMNS, make_table
+from uplift.io.export.table import COLUMNS, check_complete, make_table
 from uplift.viz.html import Markup, render, resource
 
 LIGHTS = ("D65", "A", "D50", "FL2", "FL11", "HP1", "LED-B3")  # illuminants to choose from
@@ -20,12 +20,7 @@ SPACE = "sRGB"
 
 def page(data: CubeData) -> str:
     """Render the live page of a cube: it relights images by spectra, next to a product of RGB."""
-    if data.complete_cells is not None:
-        raise OptionError(
-            "a page needs all nodes, but the cube was built for the colours of a scene",
-            code="sparse-cube",
-            hint="pass cube.fill_missing().data",
-        )
+    check_complete(data, "a page")
     if data.sensor.space != SPACE:
         problem = f"a page shows images in sRGB, got a cube of {data.sensor.space}"
         raise OptionError(problem, hint="build the cube without another RGB space")

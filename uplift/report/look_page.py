@@ -36,11 +36,8 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
         )
     sensor, rgb = cube.data.sensor, found[0].volumes.rgb[0]
     written = _written(cube, rgb)
-    screens = {
-        screen.illuminant: screen
-        for screen in display_sensors([each.light.name for each in found], cube.observer, *sensor.range)
-    }
-    lights = [_light(each, screens[each.light.name]) for each in found]
+    screens = display_sensors([each.light.name for each in found], cube.observer, *sensor.range)
+    lights = [_light(each, screen) for each, screen in zip(found, screens, strict=True)]
     return render(
         "report/templates/look_page.html.j2",
         title=f"Looks of {written if isinstance(written, str) else ' '.join(f'{each:.4g}' for each in written)}",

@@ -105,9 +105,8 @@ def plot_bounds(cube: Cube, blocks: Sequence[Sequence[Bounds]], path: StrPath, *
     panels = [(found, row) for found in blocks for row in range(len(found[0].xyz))][:MAX_COLOURS]
     names = [each.light.name for each in panels[0][0]]
     screens = display_sensors(names, cube.observer, *cube.data.sensor.range)
-    lights = len(names)
-    figure = new_figure(3.1 * lights, 3.1 * len(panels))
-    axes = figure.subplots(len(panels), lights, squeeze=False)
+    figure = new_figure(3.1 * len(names), 3.1 * len(panels))
+    axes = figure.subplots(len(panels), len(names), squeeze=False)
     for line, (found, row) in zip(axes, panels, strict=True):
         for each, screen, bounds in zip(line, screens, found, strict=True):
             _plot_region(each, screen, bounds, row)

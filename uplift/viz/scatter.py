@@ -110,7 +110,8 @@ def place_labels(anchors: Array, sizes: Array, markers: Array, panel: Array) -> 
         options = np.concatenate([_corners_around(anchor, size, distance) for distance in DISTANCES])
         boxes = np.concatenate([options, options + size], axis=1)
         over_label, over_marker = (each.any(axis=1) for each in (_overlaps(boxes, placed), _contains(boxes, markers)))
-        taken = np.asarray(_outside(boxes, panel) | over_label | over_marker)
+        outside = ((boxes[:, :2] < panel[:2]) | (boxes[:, 2:] > panel[2:])).any(axis=1)
+        taken = outside | over_label | over_marker
         if not taken.all():
             first = int(taken.argmin())
             corners[row] = options[first]
@@ -132,7 +133,3 @@ def _overlaps(boxes: Array, others: Array) -> Mask:
 def _contains(boxes: Array, points: Array) -> Mask:
     near = (points > boxes[:, None, :2] - CLEARANCE) & (points < boxes[:, None, 2:] + CLEARANCE)
     return np.asarray(near.all(axis=-1))
-
-
-def _outside(boxes: Array, panel: Array) -> Mask:
-    return np.asarray(((boxes[:, :2] < panel[:2]) | (boxes[:, 2:] > panel[2:])).any(axis=1))

@@ -67,24 +67,19 @@ def write_lut(
     """
     if not MIN_SIZE <= res <= MAX_SIZE:
         raise OptionError(f"res must be from {MIN_SIZE} to {MAX_SIZE}, got {res}", hint=f"{SIZE} is usual")
-    cube.data.sensor.require_xyz()
-    screen = _screen(cube, light, adapt)
+    own = cube.data.sensor
+    own.require_xyz()
+    (lit,) = display_sensors([light], own.observer, *own.range, space=own.space)
+    # RGB = M XYZ: M adapted to the white of the light, or that of the cube's own illuminant.
+    screen = lit if adapt else replace(lit, xyz_to_rgb=own.xyz_to_rgb)
     codes = np.linspace(0, 1, res)
     nodes = np.stack(np.meshgrid(codes, codes, codes, indexing="ij"), axis=-1).reshape(-1, 3)  # blue varies fastest
     table = _encode(_relit(cube, nodes, screen)).astype(np.float32)
     transform = _linear_to_linear(table, res)
-    title = f"uplift: {cube.data.sensor.space} under {cube.data.sensor.illuminant} to {screen.illuminant}"
+    title = f"uplift: {own.space} under {own.illuminant} to {screen.illuminant}"
     is_clf = os.fspath(path).lower().endswith(".clf")
     write_text(_clf(transform, title) if is_clf else cube_text(table, title, res), path, force=force)
     return _error(cube, transform, screen)
-
-
-def _screen(cube: Cube, light: str, adapt: bool) -> Sensor:
-    """Return the sensor of the cube's RGB space for reflectances under the light."""
-    own = cube.data.sensor
-    (lit,) = display_sensors([light], own.observer, *own.range, space=own.space)
-    # RGB = M XYZ: M adapted to the white of the light, or that of the cube's own illuminant.
-    return lit if adapt else replace(lit, xyz_to_rgb=own.xyz_to_rgb)
 
 
 def _relit(cube: Cube, codes: Array, screen: Sensor) -> Array:

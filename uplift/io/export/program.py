@@ -19,7 +19,7 @@ from uplift.common.errors import OptionError, UpliftWarning, unknown_name
 from uplift.common.files import atomic_write, check_output, write_text
 from uplift.common.version import VERSION
 from uplift.cube import CubeData, digest
-from uplift.io.export.table import COLUMNS, MODES, Table, make_table, rounding_error
+from uplift.io.export.table import COLUMNS, MODES, Table, check_complete, make_table, rounding_error
 
 LARGE = 16_000_000
 """Size in bytes above which compilation of a header is slow."""
@@ -79,12 +79,7 @@ def write_program(
         raise unknown_name(style, LANGUAGES, "language")
     if mode not in MODES:
         raise unknown_name(mode, MODES, "mode")
-    if data.complete_cells is not None:
-        raise OptionError(
-            "a program needs all nodes, but the cube was built for the colours of a scene",
-            code="sparse-cube",
-            hint="pass cube.fill_missing().data",
-        )
+    check_complete(data, "a program")
     path, form, table = Path(path), check_form(style, form), make_table(data, mode)
     text = cube_program(data, table, style, mode, path.stem, form)
     written = write_files(text, table, path, form, per_line=table.constants["STRIDE"], force=force)

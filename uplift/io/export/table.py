@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
+from uplift.common.errors import OptionError
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes, weighted_sum
 from uplift.lookup.interpolate import around
@@ -39,6 +40,13 @@ class Table:
         """Return the numbers as a little-endian image of (rows, COLUMNS, 4), filled up with zeros."""
         numbers = np.pad(self.numbers, (0, -len(self.numbers) % (COLUMNS * TEXEL)))
         return numbers.astype("<f4").reshape(-1, COLUMNS, TEXEL)
+
+
+def check_complete(data: CubeData, name: str) -> None:
+    """Raise `OptionError` for a cube that was built for a scene: programs, and pages with one, need all nodes."""
+    if data.complete_cells is not None:
+        problem = f"{name} needs all nodes, but the cube was built for the colours of a scene"
+        raise OptionError(problem, code="sparse-cube", hint="pass cube.fill_missing().data")
 
 
 def make_table(data: CubeData, mode: str) -> Table:

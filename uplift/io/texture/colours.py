@@ -216,14 +216,13 @@ def space_warnings(image: Image, sensor: Sensor, chosen: ImageSpace | None = Non
         if part.profile is None:
             if SRGB_SPACE.agrees_with(sensor, encoded=False):
                 continue
-            code, problem = "colour-space-assumed", f"the image states no colour space; {read_as}"
+            problem = f"the image states no colour space; {read_as}"
         elif part.profile.space is None:
             name = f" ({part.profile.name})" if part.profile.name else ""
-            code = "colour-space-assumed"
             problem = f"the image states a colour space that cannot be used{name}; {read_as}"
         else:
             continue
-        found[problem] = UpliftWarning(problem, code=code, path=image.path)
+        found[problem] = UpliftWarning(problem, code="colour-space-assumed", path=image.path)
     return tuple(found.values())
 
 

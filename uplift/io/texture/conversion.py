@@ -112,6 +112,10 @@ def _space_name(converter: Converter, part: Part) -> str:
     return converter.sensor.space if part.max_code else f"linear {converter.sensor.space}"
 
 
+LOSSLESS = {"half": "half", "uint": "uint", "uint8": "half"}
+"""OpenEXR types that hold all values of a type, by that type; float for others. Integers become [0, 1]."""
+
+
 @dataclass(frozen=True, eq=False)
 class _Layout:
     """Which channels of a part are colours, which pass through (indices ``others``), and how it is written."""
@@ -128,7 +132,7 @@ def _layout(converter: Converter, image: Image, part: Part, found: ColourChannel
     rgb = () if colours is None else colours.rgb
     others = tuple(index for index in range(len(part.channels)) if index not in rgb)
     names = tuple(part.channels[index] for index in others)
-    types = tuple(_lossless_type(part.types[index]) for index in others)
+    types = tuple(LOSSLESS.get(part.types[index], "float") for index in others)
     if colours is not None:
         converted = (*"RGB", *converter.channels)
         if duplicates := set(converted) & set(names):
@@ -141,11 +145,6 @@ def _layout(converter: Converter, image: Image, part: Part, found: ColourChannel
     header = {**part.metadata, **converter.header, **converter.part_header(part)}
     output = OutputPart(part.name, part.window, names, types, header, part.date or modified)
     return _Layout(part, colours, others, converter.decoder(part), output)
-
-
-def _lossless_type(name: str) -> str:
-    """Return the OpenEXR type that holds all values of a type; integers become [0, 1]."""
-    return name if name in ("half", "float", "uint") else {"uint8": "half"}.get(name, "float")
 
 
 def _bands(image: Image, layout: _Layout) -> Iterator[tuple[int, Values]]:

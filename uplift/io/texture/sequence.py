@@ -124,10 +124,8 @@ class Failure:
     error: UpliftError
 
 
-@lru_cache(maxsize=1)
-def converter_for(settings: TextureSettings) -> Converter:
-    """The converter of the settings, which each process prepares once."""
-    return settings.prepare()
+converter_for = lru_cache(maxsize=1)(TextureSettings.prepare)
+"""The converter of settings, which each process prepares once."""
 
 
 def run(job: Job, progress: ProgressCallback = ignore_progress) -> Conversion | Failure:

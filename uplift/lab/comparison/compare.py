@@ -160,9 +160,8 @@ def compare(
     """
     sets, results = {light_set.name: light_set.title for light_set in scene.sets}, []
     for done, representation in enumerate(representations, 1):
-        floats = float(representation.storage(representation.encode_surface(scene.surfaces)).mean())
         for light_set in scene.sets:
-            light_floats = float(representation.storage(representation.encode_light(light_set.powers)).mean())
+            light_floats, floats = representation.numbers(light_set.powers, scene.surfaces)
             errors, ns = error_statistics(representation, light_set), _time(representation, light_set, quick)
             names = representation.name, representation.family, light_set.name
             results.append(RepresentationResult(*names, errors, floats, light_floats, ns))
@@ -195,9 +194,7 @@ def represent(representation: Representation, scene: Scene, names: Sequence[str]
 
 def error_statistics(representation: Representation, light_set: LightSet) -> Statistics:
     """Compute the errors of a representation under a set of lights. Raises `UpliftError`."""
-    surfaces = representation.encode_surface(light_set.reflectances)
-    lights = (_repeat_light(representation, power, len(light_set.reflectances)) for power in light_set.powers)
-    xyz = np.stack([representation.xyz(representation.multiply(light, surfaces)) for light in lights])
+    xyz = representation.reflected(light_set.powers, light_set.reflectances)
     errors = delta_e_2000(light_set.to_lab(xyz), light_set.lab)
     if not np.isfinite(errors).all():
         raise UpliftError(f"{representation.name} returns values that are not finite under {light_set.title}")
@@ -207,18 +204,15 @@ def error_statistics(representation: Representation, light_set: LightSet) -> Sta
 def _time(representation: Representation, light_set: LightSet, quick: bool) -> TimingStats:
     """CPU time of a product, in ns: each light of a set in turn, with many surfaces per call."""
     rows, lap, runs = QUICK_TIMING if quick else TIMING
-    surfaces = representation.encode_surface(np.resize(light_set.reflectances, (rows, len(light_set.wavelengths))))
-    lights = [_repeat_light(representation, power, rows) for power in light_set.powers]
+    spectra = np.resize(light_set.reflectances, (rows, len(light_set.wavelengths)))
+    surfaces = representation.encode_surface(spectra)
+    lights = [representation.encode_light(np.broadcast_to(power, spectra.shape)) for power in light_set.powers]
 
     def multiply() -> None:
         for light in lights:
             representation.multiply(light, surfaces)
 
     return time_laps(multiply, lap, runs).scaled(1e9 / (len(lights) * rows))
-
-
-def _repeat_light(representation: Representation, power: Array, rows: int) -> Any:
-    return representation.encode_light(np.broadcast_to(power, (rows, len(power))))
 
 
 def check_target(target: float) -> float:

@@ -201,17 +201,14 @@ def _others(setup: RenderSetup, tests: EvaluationSet, observer_name: str) -> Ite
     surfaces = interp_curves(samples.wavelengths(), setup.wavelengths, setup.reflectances)
     for each in all_representations(powers, surfaces):
         if each.name[:2] in FAMILIES:
-            surface = float(each.storage(each.encode_surface(surfaces)).mean())
-            light = float(each.storage(each.encode_light(powers)).mean())
+            light, surface = each.numbers(powers, surfaces)
             xyz = partial(_represented_xyz, each, powers, tests)
             yield Rendering(each.name, light, surface + 6 * light, surface, samples.wavelengths(), xyz)
 
 
 def _represented_xyz(representation: Representation, powers: Array, tests: EvaluationSet, reflectances: Array) -> Array:
     """XYZ (K, n, 3) of dense reflectances (n, 401): those of the 5 nm table, and what the representation changes."""
-    surfaces = representation.encode_surface(reflectances)
-    lit = [representation.encode_light(np.broadcast_to(power, reflectances.shape)) for power in powers]
-    found = np.stack([representation.xyz(representation.multiply(light, surfaces)) for light in lit])
+    found = representation.reflected(powers, reflectances)
     exact = (powers[:, None] * reflectances) @ samples.xyz_weights()
     return tests.xyz(reflectances[:, :: samples.TABLE_STRIDE]) + found - exact
 

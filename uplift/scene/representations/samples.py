@@ -46,11 +46,6 @@ def interpolation_matrix(points: Array) -> Array:
     return np.asarray(np.maximum(1 - np.abs(wavelengths()[:, None] - points), 0))
 
 
-def count_numbers(code: Any) -> Array:
-    """Numbers stored per spectrum (n,) by a code that is a single array."""
-    return np.full(len(code), float(code[0].size))
-
-
 @dataclass(frozen=True, eq=False)
 class Representation:
     """Encoding of spectra that a renderer can multiply (Kment 2011, section 5.4).
@@ -62,7 +57,7 @@ class Representation:
     - ``multiply`` makes the code of the light that surfaces reflect, which may meet the next surface. Row r of a light
       meets row r of the surfaces;
     - ``xyz`` is XYZ (n, 3) of lights, in the units of `xyz_weights`;
-    - ``storage`` are the numbers stored per spectrum (n,);
+    - ``storage`` are the numbers stored per spectrum (n,), by default those of a code that is a single array;
     - ``decode_light`` and ``decode_surface`` are the spectra (n, 401) that a code stands for, if it determines them.
     """
 
@@ -72,7 +67,7 @@ class Representation:
     xyz: Callable[[Any], Array]
     multiply: Callable[[Any, Any], Any] = mul
     surface_encoder: Callable[[Array], Any] | None = None
-    storage: Callable[[Any], Array] = count_numbers
+    storage: Callable[[Any], Array] = lambda code: np.full(len(code), float(code[0].size))
     decode_light: Callable[[Any], Array] | None = None
     decode_surface: Callable[[Any], Array] | None = None
 
@@ -80,6 +75,17 @@ class Representation:
     def encode_surface(self) -> Callable[[Array], Any]:
         """Function that encodes reflectances (n, 401)."""
         return self.surface_encoder or self.encode_light
+
+    def numbers(self, powers: Array, reflectances: Array) -> tuple[float, float]:
+        """Return the mean numbers stored of a light, and of a surface."""
+        light, surface = self.encode_light(powers), self.encode_surface(reflectances)
+        return float(self.storage(light).mean()), float(self.storage(surface).mean())
+
+    def reflected(self, powers: Array, reflectances: Array) -> Array:
+        """Return XYZ (K, n, 3) of every surface under every light."""
+        surfaces = self.encode_surface(reflectances)
+        lights = (self.encode_light(np.broadcast_to(power, reflectances.shape)) for power in powers)
+        return np.stack([self.xyz(self.multiply(light, surfaces)) for light in lights])
 
     def stored(self, powers: Array, reflectances: Array) -> tuple[Array, Array]:
         """Return lights and surfaces (n, 401) as their codes stand for them. Raises `OptionError` if they do not."""
