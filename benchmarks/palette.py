@@ -89,8 +89,10 @@ def main() -> None:
     """Draw the examples, measure and store."""
     sensor = observer.sensor()
     models = {count: standard_model(sensor, count) for count in COUNTS}
-    for name in EXAMPLES:
-        draw(name, models[DEFAULT])
+    palettes = {name: design(read_palette(sample_path(f"{name}.toml")), models[DEFAULT]) for name in EXAMPLES}
+    for name, palette in palettes.items():
+        plot_matrix(palette, matrix(palette), FOLDER / f"{name}-matrix.png", force=True)
+    plot_spectra(palettes["metamers"], FOLDER / "metamers-spectra.png", force=True)
     paths = light_paths(sensor)
     products = {"RGB": by_rgb(sensor)}
     for count, model in models.items():
@@ -102,15 +104,8 @@ def main() -> None:
         spectra=len(paths.reflectances[1]),
         samples=SAMPLES,
         reflections=by_bounces(paths, products),
-        lights=[by_light(paths, light, models) for light in LIGHTS],
+        lights=[by_light(paths, light, models[DEFAULT]) for light in LIGHTS],
     )
-
-
-def draw(name: str, model: FactorModel) -> None:
-    """Design an example and plot its matrix and spectra."""
-    palette = design(read_palette(sample_path(f"{name}.toml")), model)
-    plot_matrix(palette, matrix(palette), FOLDER / f"{name}-matrix.png", force=True)
-    plot_spectra(palette, FOLDER / f"{name}-spectra.png", force=True)
 
 
 def by_bounces(paths: LightPaths, products: dict[str, Product]) -> list[dict[str, Any]]:
@@ -123,17 +118,11 @@ def by_bounces(paths: LightPaths, products: dict[str, Product]) -> list[dict[str
     return [row | {"gain": rows[0]["all"] / row["all"]} for row in rows]
 
 
-def by_light(paths: LightPaths, light: str, models: dict[int, FactorModel]) -> dict[str, Any]:
+def by_light(paths: LightPaths, light: str, model: FactorModel) -> dict[str, Any]:
     """Return mean ΔE00 under a light over all numbers of reflections."""
-    products = {
-        "rgb": by_rgb(paths.sensor),
-        "factor": by_factors(models[DEFAULT]),
-        "lambda": by_matrices(models[DEFAULT]),
-        "factor_8": by_factors(models[8]),
-    }
+    products = {"rgb": by_rgb(paths.sensor), "factor": by_factors(model)}
     means = {
         name: float(np.mean([paths.errors(product, light, k).mean() for k in BOUNCES]))
         for name, product in products.items()
     }
-    gains = {"gain": means["rgb"] / means["factor"], "gain_8": means["rgb"] / means["factor_8"]}
-    return {"light": light, **means, **gains}
+    return {"light": light, **means, "gain": means["rgb"] / means["factor"]}
