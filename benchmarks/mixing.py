@@ -55,29 +55,20 @@ COMPLEMENTS = (((0, 0, 1), (1, 0.5, 0)), ((1, 0, 0), (0, 1, 0)), ((1, 1, 0), (1,
 BLUE_YELLOW = np.array([[0.0, 0, 1], [1.0, 1, 0]])
 
 
-@dataclass(frozen=True)
-class Criterion:
-    """A criterion of painters (Fishkin 1983, 10.4) in words, the measured quantity, and its largest value that passes.
+CRITERIA = {
+    "mixed with itself: no change": 0.1,  # worst ΔE00
+    "with black: chromaticity kept": 0.005,  # worst Δu'v'
+    "with black: darker": 0.0,  # largest change of L*
+    "with white: hue kept": 3.0,  # worst turn, degrees
+    "with white: lighter": 0.0,  # largest fall of L*
+    "with its complement: grey": 10.0,  # worst C*ab
+    "blue and yellow: green": -0.01,  # max(R, B) − G at best
+}
+"""Criteria of painters (Fishkin 1983, 10.4), and the largest value of each that passes, in the order of `evaluate`.
 
-    The thesis requires tints to maintain chromaticity, too. White, however, moves every chromaticity towards its own.
-    A tint can only keep its hue, the direction from white in the CIE 1976 u'v' diagram. A shade can keep both.
-    """
-
-    title: str
-    measure: str
-    limit: float
-
-
-CRITERIA = (
-    Criterion("mixed with itself: no change", "worst ΔE00", 0.1),
-    Criterion("with black: chromaticity kept", "worst Δu'v'", 0.005),
-    Criterion("with black: darker", "largest change of L*", 0.0),
-    Criterion("with white: hue kept", "worst turn, degrees", 3.0),
-    Criterion("with white: lighter", "largest fall of L*", 0.0),
-    Criterion("with its complement: grey", "worst C*ab", 10.0),
-    Criterion("blue and yellow: green", "max(R, B) − G at best", -0.01),
-)
-"""All criteria, in the order of `evaluate`."""
+The thesis requires tints to maintain chromaticity, too. White, however, moves every chromaticity towards its own.
+A tint can only keep its hue, the direction from white in the CIE 1976 u'v' diagram. A shade can keep both.
+"""
 
 
 def evaluate(mixer: Mixer, sensor: Sensor, colours: Array) -> tuple[float, ...]:
@@ -117,10 +108,10 @@ def criteria(cube: Cube) -> Row:
     coloured = atlas[np.ptp(atlas, axis=1) > 0.1 * atlas.max(axis=1)]
     rows = []
     for mixer in mixers(cube):
-        values = zip(CRITERIA, evaluate(mixer, cube.data.sensor, coloured), strict=True)
-        verdicts = [{"obeys": value <= criterion.limit, "value": value + 0.0} for criterion, value in values]
+        values = zip(CRITERIA.values(), evaluate(mixer, cube.data.sensor, coloured), strict=True)
+        verdicts = [{"obeys": value <= limit, "value": value + 0.0} for limit, value in values]
         rows.append({"mixer": mixer.title, "verdicts": verdicts})
-    return {"criteria_titles": [vars(one) for one in CRITERIA], "criteria": rows}
+    return {"criteria_titles": list(CRITERIA), "criteria": rows}
 
 
 # --- rules for S on mixtures of known paints ---

@@ -45,7 +45,7 @@ def colours(paints):
 
 
 def passed(values):
-    return {index for index, value in enumerate(values) if value <= CRITERIA[index].limit}
+    return {index for index, limit in enumerate(CRITERIA.values()) if values[index] <= limit}
 
 
 def test_models_pass_the_expected_criteria(small_cube, colours):
