@@ -115,11 +115,6 @@ def draw(
     write_png(figure, path, force=True)
 
 
-def caption(errors: Array) -> str:
-    """Return the text below an image whose patches have errors (24,)."""
-    return f"mean ΔE00 {errors.mean():.2f}, worst {errors.max():.1f}"
-
-
 def start_mitsuba(variant: str = VARIANT) -> str:
     """Select the variant and register the plug-ins; return Mitsuba's version."""
     import mitsuba

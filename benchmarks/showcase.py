@@ -74,7 +74,6 @@ def main() -> None:
                     lamp.name: {
                         "all": float(errors[lamp.name, name].mean()),
                         "inside": float(errors[lamp.name, name][inside].mean()),
-                        "max": float(errors[lamp.name, name].max()),
                     }
                     for lamp in lamps
                 },
