@@ -1,4 +1,4 @@
-"""Times of builds, processes, lookups and the exported C header, for docs/speed.md.
+"""Times of builds, processes, `uplift.bulk` and the exported C header, for docs/speed.md.
 
 Results are checked before they are timed.
 """
@@ -7,10 +7,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
-from collections.abc import Callable
 from functools import partial
-from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +23,9 @@ MODELS = (("sigmoid", 3), *(("moments", count) for count in (3, 5, 9, 13, 17)))
 DIMS, MODEL_DIM = (16, 32, 64, 128), 64
 MIXTURE_DIM, MIXTURES = 32, (24, 396, 10_000)
 WAVELENGTHS = np.linspace(400, 700, 16)
-COLOURS = {"coefficients": 1_000_000, "spectra": 1_000_000, "moments": 200_000, "refined": 50_000}
-"""Queries by what is looked up: fewer where lookups are slow."""
-MAX_ERRORS = {"coefficients": 1e-6, "spectra": 1e-5, "moments": 2e-2, "refined": 1e-6}
-"""Largest permitted errors, for float32 too."""
-BULK, CHECKED = 1_000_000, 10_000
+BULK, MAX_ERROR = 1_000_000, 1e-6
+"""Colours of `uplift.bulk`, and its largest permitted difference of reflectance."""
+CHECKED = 10_000
 FLAGS = ("-O3", "-march=x86-64-v3", "-fno-math-errno", "-fno-trapping-math")
 MODES = ("spectra", "moments")
 PROGRAM_COLOURS, MAX_DIFFERENCE = 400_000, 1e-3
@@ -48,7 +43,6 @@ def main() -> None:
         dims=[time_build("moments", 9, dim, RUNS if dim <= MODEL_DIM else FEW_RUNS) for dim in DIMS],
         models=[time_build(model, count, MODEL_DIM, FEW_RUNS) for model, count in MODELS],
         processes=processes,
-        lookups=time_lookups(cube),
         bulk=time_bulk(cube),
     )
     record("performance", "atlases", dim=MIXTURE_DIM, rows=[time_atlas(count) for count in MIXTURES])
@@ -74,14 +68,9 @@ def _build(**options: Any) -> Any:
 
 
 def time_build(model: str, count: int, dim: int, runs: int) -> Row:
-    """Time builds in this process; ``compile_s`` is the extra time of the first one."""
-    import jax
-
-    jax.clear_caches()  # type: ignore[no-untyped-call]
+    """Time builds in this process, which has compiled."""
     build = partial(_build, dim=dim, model=model, coefficients=count)
-    begin = time.perf_counter()
     data = build().data
-    first = time.perf_counter() - begin
     unfitted, worst = data.points.counts()["unfitted"], float(data.points.distance.max())
     if unfitted:
         raise RuntimeError(f"{unfitted} nodes are unfitted: nothing to time")
@@ -91,7 +80,6 @@ def time_build(model: str, count: int, dim: int, runs: int) -> Row:
         "coefficients": count,
         "dim": dim,
         "nodes": dim**3,
-        "compile_s": max(first - wall.median, 0),
         "wall_s": wall,
         "whole_us": cpu.scaled(1e6 / dim**3),
         "worst": worst,
@@ -143,69 +131,21 @@ def time_processes() -> list[Row]:
     return [{"what": what, "wall": wall, "megabytes": megabytes} for what, wall, megabytes in rows]
 
 
-def time_lookups(cube: Any) -> list[Row]:
-    """Time every mode with numpy in both types, on one thread and on two."""
-    rng = np.random.default_rng(1)
-    random = product(COLOURS, ("float64", "float32"), (1, 2))
-    return [_lookup(cube, what, rng.random((COLOURS[what], 3)), dtype, threads) for what, dtype, threads in random]
-
-
-def _lookup(cube: Any, what: str, rgb: Any, dtype: str, threads: int) -> Row:
-    options: Row = {"dtype": dtype, "threads": threads}
-    if what == "coefficients":
-        query = partial(cube.coefficients, rgb, **options)
-        error = np.abs(query() - cube.coefficients(rgb)).max()
-    else:
-        query = partial(cube.reflectance, rgb, WAVELENGTHS, what, **options)
-        back = cube.data.sensor.rgb(cube.reflectance(rgb[:CHECKED], None, what, **options))
-        error = np.abs(back - rgb[:CHECKED]).max()
-    return {"what": what, **options, **_timing(query, rgb, float(error), MAX_ERRORS[what])}
-
-
 def time_bulk(cube: Any) -> list[Row]:
-    """Time JAX: spectra and coefficients of random colours."""
-    random = np.random.default_rng(1).random((BULK, 3))
-    return [
-        _bulk(cube, "spectra", random, 1),
-        _bulk(cube, "spectra", random, 2),
-        _bulk(cube, "spectra, float32 queries", random.astype(np.float32), 2),
-        _bulk(cube, "coefficients", random, 2),
-    ]
-
-
-def _bulk(cube: Any, what: str, rgb: Any, threads: int) -> Row:
-    import jax
-
+    """Time spectra of random colours by JAX, on one thread and on two."""
     from uplift.lookup import bulk
 
-    jax.clear_caches()  # type: ignore[no-untyped-call]
-    begin = time.perf_counter()
-    if what == "coefficients":
-        sample, expected = bulk.coefficients(cube, threads=threads), cube.coefficients
-    else:
-        sample, expected = (
-            bulk.spectra(cube, WAVELENGTHS, threads=threads),
-            partial(cube.reflectance, wavelengths=WAVELENGTHS),
-        )
-    prepared = time.perf_counter()
-    result = sample(rgb)
-    answered = time.perf_counter()
-    error = float(np.abs(result - expected(rgb)).max())
-    row = {"what": what, "dtype": rgb.dtype.name, "threads": threads} | _timing(lambda: sample(rgb), rgb, error, 1e-6)
-    return row | {"prepare_s": prepared - begin, "compile_s": max(answered - prepared - row["wall_s"].median, 0)}
-
-
-def _timing(query: Callable[[], object], rgb: Any, error: float, limit: float) -> Row:
-    if not error <= limit:
-        raise RuntimeError(f"error {error} exceeds {limit}: nothing to time")
-    wall, cpu = time_calls(query, RUNS)
-    return {
-        "colours": len(rgb),
-        "wall_s": wall,
-        "million_per_s": len(rgb) / wall.median / 1e6,
-        "cpu_us": cpu.median / len(rgb) * 1e6,
-        "error": error,
-    }
+    rgb = np.random.default_rng(1).random((BULK, 3))
+    expected, rows = cube.reflectance(rgb, WAVELENGTHS), []
+    for threads in (1, 2):
+        sample = bulk.spectra(cube, WAVELENGTHS, threads=threads)
+        error = float(np.abs(sample(rgb) - expected).max())
+        if not error <= MAX_ERROR:
+            raise RuntimeError(f"error {error} exceeds {MAX_ERROR}: nothing to time")
+        wall, cpu = time_calls(partial(sample, rgb), RUNS)
+        rates = {"million_per_s": BULK / wall.median / 1e6, "cpu_us": 1e6 * cpu.median / BULK}
+        rows.append({"threads": threads, "colours": BULK, "wall_s": wall, **rates, "error": error})
+    return rows
 
 
 def time_header(cube: Any, mode: str, colours: Any) -> Row:

@@ -2,21 +2,19 @@
 
 import functools
 import importlib
-import json
-import subprocess
-import sys
 import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from benchmarks import MACBETH, record
+from uplift.common.processes import call_in_child
 from uplift.lab.timing import timing_stats
 from uplift.samples import sample_path
 
-RUNS, SAMPLE = 3, "wood.png"
+RUNS, LIMIT, SAMPLE = 3, 600, "wood.png"
+"""Runs, seconds after which a command counts as hung, and the image."""
 LARGE = "128"
 """Nodes along an axis of the build that runs once."""
 BUILD = {
@@ -60,28 +58,19 @@ def main() -> None:
             f"texture {SAMPLE}": ([*texture, f"{folder}/texture.exr", "--force"], TEXTURE),
         }
         rows = []
-        _in_child([*build, "8", "-o", f"{folder}/x.uplift"], BUILD, Path(folder))
+        call_in_child(run, [*build, "8", "-o", f"{folder}/x.uplift"], BUILD, seconds=LIMIT)
         for command, (arguments, stages) in commands.items():
             count = RUNS if LARGE not in arguments else 1
-            runs = [_in_child(arguments, stages, Path(folder)) for _ in range(count)]
+            runs = [call_in_child(run, arguments, stages, seconds=LIMIT) for _ in range(count)]
             for stage in runs[0]:
                 rows.append(
-                    {"command": command, "stage": stage, "cpu_s": timing_stats([run.get(stage, 0) for run in runs])}
+                    {"command": command, "stage": stage, "cpu_s": timing_stats([each.get(stage, 0) for each in runs])}
                 )
     record("stages", runs=RUNS, rows=rows)
 
 
-def _in_child(arguments: list[str], stages: dict[str, str], folder: Path) -> dict[str, float]:
-    """Run a command of uplift in a process, and return the CPU seconds of its stages."""
-    found = folder / "stages.json"
-    code = f"from benchmarks.stages import run; run({arguments}, {stages}, {str(found)!r})"
-    subprocess.run([sys.executable, "-c", code], check=True, stdout=subprocess.DEVNULL)
-    times: dict[str, float] = json.loads(found.read_text(encoding="utf-8"))
-    return times
-
-
-def run(arguments: list[str], stages: dict[str, str], found: str) -> None:
-    """Run a command in this process with a clock around its stages, and write their CPU seconds."""
+def run(arguments: list[str], stages: dict[str, str]) -> dict[str, float]:
+    """Run a command in this process with a clock around its stages, and return their CPU seconds."""
     from uplift_cli.startup import enable_jit_cache, prepare_process
 
     prepare_process()
@@ -115,7 +104,7 @@ def run(arguments: list[str], stages: dict[str, str], found: str) -> None:
     times["imports"] = begin = time.process_time()
     command_line(arguments, prog_name="uplift", standalone_mode=False)
     times["rest"] = time.process_time() - begin - inner[0]
-    Path(found).write_text(json.dumps(times), encoding="utf-8")
+    return dict(times)
 
 
 def _first(function: Callable[..., Any], clocked: Callable[..., Any]) -> Callable[..., Any]:
