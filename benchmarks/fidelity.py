@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-import uplift
 from benchmarks import Row, record
 from benchmarks.choices import ALONE, ALONE_SMOOTH, CHOICES, OURS, OURS_SMOOTH, is_optimistic
 from benchmarks.materials import (
@@ -19,18 +18,18 @@ from benchmarks.materials import (
     SPLITS,
     Materials,
     as_record,
-    build,
     errors,
+    inside,
     materials,
     other_halves,
     shipped_families,
     spectra,
 )
 from tools.ship_library import FAMILIES, FILE, OTSU_SPREAD, SPREAD
-from uplift.atlas import Atlas, resample
+from uplift import build
+from uplift.atlas import Atlas
 from uplift.colorimetry import Light, delta_e_spectra, observer
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
-from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array
 from uplift.cube import contents
 from uplift.fit.families import LENGTH, NUGGET, shipped_library
@@ -70,8 +69,6 @@ def main() -> None:
         splits=SPLITS,
         munsell=MUNSELL.exists(),
         entries=[row for name in TESTED for row in at_entries(name)],
-        halves=[row for key, pairs in known.items() for row in halves(*key, pairs)],
-        light_splits=SPLITS,
         standard_errors=[
             *(coverage(*key, pairs) for key, pairs in known.items()),
             *(coverage(label, 9, pairs) for label, pairs in others.items()),
@@ -110,29 +107,12 @@ def at_entries(name: str) -> Iterator[Row]:
     cubes = {f"9 coefficients, entries {count}": build(name, dim=DIM, entry_coefficients=count) for count in COUNTS}
     cubes |= {
         "17 coefficients": build(name, dim=DIM, coefficients=17),
-        "9, without the atlas": build(None, dim=DIM),
+        "9, without the atlas": build(dim=DIM),
         "sigmoid": build(name, dim=DIM, model="sigmoid"),
     }
     for label, cube in cubes.items():
         size = sum(array.nbytes for array in contents(cube.data)[0].values())
         yield {"atlas": name, "cube": label, "megabytes": size / 1e6, **errors(cube.reflectance(some.rgb), some)}
-
-
-def halves(name: str, count: int, pairs: Pairs) -> Iterator[Row]:
-    """Yield the errors of every cube at the other halves, with their standard deviation over the halves."""
-    options = {"dim": DIM, "leave_out": shipped_families(name)}
-    no_atlas, sigmoid = build(None, coefficients=count, **options), build(None, model="sigmoid", **options)
-    for method, queried in (
-        (held_out.HALF, pairs),
-        (held_out.NO_ATLAS, [(no_atlas, some) for _, some in pairs]),
-        (held_out.SIGMOID, [(sigmoid, some) for _, some in pairs]),
-    ):
-        answers = [held_out.spectrum_errors(cube.reflectance(some.rgb), some.measured) for cube, some in queried]
-        found = np.array([each.means() for each in answers])
-        spread = zip(found.mean(axis=0).tolist(), found.std(axis=0).tolist(), strict=True)
-        rms, *delta_e = [{"mean": mean, "std": std} for mean, std in spread]
-        by_light = dict(zip(HELD_OUT_LIGHTS, delta_e, strict=True))
-        yield {"atlas": name, "coefficients": count, "cube": method, "rms": rms, "errors": by_light}
 
 
 def pooled(splits: Splits, method: str) -> Array:
@@ -210,7 +190,7 @@ def learning_curve(parts: int) -> Row:
     rows = np.arange(len(some.rgb))
     for seed in range(SPLITS):
         for queried in np.array_split(np.random.default_rng(seed).permutation(rows), parts):
-            cube = build(some.take(np.setdiff1d(rows, queried)), dim=DIM, leave_out=left_out)
+            cube = some.take(np.setdiff1d(rows, queried)).cube(dim=DIM, leave_out=left_out)
             held = some.take(queried)
             found.append(held_out.spectrum_errors(cube.reflectance(held.rgb), held.measured).delta_e)
     by_light = np.concatenate(found).mean(axis=0)
@@ -241,7 +221,7 @@ def family(name: str) -> list[str]:
 @cache
 def smooth_cube(count: int) -> Cube:
     """Return a coarse cube of smooth spectra."""
-    return build(None, dim=COARSE, coefficients=count, prior="smooth")
+    return build(dim=COARSE, coefficients=count, prior="smooth")
 
 
 def means(answers: Cube | Array, some: Materials) -> Array:
@@ -253,8 +233,8 @@ def means(answers: Cube | Array, some: Materials) -> Array:
 def unseen(name: str, count: int) -> Row:
     """Return the errors without an atlas where the prior does not know the family, relative to other methods."""
     some = materials(name)
-    learnt = means(build(None, dim=COARSE, coefficients=count, leave_out=family(name)), some)
-    others = {"smooth": smooth_cube(count), **published(some), "sigmoid": build(None, dim=COARSE, model="sigmoid")}
+    learnt = means(build(dim=COARSE, coefficients=count, leave_out=family(name)), some)
+    others = {"smooth": smooth_cube(count), **published(some), "sigmoid": build(dim=COARSE, model="sigmoid")}
     ratios = {method: learnt / means(answers, some) for method, answers in others.items()}
     return {
         "set": name,
@@ -272,7 +252,7 @@ def with_atlas(name: str) -> Row:
     found = {
         "smooth": means(build("macbeth", dim=COARSE, prior="smooth"), some),
         "learnt": means(build("macbeth", dim=COARSE, leave_out=left_out), some),
-        "no_atlas": means(build(None, dim=COARSE, leave_out=left_out), some),
+        "no_atlas": means(build(dim=COARSE, leave_out=left_out), some),
     }
     ratios = found["learnt"] / found["smooth"]
     mean_errors = {key: each.mean() for key, each in found.items()}
@@ -285,10 +265,7 @@ def with_library(name: str) -> Iterator[Row]:
     atlas = Atlas(tuple(entries[row] for row in sorted(held_out.random_halves(len(entries), 0)[0])))
     known = {entry.values.tobytes() for entry in atlas}
     others = Atlas(tuple(entry for entry in entries if entry.values.tobytes() not in known))
-    measured = resample(others, SENSOR.wavelengths).values
-    rgb = SENSOR.rgb(measured)
-    inside = in_unit_cube(rgb)
-    queried = Materials(name, measured[inside], np.clip(rgb[inside], 0, 1))
+    queried = inside(others)
     smooth = means(smooth_cube(9), queried)
     for label, options in {
         "learnt": {"leave_out": family(name)},
@@ -296,5 +273,5 @@ def with_library(name: str) -> Iterator[Row]:
         "smooth, the other half as atlas": {"atlas": atlas, "prior": "smooth"},
         "learnt, the other half as atlas": {"atlas": atlas, "leave_out": family(name)},
     }.items():
-        ratio = means(uplift.build(dim=COARSE, **options), queried) / smooth
+        ratio = means(build(dim=COARSE, **options), queried) / smooth
         yield {"set": name, "cube": label, "mean": ratio.mean(), "worst": ratio.max()}

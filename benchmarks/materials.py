@@ -1,6 +1,5 @@
 """Measured materials that cubes are tested on, and the errors of answers for them."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -13,7 +12,7 @@ from uplift.atlas import Atlas, Entry, read_atlas, resample
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import HELD_OUT_LIGHTS
 from uplift.colorimetry.sensor import in_unit_cube
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices
 from uplift.fit.families import families_with
 from uplift.lab.study.held_out import halves_both_ways, spectrum_errors
 from uplift.lookup import Cube
@@ -31,15 +30,27 @@ SPLITS = 3
 
 @dataclass(frozen=True, eq=False)
 class Materials:
-    """Reflectances (E, 81) and linear sRGB (E, 3) of the entries inside sRGB, without duplicate colours."""
+    """Reflectances (E, 81) and linear sRGB (E, 3) of entries inside sRGB."""
 
-    name: str
     measured: Array
     rgb: Array
 
-    def take(self, rows: Sequence[int] | Array) -> "Materials":
+    def take(self, rows: Indices) -> "Materials":
         """Select some of the entries."""
-        return Materials(self.name, self.measured[rows], self.rgb[rows])
+        return Materials(self.measured[rows], self.rgb[rows])
+
+    def cube(self, **options: Any) -> Cube:
+        """Build a cube whose atlas they are."""
+        entries = (Entry(str(row), SENSOR.wavelengths, values) for row, values in enumerate(self.measured))
+        return uplift.build(Atlas(tuple(entries)), **options)
+
+
+def inside(atlas: Atlas) -> Materials:
+    """Return the entries of an atlas that are inside sRGB."""
+    measured = resample(atlas, SENSOR.wavelengths).values
+    rgb = SENSOR.rgb(measured)
+    rows = in_unit_cube(rgb)
+    return Materials(measured[rows], np.clip(rgb[rows], 0, 1))
 
 
 @cache
@@ -52,12 +63,10 @@ def spectra(name: str) -> Atlas:
 
 @cache
 def materials(name: str) -> Materials:
-    """Return the materials of a set."""
-    measured = resample(spectra(name), SENSOR.wavelengths).values
-    rgb = SENSOR.rgb(measured)
-    _, first = np.unique(np.round(rgb, 6), axis=0, return_index=True)
-    rows = [row for row in sorted(first) if in_unit_cube(rgb[row])]
-    return Materials(name, measured[rows], np.clip(rgb[rows], 0, 1))
+    """Return the materials of a set, without duplicate colours."""
+    found = inside(spectra(name))
+    _, first = np.unique(np.round(found.rgb, 6), axis=0, return_index=True)
+    return found.take(np.sort(first))
 
 
 def shipped_families(name: str) -> tuple[str, ...]:
@@ -65,20 +74,11 @@ def shipped_families(name: str) -> tuple[str, ...]:
     return tuple(families_with(materials(name).measured))
 
 
-def build(some: str | Materials | None, **options: Any) -> Cube:
-    """Build a cube from a set, from materials or without an atlas, without warnings."""
-    atlas = spectra(some) if isinstance(some, str) else None
-    if isinstance(some, Materials):
-        grid = tuple(SENSOR.wavelengths)
-        atlas = Atlas(tuple(Entry(str(row), grid, tuple(values)) for row, values in enumerate(some.measured)))
-    return uplift.build(atlas, **options)
-
-
 def other_halves(name: str, **options: Any) -> list[tuple[Cube, Materials]]:
     """Return cubes of random halves of a set, and the other halves: every material is queried equally often."""
     some, left_out = materials(name), shipped_families(name)
     return [
-        (build(some.take(kept), leave_out=left_out, **options), some.take(queried))
+        (some.take(kept).cube(leave_out=left_out, **options), some.take(queried))
         for kept, queried in halves_both_ways(np.arange(len(some.rgb)), SPLITS)
     ]
 

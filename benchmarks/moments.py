@@ -7,11 +7,11 @@ import numpy as np
 
 import uplift
 from benchmarks import ATLASES, DOCS, MACBETH, read_reference, record
-from uplift.atlas import Atlas, on_grid
+from benchmarks.materials import inside
+from uplift.atlas import Atlas, merge
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, lab
 from uplift.colorimetry.lights import REPORT_LIGHTS
-from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array
 from uplift.lab.study.moments import ALL_ATLASES, TECHNIQUES, MomentsStudy, Technique, study_moments
 from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
@@ -107,12 +107,7 @@ def warp_errors(measured: Array, warp: str, floats: int) -> dict[str, Any]:
 def cube_errors(atlases: Mapping[str, Atlas], warp: str, count: int) -> dict[str, Any]:
     """Return mean ΔE00 under each light of a ColorChecker cube, at the entries of all other atlases in sRGB."""
     cube = uplift.build(MACBETH, dim=CUBE_DIM, coefficients=count, entry_coefficients=count, warp=warp)
-    sensor = cube.data.sensor
-    measured = np.concatenate(
-        [on_grid(each, sensor.wavelengths) for name, each in atlases.items() if name != "macbeth"]
-    )
-    rgb = sensor.rgb(measured)
-    measured, rgb = measured[in_unit_cube(rgb)], np.clip(rgb[in_unit_cube(rgb)], 0, 1)
-    answers = cube.reflectance(rgb)
-    errors = {name: delta_e_spectra(observer.light(name), answers, measured).mean() for name in REPORT_LIGHTS}
-    return {"warp": warp, "coefficients": count, "spectra": len(rgb), "errors": errors}
+    others = inside(merge(each for name, each in atlases.items() if name != "macbeth"))
+    answers = cube.reflectance(others.rgb)
+    errors = {name: delta_e_spectra(observer.light(name), answers, others.measured).mean() for name in REPORT_LIGHTS}
+    return {"warp": warp, "coefficients": count, "spectra": len(answers), "errors": errors}
