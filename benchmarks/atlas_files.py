@@ -1,7 +1,6 @@
 """Formats of atlas files, and how closely files in the layouts of instruments are read, for docs/atlas-files.md."""
 
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,19 +11,6 @@ from uplift.atlas import FORMATS, Atlas, read_atlas
 
 UPLIFT = "uplift"
 """Library of the formats that uplift parses itself."""
-
-
-@dataclass(frozen=True)
-class Row:
-    """A format. ``difference`` is the largest of its layouts, in units of 1."""
-
-    name: str
-    suffixes: str
-    written: bool
-    library: str
-    extra: str
-    layouts: str
-    difference: float | None
 
 
 def largest_difference(vendor: Vendor, atlas: Atlas) -> float:
@@ -43,7 +29,7 @@ def main() -> None:
     for each in FORMATS:
         names = [vendor.name for vendor in VENDORS if vendor.format == each.name]
         largest = max((found[name] for name in names), default=None)
-        library, suffixes = each.library or UPLIFT, ", ".join(each.suffixes)
-        layouts = ", ".join(names) or "the shipped atlases"
-        rows.append(Row(each.name, suffixes, each.written, library, each.extra, layouts, largest))
+        row = {"name": each.name, "suffixes": ", ".join(each.suffixes), "written": each.written}
+        row |= {"library": each.library or UPLIFT, "extra": each.extra}
+        rows.append(row | {"layouts": ", ".join(names) or "the shipped atlases", "difference": largest})
     record("atlas-files", layouts=len(found), largest=max(found.values()), formats=rows)

@@ -119,7 +119,6 @@ def main() -> None:
         atlas=ATLAS,
         splits=SPLITS,
         dim=DIM,
-        left_out=families_with(on_grid(read_atlas(ATLAS), observer.grid())),
         marks={method: mark([ATLAS], CHOSEN_AS[method]) if method in CHOSEN_AS else "" for method in rows[0]["errors"]},
         rows=rows,
     )

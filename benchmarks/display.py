@@ -121,8 +121,6 @@ def main() -> None:
     record(
         "display",
         chips=len(found.hues),
-        runs=RUNS,
-        timed=TIMED,
         methods=[{"name": name, **errors(found, rgb), "ns": cost(name)} for name, rgb in mapped.items()],
     )
 

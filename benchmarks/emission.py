@@ -63,21 +63,12 @@ def main() -> None:
     }
     power, expected = found["lamp"]
     errors = relit_delta_e(lamps.power, power, checker, radiometry).mean(axis=1)
-    missed = np.linalg.norm(chromaticity(power @ radiometry) - uv, axis=1)
     record(
         "emission",
         lamps=len(lamps),
         exact=len(table.lamp_names),
-        shape=table.data.lattice.shape,
-        prior=table.data.provenance["prior"],
-        same_colours=SAME_COLOURS,
-        left_out={rule: float(rows.sum(axis=1).mean()) for rule, rows in unknown.items()},
-        families=len({lamp_family(name) for name in lamps.names}),
         rows=list(summaries(lamps, lights, surfaces, radiometry)),
-        worst=[
-            {"lamp": lamps.names[row], "error": errors[row], "uv_error": missed[row]}
-            for row in np.argsort(errors)[::-1][:WORST]
-        ],
+        worst=[{"lamp": lamps.names[row], "error": errors[row]} for row in np.argsort(errors)[::-1][:WORST]],
         calibration=[
             {"expected": expected[part].mean(), "measured": errors[part].mean()}
             for part in np.array_split(np.argsort(expected, kind="stable"), THIRDS)

@@ -26,7 +26,7 @@ from uplift.colorimetry.srgb import hex_codes, to_display_codes
 from uplift.common.arrays import Array
 from uplift.lab.timing import time_calls
 from uplift.lookup import Cube, load
-from uplift.lookup.light_errors import NORMAL_RADIUS, lab_errors
+from uplift.lookup.light_errors import lab_errors
 from uplift.lookup.metamer_bounds import Bounds, bounds
 from uplift.report.look_page import page
 from uplift.samples import sample_path
@@ -101,7 +101,7 @@ def method(cube: Cube, rgb: Array, found: Bounds) -> dict[str, Any]:
 
 
 def likely(name: str) -> Iterator[dict[str, Any]]:
-    """Yield the shares of held-out materials in the likely region and in that of normal errors, by light."""
+    """Yield the share of held-out materials in the likely region, by light."""
     pairs = other_halves(name, dim=32, coefficients=COEFFICIENTS)
     for each in map(light, LIKELY_LIGHTS):
         distances, radii = [], []
@@ -118,7 +118,6 @@ def likely(name: str) -> Iterator[dict[str, Any]]:
             "light": each.name,
             "materials": len(distance) // SPLITS,
             "inside": (distance <= radius).mean(),
-            "normal": (distance <= NORMAL_RADIUS).mean(),
             "radius": [radius.min(), radius.max()],
         }
 

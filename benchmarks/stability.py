@@ -86,13 +86,12 @@ def summary(title: str, part: str, changes: list[dict[str, Any]]) -> dict[str, A
     """Summarise the changed atlases whose descriptions have a part."""
     kind = [one for one in changes if part in one["change"]]
     worst = max(kind, key=lambda one: one["moved"])
-    radii = ("rgb_radius", "lab_radius")
     return {
         "change": title,
         "builds": len(kind),
         "moved": sum(one["moved"] for one in kind) / len(kind),
         "most_moved": {"share": worst["moved"], "change": worst["change"]},
-        **{key: None if worst[key] is None else max(one[key] for one in kind) for key in radii},
+        "lab_radius": None if worst["lab_radius"] is None else max(one["lab_radius"] for one in kind),
         "delta_e": max(one["delta_e_most"] for one in kind),
         "rms": max(one["rms_mean"] for one in kind),
     }

@@ -146,9 +146,7 @@ def time_textures(cube: Path, size: int, options: tuple[str, ...], runs: int) ->
         return {
             "options": " ".join(options) or "none: spectra at 81 wavelengths",
             "size": size,
-            "megapixels": size**2 / 1e6,
             "seconds": wall,
-            "rate": size**2 / wall.median / 1e6,
             "written_mb": target.stat().st_size / 1e6,
             "peak_mb": megabytes,
         }

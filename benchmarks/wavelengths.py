@@ -190,13 +190,7 @@ def tables(lights: tuple[str, ...], comparison: Mapping[str, Errors]) -> Iterato
 
 def spread(ratios: Array) -> Row:
     """Return the median, smallest and largest of ratios over `COUNTS`."""
-    low = int(ratios.argmin())
-    return {
-        "median": float(np.median(ratios)),
-        "min": float(ratios[low]),
-        "min_count": COUNTS[low],
-        "max": float(ratios.max()),
-    }
+    return {"median": float(np.median(ratios)), "min": float(ratios.min()), "max": float(ratios.max())}
 
 
 # --- pictures ---
