@@ -36,7 +36,6 @@ from uplift.fit.families import LENGTH, NUGGET, shipped_library
 from uplift.lab.chart.measure import select_methods
 from uplift.lab.chart.method import make_task
 from uplift.lab.study import held_out
-from uplift.lab.study.held_out import HoldoutSplit
 from uplift.lookup import Cube
 from uplift.report.measures import check_calibration
 
@@ -50,7 +49,6 @@ PARTS = (2, 4, 10)
 """Parts of the mixture, of which cubes know all but one."""
 LIBRARY_SETS = tuple(name for names in FAMILIES.values() for name in names)
 PUBLISHED = ("otsu2018", "mallett2019", "smits1999")
-Splits = tuple[HoldoutSplit, ...]
 Pairs = list[tuple[Cube, Materials]]
 """Cubes and the materials that they are queried for."""
 
@@ -115,7 +113,7 @@ def at_entries(name: str) -> Iterator[Row]:
         yield {"atlas": name, "cube": label, "megabytes": size / 1e6, **errors(cube.reflectance(some.rgb), some)}
 
 
-def pooled(splits: Splits, method: str) -> Array:
+def pooled(splits: tuple[held_out.HoldoutSplit, ...], method: str) -> Array:
     """Mean rms, then mean ΔE00 under each light, over the splits; splits of one set differ by one entry at most."""
     return np.mean([split.errors[method].means() for split in splits], axis=0)
 

@@ -33,7 +33,6 @@ from uplift.samples import sample_path
 from uplift.viz.figure import figure_text, new_figure, show_image, write_png
 from uplift.viz.plots import plot_bounds
 
-ATLAS = MACBETH
 CUBE = CUBES / "moments-16-macbeth.uplift"
 LIGHTS = ("A", "FL11", "HP1", "LED-RGB1")
 PICTURE = DOCS / "looks" / "regions.png"
@@ -55,7 +54,7 @@ PIXELS, SPP = 220, 256
 
 def main() -> None:
     """Measure and store."""
-    cube, atlas = load(CUBE), read_atlas(ATLAS)
+    cube, atlas = load(CUBE), read_atlas(MACBETH)
     own = cube.data.sensor
     rgb, drawn = own.rgb(resample(atlas, own.wavelengths).values), own.decode(DRAWN)
     lights = [light(name, own.observer, *own.range) for name in LIGHTS]
