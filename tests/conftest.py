@@ -1,7 +1,6 @@
 """Fixtures of many tests. Builds are slow, so cubes are built once per run or read from ``cubes/``."""
 
 import os
-import warnings
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,6 +9,7 @@ import pytest
 from hypothesis import settings
 
 import uplift
+from tests.helpers import quiet_build
 from tests.process_state import kept_process_state
 from uplift.colorimetry import observer
 from uplift.colorimetry.sensor import Sensor
@@ -65,17 +65,13 @@ def sensor() -> Sensor:
 @pytest.fixture(scope="session")
 def macbeth_cube() -> Cube:
     """The ColorChecker at dim 32 with debug information, built once per run."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
-        return uplift.build(MACBETH, dim=32, debug=True)
+    return quiet_build(MACBETH, dim=32, debug=True)
 
 
 @pytest.fixture(scope="session")
 def cyan_cube() -> Cube:
     """The ColorChecker at dim 8, built once per run: cyan lies outside its space."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
-        return uplift.build(MACBETH, dim=8)
+    return quiet_build(MACBETH, dim=8)
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,4 @@
-"""Assertions on errors and warnings by their stable codes; cubes with changed or absent points."""
+"""Assertions on errors and warnings by their stable codes; quiet builds; cubes with changed or absent points."""
 
 import contextlib
 import warnings
@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+import uplift
 from uplift.common.errors import UpliftError, UpliftWarning
 from uplift.cube import CubeData
 from uplift.cube.file import POINTS
 from uplift.lattice import ABSENT_VALUES
+from uplift.lookup import Cube
 
 
 @contextlib.contextmanager
@@ -32,6 +34,13 @@ def warns(*codes: str) -> Iterator[list[UpliftWarning]]:
         yield found
     found += [each.message for each in caught if isinstance(each.message, UpliftWarning)]
     assert sorted(each.code for each in found) == sorted(codes)
+
+
+def quiet_build(*args: Any, **options: Any) -> Cube:
+    """Build a cube without the warnings about its entries."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)
+        return uplift.build(*args, **options)
 
 
 def with_points(data: CubeData, **arrays: Any) -> CubeData:

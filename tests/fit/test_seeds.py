@@ -4,8 +4,6 @@ that an atlas needs.
 Cells of the lattice of 6³ are 20 to 60 ΔE*ab long, so that corners are far from their entries; those of 64³ are near.
 """
 
-import warnings
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -14,6 +12,7 @@ from hypothesis.extra.numpy import arrays
 
 import uplift
 from tests.conftest import MACBETH
+from tests.helpers import quiet_build
 from uplift.atlas import on_grid
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_1976, delta_e_spectra, rgb_to_lab
@@ -103,9 +102,7 @@ def stage(sensor):
 def test_lattice_error_predicts_the_error_of_the_cube(stage, sensor, seed_corners):
     """The lattice of the cube is evaluated at the entries without their boxes."""
     problem, prior, entries = stage
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
-        data = uplift.build(MACBETH, dim=16, seed_corners=seed_corners).data
+    data = quiet_build(MACBETH, dim=16, seed_corners=seed_corners).data
     trial = lattice_error(problem, data.lattice, prior, FULL_ENTRY if seed_corners else HALF_ENTRY, entries)
     corners, weights = data.lattice.corners(entries.rgb)
     spectra = reflectance(data.model, data.points.coefficients, sensor.wavelengths)

@@ -1,16 +1,13 @@
 """Cubes built for a scene: the answers of the complete cube to its colours, and errors for all others."""
 
-import warnings
-
 import numpy as np
 import pytest
 from PIL import Image
 
-import uplift
 from tests.conftest import ATLASES, MACBETH
-from tests.helpers import near_black, raises, with_absent_points
+from tests.helpers import near_black, quiet_build, raises, with_absent_points
 from tests.io.texture.conftest import PHOTO, WAVELENGTHS, planes, write_exr
-from uplift.common.errors import ColourError, UpliftWarning
+from uplift.common.errors import ColourError
 from uplift.cube import digest
 from uplift.io.scene_colours import Images
 from uplift.lattice import Status
@@ -22,9 +19,7 @@ from uplift.report.regression import compare_rebuilt
 @pytest.fixture(scope="module")
 def scene_cube():
     """The ColorChecker at dim 32, for the colours of a photograph only."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UpliftWarning)
-        return uplift.build(MACBETH, dim=32, debug=True, scene=PHOTO)
+    return quiet_build(MACBETH, dim=32, debug=True, scene=PHOTO)
 
 
 @pytest.fixture(scope="module")
@@ -32,11 +27,6 @@ def photo_colours(scene_cube):
     """(n, 3) distinct linear RGB of the photograph, as read by Pillow."""
     codes = np.asarray(Image.open(PHOTO)).reshape(-1, 3)
     return scene_cube.decode(np.unique(codes, axis=0)[::5])
-
-
-def points_of(cube, *paths, encoding="auto", out_of_gamut="clip"):
-    data = cube.data
-    return Images(paths, encoding, out_of_gamut).required_points(data.entry_boxes, data.sensor, lambda done: None)
 
 
 def test_points_are_those_of_the_complete_cube(scene_cube, macbeth_cube):
@@ -77,12 +67,14 @@ def test_an_error_quotes_the_first_colour_that_is_not_covered(small_cube):
 
 
 def test_all_images_of_a_scene_are_read_and_decoded(plain_cube, tmp_path):
+    data = plain_cube.data
     strange = np.array([[[np.nan, 2, -1], [0, 1, 0]]], np.float32)  # clamped as in textures
     light = write_exr(tmp_path / "light.exr", planes(strange))
     Image.fromarray(np.full((2, 2, 3), 128, np.uint8)).save(tmp_path / "grey.png")
     for encoding, value in (("auto", plain_cube.decode(128)), ("linear", 128 / 255)):
-        points = points_of(plain_cube, light, tmp_path / "grey.png", encoding=encoding)
-        corners, _ = plain_cube.data.lattice.corners(np.array([[0, 1, 0], [value] * 3]))
+        images = Images((light, tmp_path / "grey.png"), encoding, "clip")
+        points = images.required_points(data.entry_boxes, data.sensor, lambda done: None)
+        corners, _ = data.lattice.corners(np.array([[0, 1, 0], [value] * 3]))
         np.testing.assert_array_equal(np.flatnonzero(points), np.unique(corners))
 
 

@@ -3,7 +3,6 @@
 import dataclasses
 import inspect
 import re
-import warnings
 
 import numpy as np
 import pytest
@@ -13,22 +12,16 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 import uplift
 from tests.conftest import MACBETH
-from tests.helpers import raises, warns
+from tests.helpers import quiet_build, raises, warns
 from uplift.atlas import Atlas, Entry, on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_rgb, delta_e_spectra
-from uplift.common.errors import AtlasError, OptionError, UnknownNameError, UpliftWarning
+from uplift.common.errors import AtlasError, OptionError, UnknownNameError
 from uplift.cube import digest
 from uplift.lattice import Status
 from uplift.pipeline.options import Options, check_memory
 
 GRID = observer.grid()
-
-
-def quietly(*args, **options):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UpliftWarning)
-        return uplift.build(*args, **options)
 
 
 def delta_e(cube, rgb, mode):
@@ -44,7 +37,7 @@ OPTIONS = [{"dim": 48}, {"model": "sigmoid"}, {"coefficients": 3}, {"coefficient
 @pytest.mark.parametrize("options", [*OPTIONS, {"axis": "linear"}], ids=str)
 def test_every_point_is_fitted(atlas, options):
     """All points are within 1e-4, computed from the stored coefficients only."""
-    data = quietly(atlas, **{"dim": 12, **options}).data
+    data = quiet_build(atlas, **{"dim": 12, **options}).data
     spectra = data.model.to_reflectance(data.model.from_storage(data.points.coefficients) @ data.model.basis(GRID).T)
     assert np.abs(data.sensor.rgb(spectra) - data.lattice.points).max() <= 1e-4
     assert Status.UNFITTED not in data.points.status
@@ -120,7 +113,7 @@ def test_duplicate_entries_are_warned_about_and_the_first_is_used():
 
 def test_entries_have_more_coefficients_than_nodes():
     """The nodes, and interpolated coefficients, are those of a build with as many."""
-    more, same = (quietly(MACBETH, dim=4, entry_coefficients=count).data for count in (17, 9))
+    more, same = (quiet_build(MACBETH, dim=4, entry_coefficients=count).data for count in (17, 9))
     assert (more.atlas.spectra.model.count, more.model.count) == (17, 9)
     assert same.atlas.spectra.model == same.model
     np.testing.assert_array_equal(more.points.coefficients, same.points.coefficients)
@@ -132,7 +125,7 @@ def test_entries_have_more_coefficients_than_nodes():
 
 @pytest.fixture(scope="session")
 def in_order():
-    return quietly(MACBETH, dim=5).data
+    return quiet_build(MACBETH, dim=5).data
 
 
 @settings(max_examples=3, phases=[Phase.generate])
@@ -140,7 +133,7 @@ def in_order():
 def test_the_order_of_the_atlas_changes_only_the_order_of_its_table(in_order, order):
     """Points are equal bit by bit, except for the row of their entry; the table is equal up to rounding."""
     spectra = read_atlas(MACBETH)
-    shuffled = quietly(Atlas(tuple(spectra.entries[row] for row in order)), dim=5).data
+    shuffled = quiet_build(Atlas(tuple(spectra.entries[row] for row in order)), dim=5).data
     for name in ("coefficients", "rgb", "distance", "status", "standard_error"):
         assert getattr(shuffled.points, name).tobytes() == getattr(in_order.points, name).tobytes()
     assert shuffled.provenance["prior"] == in_order.provenance["prior"]
@@ -155,9 +148,9 @@ def test_the_order_of_the_atlas_changes_only_the_order_of_its_table(in_order, or
 def test_builds_do_not_depend_on_batches(monkeypatch):
     """In a wide gamut, where some points need many iterations."""
     options = {"dim": 7, "space": "ITU-R BT.2020"}
-    as_it_is = quietly(MACBETH, **options).data
+    as_it_is = quiet_build(MACBETH, **options).data
     monkeypatch.setattr("uplift.fit.batch.CPU_ROWS", (1024, 256))
-    assert digest(quietly(MACBETH, **options).data) == digest(as_it_is)
+    assert digest(quiet_build(MACBETH, **options).data) == digest(as_it_is)
 
 
 def test_builds_do_not_depend_on_threads():
@@ -166,7 +159,7 @@ def test_builds_do_not_depend_on_threads():
     digests = set()
     for threads in (1, 4):
         with threadpool_limits(threads, user_api="blas"):
-            digests.add(digest(quietly(spectra, dim=3).data))
+            digests.add(digest(quiet_build(spectra, dim=3).data))
             assert {pool["num_threads"] for pool in threadpool_info() if pool["user_api"] == "blas"} == {threads}
     assert len(digests) == 1
 

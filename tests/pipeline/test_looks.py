@@ -1,13 +1,11 @@
 """Looks of files and builds: met exactly, recorded, rebuilt; refused where they contradict or cannot be met."""
 
-import warnings
-
 import numpy as np
 import pytest
 
 import uplift
 from tests.conftest import MACBETH
-from tests.helpers import raises, warns
+from tests.helpers import quiet_build, raises, warns
 from uplift import Look, LookError, read_looks
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import display_sensors, light
@@ -20,22 +18,16 @@ LOOKS = (RED, Look("#40a060", {"FL11": "#50a050"}), Look([0.5, 0.3, 0.2], {"A": 
 IMPOSSIBLE = Look("#4060a0", {"A": "#5060a0"}, name="dusk")
 
 
-def quietly(*args, **options):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uplift.UpliftWarning)
-        return uplift.build(*args, **options)
-
-
 @pytest.fixture(scope="module")
 def cubes():
     """The ColorChecker without and with looks."""
-    return quietly(MACBETH, dim=6), quietly(MACBETH, dim=6, looks=LOOKS)
+    return quiet_build(MACBETH, dim=6), quiet_build(MACBETH, dim=6, looks=LOOKS)
 
 
 @pytest.fixture(scope="module")
 def bare():
     """Looks without an atlas."""
-    return quietly(dim=4, prior="smooth", looks=[*LOOKS, IMPOSSIBLE])
+    return quiet_build(dim=4, prior="smooth", looks=[*LOOKS, IMPOSSIBLE])
 
 
 def distances(cube, looks):
@@ -141,7 +133,7 @@ def test_invalid_looks_are_refused(arguments, code):
 )
 def test_contradicting_looks_are_refused(looks, code):
     with raises(LookError, code):
-        quietly(MACBETH, dim=2, prior="smooth", looks=looks)
+        quiet_build(MACBETH, dim=2, prior="smooth", looks=looks)
 
 
 def test_look_that_no_reflectance_has_by_day_is_refused():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import uplift
-from tests.pipeline.test_build import quietly
+from tests.helpers import quiet_build
 from uplift.atlas import Atlas, Entry, read_atlas
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import on_range
@@ -29,7 +29,7 @@ def infrared():
     """Cube to 1000 nm of a leaf, and of the same colours cut short at 700 nm, but brighter."""
     short = np.arange(400, 701, 10.0)
     entries = (Entry("leaf", MEASURED, leaf(MEASURED)), Entry("short", short, 2 * leaf(short)))
-    return quietly(Atlas(entries), dim=4, longest=1000)
+    return quiet_build(Atlas(entries), dim=4, longest=1000)
 
 
 def test_entries_have_their_own_values_where_measured(infrared):
@@ -51,9 +51,8 @@ def test_entries_cut_short_continue_as_constants(infrared):
 @pytest.mark.parametrize(("step", "model"), [(1, "sigmoid"), (10, "moments")])
 def test_steps_change_spectra_little_and_all_meet_the_colour(step, model):
     atlas = read_atlas("macbeth")
-    usual, other = (
-        quietly(atlas, dim=3, model=model, prior="smooth", shortest=360, longest=830, step=each) for each in (5, step)
-    )
+    options = {"dim": 3, "model": model, "prior": "smooth", "shortest": 360, "longest": 830}
+    usual, other = (quiet_build(atlas, **options, step=each) for each in (5, step))
     assert len(other.wavelengths) == 470 / step + 1
     assert other.data.points.distance.max() <= 1e-4
     at, colours = np.arange(400, 701, 10), np.random.default_rng(0).random((100, 3))
@@ -76,7 +75,7 @@ def test_the_range_survives_the_file_and_spectra_are_constant_outside(infrared, 
 
 def test_everything_that_compares_under_lights_takes_the_range():
     atlas = read_atlas("macbeth")
-    cube = quietly(atlas, dim=4, prior="smooth", shortest=360, longest=830, step=10)
+    cube = quiet_build(atlas, dim=4, prior="smooth", shortest=360, longest=830, step=10)
     assert np.isfinite(cube.standard_error([0.5, 0.2, 0.1], "A"))
     assessed = assess(cube, name="a", size=1, atlas=atlas)
     assert {each.illuminant for each in assessed.lights} >= {"D65", "A"}
