@@ -14,7 +14,7 @@ from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra, lab
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import OptionError, UnknownNameError
-from uplift.cube import CubeData, read, write
+from uplift.cube import read, write
 from uplift.lookup import Cube
 from uplift.lookup.light_errors import LIKELY, lab_errors
 from uplift.report.measures import check_calibration
@@ -93,12 +93,9 @@ def test_colours_far_from_all_entries_are_unlike_the_atlas(small_cube, plain_cub
     assert plain_cube.unlike_atlas([0.2, 0.2, 0.2])
 
 
-def without_left_out(data: CubeData) -> CubeData:
-    return dataclasses.replace(data, atlas=dataclasses.replace(data.atlas, measured=None, left_out=None))
-
-
 def test_a_cube_of_an_earlier_version_has_errors_under_its_own_light_only(small_cube, tmp_path):
-    write(without_left_out(small_cube.data), tmp_path / "old.uplift")
+    atlas = dataclasses.replace(small_cube.data.atlas, measured=None, left_out=None)
+    write(dataclasses.replace(small_cube.data, atlas=atlas), tmp_path / "old.uplift")
     old = Cube(read(tmp_path / "old.uplift"))
     assert old.data.atlas.left_out is None
     assert old.standard_error([0.2, 0.3, 0.4]) == small_cube.standard_error([0.2, 0.3, 0.4])
