@@ -7,7 +7,6 @@ import numpy as np
 import PyOpenColorIO
 import pytest
 
-import uplift
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer, tables
@@ -56,12 +55,6 @@ def test_colours_agree_with_colour_science(sensor):
 def test_srgb_nodes_agree_with_colour_science(dim):
     expected = colour.models.eotf_sRGB(np.linspace(0, 1, dim))
     np.testing.assert_allclose(axis_nodes("srgb", dim), expected, rtol=0, atol=1e-15)
-
-
-@pytest.mark.parametrize("name", ["moments-8", "moments-16"])
-def test_stored_nodes_are_reproduced_exactly(name, repository):
-    nodes = uplift.load(repository / "cubes" / f"{name}.uplift").data.lattice.nodes
-    np.testing.assert_array_equal(axis_nodes("srgb", len(nodes)), nodes)
 
 
 @pytest.mark.parametrize(

@@ -74,13 +74,6 @@ def with_value(value, place=7):
     return change
 
 
-def test_an_existing_file_is_replaced_with_force_only(data, path, content):
-    with raises(OutputError, "file-exists"):
-        write(data, path)
-    write(data, path, force=True)
-    assert path.read_bytes() == content
-
-
 def test_missing_files_folders_and_devices_are_refused(tmp_path):
     refused(tmp_path / "none.uplift", "file-not-found")
     for path in (tmp_path, "/dev/zero"):

@@ -9,11 +9,7 @@ from tests.conftest import ATLASES
 from tools import ship_library
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
-from uplift.fit.base import learn_base
 from uplift.fit.families import FILE, LENGTH, NUGGET, FamilySamples, families_with, krige_families, learn_relevance
-from uplift.fit.problem import Problem
-from uplift.fit.solver import solve
-from uplift.models import Moments
 
 RNG = np.random.default_rng(5)
 LIGHTS = [observer.light(name) for name in ("A", "FL11")]
@@ -37,17 +33,6 @@ def test_the_shipped_file_is_the_output_of_the_tool(tmp_path):
             else:
                 np.testing.assert_array_equal(new[name], shipped[name], err_msg=name)
     assert written.stat().st_size < 1_200_000
-
-
-@pytest.mark.parametrize(("space", "stored"), [("sRGB", True), ("ITU-R BT.2020", True), ("Display P3", False)])
-def test_tables_of_usual_spaces_are_stored(monkeypatch, space, stored):
-    """A table that is not stored is solved."""
-    solved = []
-    monkeypatch.setattr(
-        "uplift.fit.base.solve", lambda *given, **options: solved.append(given) or solve(*given, **options)
-    )
-    learn_base(Problem(observer.sensor(space), Moments()))
-    assert bool(solved) != stored
 
 
 @pytest.mark.parametrize(("atlas", "families"), [("macbeth", ("checker",)), ("cie2017", ("cie2017",))])

@@ -58,18 +58,6 @@ def test_the_lattice_has_no_weight_at_an_entry():
         np.testing.assert_allclose(lattice_weight, 0, rtol=0, atol=1e-7)
 
 
-def test_the_lattice_has_all_weight_on_the_face_of_a_box():
-    found = boxes(np.array([[0.2, 0.3, 0.4]]))
-    low, high = found.faces
-    _, _, lattice_weight, exit_rgb = found.find(np.array([[low[0, 0], 0.3, 0.4], [0.2, high[0, 1], 0.41]]))
-    np.testing.assert_allclose(lattice_weight, 1)
-    np.testing.assert_allclose(exit_rgb[0], [low[0, 0], 0.3, 0.4])
-
-
-def test_no_entries_have_no_boxes():
-    assert not boxes(np.zeros((0, 3))).find(np.full((2, 3), 0.5)).rows.size
-
-
 def test_touched_cells_are_those_of_boxes():
     found = boxes(np.array([[0.2, 0.3, 0.4]]))
     rgb = np.random.default_rng(0).random((500, 3))

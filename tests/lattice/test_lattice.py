@@ -34,13 +34,6 @@ def test_weights_are_a_partition_of_unity_and_reproduce_the_colour(rgb):
     np.testing.assert_allclose((weights[:, :, None] * UNEVEN.points[points]).sum(axis=1), rgb, atol=1e-14)
 
 
-def test_a_point_has_all_weight_at_its_colour():
-    points, weights = UNEVEN.corners(UNEVEN.points)
-    owners = points[np.arange(UNEVEN.size), weights.argmax(axis=1)]
-    np.testing.assert_array_equal(owners, np.arange(UNEVEN.size))
-    np.testing.assert_array_equal(weights.max(axis=1), 1)
-
-
 def test_neighbours_are_those_within_one_step():
     around, inside = UNEVEN.neighbours(np.arange(UNEVEN.size))
     position = UNEVEN.position(np.arange(UNEVEN.size))

@@ -75,13 +75,6 @@ def test_spectra_of_the_rim_have_the_chromaticities_of_the_knots(locus):
     np.testing.assert_allclose(chromaticity(rim @ RADIOMETRY), lattice.knots, atol=1e-12)
 
 
-def test_single_wavelengths_are_knots(locus):
-    """The convex polygon has none between 575 and 610 nm."""
-    power = locus[1][:, np.searchsorted(observer.grid(), range(450, 635, 5))]
-    alone = (power > 0) & (power == locus[1].sum(axis=1, keepdims=True))
-    assert (alone.sum(axis=0) == 1).all()
-
-
 def test_all_mixtures_of_wavelengths_lie_within_the_bend(locus):
     visible = np.flatnonzero(RADIOMETRY.sum(axis=1) > 1e-6)
     first, second = np.meshgrid(visible, visible)

@@ -1,7 +1,5 @@
 """Bulk queries agree with numpy, for all shapes, sizes and numbers of threads."""
 
-import pickle
-
 import numpy as np
 import pytest
 
@@ -90,11 +88,3 @@ def test_invalid_wavelengths_counts_and_threads_are_refused(small_cube):
     for options in ({"count": 12}, {"threads": 0}):
         with raises(OptionError, "option"):
             bulk.coefficients(small_cube, **options)
-
-
-def test_pickled_samplers_keep_their_types(sample):
-    """Without the 64-bit mode of JAX, arrays of float64 would come back as float32."""
-    copy = pickle.loads(pickle.dumps(sample))
-    assert [array.dtype for array in copy.grid] == [array.dtype for array in sample.grid]
-    rgb = np.random.default_rng(0).random((100, 3))
-    np.testing.assert_array_equal(copy(rgb), sample(rgb))

@@ -13,7 +13,6 @@ from tests.helpers import raises
 from uplift.common.errors import OptionError, UnknownNameError
 from uplift.models import Moments, Sigmoid, evaluate, from_description
 from uplift.models.moments import WARPS, multipliers_of_rounded
-from uplift.models.sigmoid import evaluate_unscaled
 
 GRID = np.arange(380.0, 781.0, 5.0)
 LIMIT = 2e-7
@@ -119,12 +118,6 @@ def test_spectra_are_constant_outside_their_range(model):
     ends = model.to_reflectance(multipliers @ model.basis([300, 380, 780, 900]).T)
     np.testing.assert_array_equal(ends[:, 0], ends[:, 1])
     np.testing.assert_array_equal(ends[:, 2], ends[:, 3])
-
-
-def test_unscaled_sigmoid_agrees_with_the_model(sensor):
-    expected = Sigmoid().to_reflectance(sensor.wavelengths**2 * 1e-5 - sensor.wavelengths * 1e-2 + 2)
-    found = evaluate_unscaled(np.array([[1e-5, -1e-2, 2]]), sensor.wavelengths)
-    np.testing.assert_allclose(found, expected[None], atol=1e-12)
 
 
 def change_by_rounding(model, multipliers, sensor):

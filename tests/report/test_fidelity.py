@@ -122,18 +122,6 @@ def test_crowding_matches_brute_force(crowded_cube):
     assert found.lost == ()
 
 
-def test_entry_with_the_colour_of_an_earlier_one_is_lost(lossy_cube):
-    found = assess(lossy_cube, "lossy.uplift", 1, None, ("A",)).crowding
-    assert found.lost == (("über", "grey"),)
-    assert set(found.entries.names) == {"grey", "über"}
-    assert (found.distances.tolist(), set(found.nearest)) == ([0, 0], {"grey", "über"})
-    widths = zip(found.entries.half_width, found.entries.half_width_codes, strict=True)
-    half_width = dict(zip(found.entries.names, widths, strict=True))
-    assert half_width["über"] == (0, 0)
-    assert half_width["grey"][0] == 0.5
-    assert half_width["grey"][1] > 10
-
-
 def test_calibration_against_an_unknown_atlas(small_cube, repository):
     other = uplift.read_atlas(repository / "atlases" / "cie2017.txt")
     found = assess(small_cube, "small.uplift", 1, other, ("D65", "FL11", "A"))

@@ -21,27 +21,15 @@ def test_samples_are_copied_once(tmp_path):
     assert all(path.read_bytes() == sample_path(path.name).read_bytes() for path in copies)
 
 
-def test_other_files_of_the_same_name_stay_without_force(tmp_path):
-    (tmp_path / "wood.png").write_text("mine")
-    with raises(OutputError, "file-exists"):
-        copy_samples(tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == ["wood.png"]
-    copy_samples(tmp_path, force=True)
-    assert (tmp_path / "wood.png").read_bytes() == sample_path("wood.png").read_bytes()
-
-
 def test_folders_that_cannot_be_made_are_refused(tmp_path):
     with raises(OutputError, "output"):
         copy_samples(tmp_path / "no" / "such")
 
 
-def pixels(path):
-    return OpenImageIO.ImageBuf(str(path)).get_pixels(OpenImageIO.FLOAT)
-
-
 def test_the_still_life_holds_the_colorchecker(sensor):
     """The patches of the chart in the picture have the colours of the atlas, to half a code."""
-    picture, atlas = pixels(sample_path("still-life.png")), read_atlas("macbeth")
+    picture = OpenImageIO.ImageBuf(str(sample_path("still-life.png"))).get_pixels(OpenImageIO.FLOAT)
+    atlas = read_atlas("macbeth")
     for number, colour in enumerate(np.clip(sensor.rgb(on_grid(atlas, sensor.wavelengths)), 0, 1)):
         row, column = divmod(number, 6)
         np.testing.assert_allclose(picture[188 + 22 * row, 352 + 22 * column], encode(colour), atol=0.51 / 255)

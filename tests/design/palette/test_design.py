@@ -186,15 +186,6 @@ def designed(metamers, model):
     return design(dataclasses.replace(metamers, materials=(*metamers.materials, given)), model)
 
 
-def test_an_exported_atlas_has_the_designed_spectra(designed, tmp_path):
-    for name in ("out.txt", "out.csv"):
-        assert write_designed(designed, tmp_path / name) == 2
-        back = uplift.read_atlas(tmp_path / name)
-        assert back.names == ("fox", "moss")
-        for entry, row in zip(back.entries, designed.reflectances, strict=False):
-            np.testing.assert_array_equal(entry.values, row)
-
-
 def test_materials_outside_the_range_of_atlases_are_left_out(designed, tmp_path):
     wild = dataclasses.replace(designed, reflectances=designed.reflectances - [[0.2], [0], [0]])
     with warns("entry-skipped"):

@@ -14,7 +14,6 @@ from tests.io.texture.conftest import WAVELENGTHS, channels, planes, read_channe
 from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.spaces import find_space
 from uplift.common.errors import ColourError, TextureError
-from uplift.common.progress import Progress
 from uplift.cube import EntrySpectra
 from uplift.io import texture
 from uplift.io.mitsuba.texels import read_colours
@@ -129,24 +128,6 @@ def test_several_parts_tiles_windows_and_other_channels(kind, band, spectral, tm
     for number, colours in ((0, rgb), (2, rgb[::-1])):
         found = read_channels(tmp_path / "out.exr", spectral.channels, number)
         np.testing.assert_allclose(found, spectral.cube.reflectance(colours, WAVELENGTHS), rtol=0, atol=1e-6)
-
-
-def test_bands_are_bounded_and_do_not_change_the_result(spectral, colours, tmp_path, monkeypatch):
-    source = write_exr(tmp_path / "in.exr", planes(np.tile(colours, (5, 1, 1))))
-    texture.convert(spectral, source, tmp_path / "whole.exr")
-    monkeypatch.setattr("uplift.io.texture.image.MAX_BAND_BYTES", 1)
-    monkeypatch.setattr("uplift.io.texture.writer.MAX_BAND_BYTES", 1)
-    shapes, rows = [], []
-
-    def sample(rgb):
-        shapes.append(rgb.shape)
-        return spectral.sample(rgb)
-
-    bands = replace(spectral, sample=sample)
-    texture.convert(bands, source, tmp_path / "bands.exr", progress=rows.append)
-    assert (tmp_path / "bands.exr").read_bytes() == (tmp_path / "whole.exr").read_bytes()
-    assert shapes == [(16, 30, 3)] * 6 + [(4, 30, 3)]
-    assert rows[-1] == Progress("rows", 100, 100)
 
 
 ZERO = np.zeros((4, 5), np.float32)

@@ -7,8 +7,7 @@ import pytest
 
 from tests.lab.chart.conftest import BATCHES, method_of
 from uplift.colorimetry.lights import CHART_LIGHTS
-from uplift.common.progress import Progress
-from uplift.lab.chart.measure import MAX_CLAIM_RATIO, SLOW_STEP, measure_method, measure_methods
+from uplift.lab.chart.measure import MAX_CLAIM_RATIO, SLOW_STEP, measure_method
 from uplift.lab.chart.method import PreparedMethod, ours
 from uplift.lab.chart.table import State
 from uplift.lab.study.held_out import spectrum_errors
@@ -146,11 +145,3 @@ def test_reference_sensor_is_the_stated_sensor_at_1_nm(small_task):
     assert numbers["round_trip_max"] < 1e-6
     assert numbers["coarse_round_trip_mean"] > 1
     assert 1e-3 < measure_method(method_of(exact, **free), small_task).numbers["round_trip_mean"] < 0.1
-
-
-def test_methods_are_measured_in_turn_and_broken_ones_are_rows(small_task):
-    events = []
-    chart = measure_methods([method_of(grey), method_of(nan)], small_task, events.append)
-    assert events == [Progress("methods", 1, 2), Progress("methods", 2, 2)]
-    assert [row.state for row in chart.results] == [State.MEASURED, State.BROKEN]
-    assert chart.measured == chart.results[:1]

@@ -15,9 +15,8 @@ from uplift.common.processes import call_in_child
 from uplift.fit.families import families_with
 from uplift.lab.chart import mitsuba3
 from uplift.lab.chart.cubes import CubeOptions, built_cube
-from uplift.lab.chart.measure import METHODS, QUICK_METHODS, select_methods
-from uplift.lab.chart.method import RANGE, NotInstalledError, edges, make_task
-from uplift.lab.chart.picture import COLOURS
+from uplift.lab.chart.measure import METHODS, select_methods
+from uplift.lab.chart.method import NotInstalledError, edges, make_task
 
 
 def shipped(repository, *names):
@@ -62,13 +61,6 @@ def prepared(name, task):
 @pytest.fixture(scope="module")
 def colours():
     return np.concatenate([np.random.default_rng(4).random((20, 3)), np.eye(3), [[0, 0, 0], [1, 1, 1]]])
-
-
-def test_names_are_unique_and_every_family_has_a_colour():
-    assert len({method.method for method in METHODS}) == len(METHODS)
-    assert {method.family for method in METHODS} == set(COLOURS)
-    assert len(set(COLOURS.values())) == len(COLOURS)
-    assert set(select_methods(QUICK_METHODS)) < set(METHODS)
 
 
 def test_methods_are_selected_by_pattern():
@@ -124,15 +116,6 @@ def test_vectorised_mitsuba_gives_the_reflectances_of_its_table(small_task, colo
     found, expected = call_in_child(vectorised_and_table, small_task, colours, seconds=120)
     for compiled, table in zip(found, expected, strict=True):
         np.testing.assert_allclose(compiled, table, atol=1e-4)
-
-
-def test_reference_sensors_have_the_range_of_the_cie_and_their_white():
-    sensors = {method.reference_sensor() for method in METHODS}
-    assert sorted(sensor.illuminant for sensor in sensors) == ["D65", "D65", "D65", "E"]
-    for sensor in sensors:
-        assert sensor.range == RANGE
-        white = sensor.rgb(np.ones(len(sensor.wavelengths)))
-        np.testing.assert_allclose(white, 1, atol=1e-3)
 
 
 def test_prior_of_cubes_does_not_know_the_unseen_materials(small_task):

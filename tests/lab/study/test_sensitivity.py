@@ -15,7 +15,6 @@ from uplift.lab.study.sensitivity import (
     compare,
     perturb,
     rebuild,
-    study_sensitivity,
 )
 
 LIGHT = observer.light("FL11")
@@ -86,9 +85,3 @@ def test_moved_share_and_radius_by_hand():
     record = Change("", np.zeros(4), delta_e, np.array([[0.0, 1, 2, 3], [9, 5, 4, 9]])).record()
     assert (record["moved"], record["rgb_radius"], record["lab_radius"]) == (0.5, 2, 5)
     assert Change("", np.zeros(1), np.zeros(1), np.ones((2, 1))).record()["rgb_radius"] == 0
-
-
-def test_cube_without_an_atlas_has_no_changes(plain_cube):
-    moves, changes = study_sensitivity(plain_cube, None, 5)
-    assert len(moves) == 3 * len(CONTINUOUS_MODES)
-    assert changes == []
