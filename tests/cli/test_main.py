@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 from rich.cells import cell_len
 from uplift_cli.main import COMMANDS, main
-from uplift_cli.options import Number
+from uplift_cli.options import HELP_ALL, Number
 from uplift_cli.output import progress as progress_module
 from uplift_cli.output.console import make_table, show
 from uplift_cli.output.diagnostics import HINTS
@@ -155,6 +155,14 @@ def commands(group: click.Group = main) -> Iterator[click.Command]:
             yield each
             if isinstance(each, click.Group):
                 yield from commands(each)
+
+
+def test_help_fits_80_columns(monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    for command in (main, *commands()):
+        with click.Context(command, info_name="uplift lights texture") as context:
+            context.meta[HELP_ALL] = True
+            assert max(map(len, command.get_help(context).splitlines())) <= 80, command.name
 
 
 OPTIONS = [(command, param) for command in commands() for param in command.params]

@@ -334,3 +334,9 @@ def test_plot(run, refuse, home, table):
     assert refuse("query", "#ffffff", "--plot", "red.png").code == "file-exists"
     run("query", "--input", table("#cc3319\n#ffffff\n"), "--plot", "red.png", "--force")
     assert (matplotlib.image.imread(home / "red.png").shape) == picture.shape
+
+
+def test_a_light_is_named_once_in_a_line(run, macbeth_cube):
+    lines = run("query", "--cube", macbeth_cube, "0.2", "0.3", "0.4", "--light", "A").stdout.splitlines()
+    named = [line.split().count("A") + line.count("(A)") for line in lines]
+    assert sorted(set(named)) == [0, 1]
