@@ -25,15 +25,7 @@ from uplift.models import reflectance
 from uplift.report.diff_page import mosaic
 from uplift.viz.figure import colour_map, new_figure, show_image, write_figure
 
-RANGES = (
-    (380, 780, 10),
-    (380, 780, 5),
-    (380, 780, 1),
-    (360, 830, 10),
-    (360, 830, 5),
-    (360, 830, 1),
-    (360, 1000, 5),
-)
+RANGES = ((380, 780, 10), (380, 780, 5), (380, 780, 1), (360, 830, 10), (360, 830, 5), (360, 830, 1), (360, 1000, 5))
 """First and last wavelength and step in nm."""
 VISIBLE = np.arange(400, 701, 5)
 DIMS = (16, 32, 64)

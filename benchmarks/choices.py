@@ -33,11 +33,7 @@ CHOICES = (
     Choice("kriging: metric, noise, median, default, corners", (*SHIPPED, "munsell"), (OURS, OURS_SMOOTH)),
     Choice("standard errors: few entries", (*SHIPPED, "munsell"), (OURS, OURS_SMOOTH)),
     Choice("learnt prior: length, spreads, noise, bounds, relevance", (*SHIPPED, "munsell"), (OURS, ALONE)),
-    Choice(
-        "local-linear regression: regressors, criterion and ridge",
-        ("rawtoaces", "cie2017"),
-        (LOCAL_LINEAR,),
-    ),
+    Choice("local-linear regression: regressors, criterion and ridge", ("rawtoaces", "cie2017"), (LOCAL_LINEAR,)),
 )
 
 

@@ -95,10 +95,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 )
 @click.option("--threshold", type=options.NUMBER, default=1e-4, help="Largest residual of a node, |linear RGB|.")
 @options.repeatable(
-    "--scene",
-    "images",
-    "Build only the cells that the colours of this image, or quoted pattern, need",
-    metavar="IMAGE",
+    "--scene", "images", "Build only the cells that the colours of this image, or quoted pattern, need", metavar="IMAGE"
 )
 @click.option(
     "--growth",

@@ -79,10 +79,7 @@ def sensor(
             raise OptionError(f"a camera must not have the name of an RGB space, got '{camera.name}'")
         return camera_sensor(camera, sensor(illuminant=illuminant))
     if isinstance(observer, Camera) or observer in tables.names("camera"):
-        raise OptionError(
-            "a camera in place of an observer has its own RGB space",
-            hint=f'use space="{CAMERA}"',
-        )
+        raise OptionError("a camera in place of an observer has its own RGB space", hint=f'use space="{CAMERA}"')
     rgb_space = tables.rgb_space(space)
     if rgb_space is None:
         from uplift.colorimetry.spaces import look_up_space  # names of OpenColorIO

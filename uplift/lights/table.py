@@ -46,14 +46,7 @@ ARRAYS = {
     "entries.spectra": Stored("E N", low=0),
     "entries.radius": Stored("E", low=0),
 }
-METADATA = {
-    "format": str,
-    "version": int,
-    "space": str,
-    "observer": str,
-    "entries": ENTRIES,
-    "provenance": PROVENANCE,
-}
+METADATA = {"format": str, "version": int, "space": str, "observer": str, "entries": ENTRIES, "provenance": PROVENANCE}
 
 
 @dataclass(frozen=True, eq=False, repr=False)

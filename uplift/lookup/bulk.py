@@ -27,13 +27,7 @@ from uplift.colorimetry.sensor import Sensor, as_rgb
 from uplift.common.arrays import Array, Indices
 from uplift.common.machine import require_memory_of_xla
 from uplift.lattice import EntryBoxes, Lattice
-from uplift.lookup.blocks import (
-    as_coefficient_count,
-    as_colours,
-    as_thread_count,
-    as_wavelengths,
-    blockwise,
-)
+from uplift.lookup.blocks import as_coefficient_count, as_colours, as_thread_count, as_wavelengths, blockwise
 from uplift.lookup.cube import Cube
 from uplift.lookup.interpolate import require_covered
 from uplift.lookup.node_table import Exact, NodeTable, tabulate, tabulate_coefficients

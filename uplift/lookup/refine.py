@@ -168,12 +168,7 @@ def _descend(forward: ForwardMap, multipliers: Array, target: Array) -> Array:
 
 
 def _move(
-    forward: ForwardMap,
-    multipliers: Array,
-    residual: Array,
-    damping: Array,
-    columns: slice | Indices,
-    linear: Array,
+    forward: ForwardMap, multipliers: Array, residual: Array, damping: Array, columns: slice | Indices, linear: Array
 ) -> None:
     """Take one step of some columns with linear part (N, k); steps that do not reduce the residual are rejected.
 

@@ -91,9 +91,7 @@ def blocked_matmul(rows: Any, matrix: Any) -> Any:
     size = max(SINGLE_THREAD_SIZE // matrix.size, 1)
     full = len(rows) // size * size
     np.matmul(
-        rows[:full].reshape(-1, size, rows.shape[1]),
-        matrix,
-        out=product[:full].reshape(-1, size, matrix.shape[1]),
+        rows[:full].reshape(-1, size, rows.shape[1]), matrix, out=product[:full].reshape(-1, size, matrix.shape[1])
     )
     np.matmul(rows[full:], matrix, out=product[full:])
     return product

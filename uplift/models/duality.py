@@ -221,8 +221,7 @@ def multipliers_from_moments(moments: Any, solve: Callable[[Any], tuple[Any, Mas
     if valid.all():
         return multipliers
     raise UpliftError(
-        f"{(~valid).sum()} sets of coefficients are not the moments of any reflectance",
-        code="invalid-moments",
+        f"{(~valid).sum()} sets of coefficients are not the moments of any reflectance", code="invalid-moments"
     )
 
 

@@ -95,9 +95,7 @@ class Moments(Model):
         if self.warp not in WARPS:
             raise unknown_name(str(self.warp), WARPS, "warp")
         if not 0 < self.start < self.end < np.inf:
-            raise OptionError(
-                f"a phase needs 0 < start < end < inf, got start {self.start} and end {self.end}",
-            )
+            raise OptionError(f"a phase needs 0 < start < end < inf, got start {self.start} and end {self.end}")
         if not MIN_COUNT <= self.count <= MAX_COUNT:
             raise OptionError(
                 f"coefficients of the moments model must be in [{MIN_COUNT}, {MAX_COUNT}], "

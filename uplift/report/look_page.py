@@ -79,12 +79,7 @@ def _light(found: Bounds, screen: Sensor) -> dict[str, Any]:
 
 
 def _view(light: Light, to_rgb: Array) -> dict[str, Any]:
-    return {
-        "name": light.name,
-        "xyz": _rounded(light.xyz),
-        "white": _rounded(light.white),
-        "toRgb": _rounded(to_rgb),
-    }
+    return {"name": light.name, "xyz": _rounded(light.xyz), "white": _rounded(light.white), "toRgb": _rounded(to_rgb)}
 
 
 def _written(cube: Cube, rgb: Array) -> str | list[float]:

@@ -10,13 +10,7 @@ from uplift.colorimetry.solid import solid
 from uplift.common.errors import UnknownNameError
 from uplift.common.progress import Progress
 from uplift.lab.study import stability
-from uplift.lab.study.stability import (
-    SYNTHETIC_ATLASES,
-    DesignSpace,
-    RunConfig,
-    run,
-    study_stability,
-)
+from uplift.lab.study.stability import SYNTHETIC_ATLASES, DesignSpace, RunConfig, run, study_stability
 from uplift.lattice import Lattice, axis_nodes
 
 

@@ -234,8 +234,7 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
         entries.append(Entry(material.name, design.palette.sensor.wavelengths, values, description=description))
     if not entries:
         raise PaletteError(
-            "no designed material has reflectances that an atlas can hold",
-            hint="design one with bounds within [0, 1]",
+            "no designed material has reflectances that an atlas can hold", hint="design one with bounds within [0, 1]"
         )
     write_atlas(Atlas(tuple(entries)), path, Header(content="Reflectances designed by uplift palette"), force=force)
     return len(entries)

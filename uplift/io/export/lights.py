@@ -23,12 +23,7 @@ PER_LINE = 27
 
 
 def write_light_program(
-    data: EmissionData,
-    path: str | os.PathLike[str],
-    *,
-    style: str = "c",
-    form: str | None = None,
-    force: bool = False,
+    data: EmissionData, path: str | os.PathLike[str], *, style: str = "c", form: str | None = None, force: bool = False
 ) -> list[Path]:
     """Write an emission table as a program in C or GLSL, as `uplift.io.export.write_program` does for a cube."""
     if style not in STYLES:

@@ -64,10 +64,7 @@ def prepare_jakob_table(task: Task) -> PreparedMethod:
 
 
 def prepare_basis(
-    task: Task,
-    read: Callable[[], tuple[Array, Array]],
-    weights: Callable[[Values], Values],
-    dtype: str = "float64",
+    task: Task, read: Callable[[], tuple[Array, Array]], weights: Callable[[Values], Values], dtype: str = "float64"
 ) -> PreparedMethod:
     """Prepare a method whose spectra are sums of K basis spectra; ``weights`` has shapes (n, 3) to (n, K)."""
     (centres, basis), seconds = stopwatch(read)

@@ -156,9 +156,7 @@ class MomentsStudy:
 
 
 def study_moments(
-    atlases: Mapping[str, Atlas],
-    max_moments: int = DEFAULT_MAX_MOMENTS,
-    progress: ProgressCallback = ignore_progress,
+    atlases: Mapping[str, Atlas], max_moments: int = DEFAULT_MAX_MOMENTS, progress: ProgressCallback = ignore_progress
 ) -> MomentsStudy:
     """Reduce every entry to 0 … ``max_moments`` moments, and reconstruct it, by all four techniques."""
     if not 0 <= max_moments <= MAX_MOMENTS:

@@ -23,16 +23,7 @@ from uplift.scene.wavelengths import meyer, optimise
 from uplift.scene.wavelengths import sampling as setups
 from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, grid, make_setup
 
-__all__ = [
-    "METHODS",
-    "Choice",
-    "Sampling",
-    "choose",
-    "choose_orders",
-    "fit_weights",
-    "grid",
-    "make_setup",
-]
+__all__ = ["METHODS", "Choice", "Sampling", "choose", "choose_orders", "fit_weights", "grid", "make_setup"]
 
 METHODS: Mapping[str, Callable[[RenderSetup, int], Sampling]] = {
     "optimised": optimise.optimise,
