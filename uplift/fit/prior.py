@@ -11,7 +11,7 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_spectra, rgb_to_lab
 from uplift.colorimetry.expected_error import LENGTH, ExpectedError, expected_error
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array, largest
+from uplift.common.arrays import Array, Mask, largest
 from uplift.fit.base import NO_FREEDOM, Base, learn_base, moment_matrix
 from uplift.fit.entries import FittedEntries
 from uplift.fit.kriging import DEFAULT, MIN_ENTRIES, Kernel, Kriging, kernel_sums, krige, learn_kriging, visible_change
@@ -26,9 +26,8 @@ DETERMINED = Kernel(length=6.0, noise=1e-3)
 """Kernel where the colour alone determines the spectrum: it only chooses among solutions."""
 LOOK_VARIANCE = 0.01
 """Variance of the noise of a look relative to that of entries."""
-SHRINK = 0.7
-"""Factor of a deviation that leaves the space of valid coefficients or is `STEEP`, repeated until neither holds."""
-MAX_SHRINKS = 16
+FRACTIONS = np.multiply.accumulate(np.full(16, 0.7))
+"""Of a deviation that leaves the space of valid coefficients or is `STEEP`, the largest of which neither holds."""
 STEEP = 100
 """Multipliers that a deviation must not exceed: beyond them a spectrum is nearly a box, which small changes of its
 coefficients reshape."""
@@ -167,10 +166,18 @@ def blended(model: Model, own: Array, expected: Array, weight: Array) -> Array:
 
 def _bounded(model: Model, expected: Array, deviation: Array, steep: float = STEEP) -> Array:
     """Multipliers (n, C) of expected coefficients plus their deviation (n, C), shrunk as little as is necessary."""
-    multipliers, rows, fraction = np.empty_like(expected), np.arange(len(expected)), 1.0
-    for _ in range(MAX_SHRINKS + 1):
-        multipliers[rows], valid = model.try_from_storage(expected[rows] + fraction * deviation[rows])
-        rows = rows[~valid | ~(largest(np.abs(multipliers[rows])) <= steep)]
-        fraction *= SHRINK
-    multipliers[rows] = model.from_storage(expected[rows])
+
+    def convert(coefficients: Array) -> tuple[Array, Mask]:
+        multipliers, valid = model.try_from_storage(coefficients)
+        return multipliers, valid & (largest(np.abs(multipliers)) <= steep)
+
+    multipliers, kept = convert(expected + deviation)
+    rows = np.flatnonzero(~kept)
+    # c = s + f d with the largest of the fractions f that will do, all of them at once; s alone where none does
+    shrunk = expected[rows, None] + FRACTIONS[:, None] * deviation[rows, None]
+    found, kept = convert(shrunk.reshape(-1, model.count))
+    kept = kept.reshape(shrunk.shape[:2])
+    multipliers[rows] = found.reshape(shrunk.shape)[np.arange(len(rows)), kept.argmax(axis=1)]
+    none = rows[~kept.any(axis=1)]
+    multipliers[none] = model.from_storage(expected[none])
     return multipliers
