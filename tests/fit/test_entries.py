@@ -7,7 +7,7 @@ from scipy.optimize import leastsq
 from tests.conftest import MACBETH
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
-from uplift.colorimetry.delta_e import delta_e_2000, lab
+from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_jacobian
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.fit.entries import fit_entries, minimise, objective
 from uplift.fit.problem import Problem
@@ -79,8 +79,17 @@ def test_fit_of_a_dark_entry_is_continuous_in_the_measurement(sensor, measured):
     assert steps_along_noise(sensor, black, smoothness=0.0).max() >= 50
 
 
+def jacobian(goal, multipliers):
+    """Derivative (m, C) of the residuals at multipliers (C,), row by row of the objective."""
+    x = goal.basis @ multipliers
+    change = goal.model.derivative(x)[:, None] * goal.basis
+    colours = lab_jacobian(goal.lights @ goal.model.to_reflectance(x), goal.whites) @ (goal.lights @ change)
+    own = np.diag(goal.multipliers)
+    return np.concatenate([goal.values * change, goal.weight * colours.reshape(-1, len(own)), own])
+
+
 @pytest.mark.parametrize("model", [Moments(5), Sigmoid()], ids=lambda m: m.name)
-def test_jacobian_equals_central_differences(sensor, measured, model):
+def test_normal_equations_are_those_of_central_differences(sensor, measured, model):
     """Of a dark spectrum too, where L*a*b* is linear."""
     goal = goal_of(problem_of(sensor, model=model))
     colours = goal.colours(measured[0])
@@ -92,7 +101,11 @@ def test_jacobian_equals_central_differences(sensor, measured, model):
             for step in 1e-5 * np.eye(model.count)
         ]
         numeric = [(after - before) / 2e-5 for after, before in around]
-        np.testing.assert_allclose(goal.jacobian(at), np.transpose(numeric), rtol=1e-5, atol=1e-8)
+        plain, residuals = jacobian(goal, at), goal.residuals(at, measured[0], colours)
+        np.testing.assert_allclose(plain, np.transpose(numeric), rtol=1e-5, atol=1e-8)
+        gram, slope = goal.normal_equations(at[None], residuals[None])
+        np.testing.assert_allclose(gram[0], plain.T @ plain, rtol=1e-10, atol=1e-14)
+        np.testing.assert_allclose(slope[0], plain.T @ residuals, rtol=1e-10, atol=1e-14)
 
 
 @pytest.mark.parametrize("model", [Moments(9), Moments(17), Sigmoid()], ids=lambda m: f"{m.name}{m.count}")
@@ -102,7 +115,7 @@ def test_minima_are_those_of_minpack(sensor, measured, model):
     for multipliers, spectrum in zip(found, measured, strict=True):
         given = (spectrum, goal.colours(spectrum))
         theirs, *_ = leastsq(
-            goal.residuals, np.zeros(model.count), given, lambda p, *_: goal.jacobian(p), full_output=True, ftol=1e-8
+            goal.residuals, np.zeros(model.count), given, lambda p, *_: jacobian(goal, p), full_output=True, ftol=1e-8
         )
         ours, other = ((goal.residuals(p, *given) ** 2).sum() for p in (multipliers, theirs))
         assert ours <= other * (1 + 1e-6)

@@ -179,11 +179,11 @@ def match_spectra(model: Moments, wavelengths: Array, reflectances: Array, light
         p, measured = multipliers[block], reflectances[block]
         colours = goal.colours(measured)
         # p − (JᵀJ + μ I)⁻¹ Jᵀ r minimises mean (g − m)² + Σ |w ΔL*a*b*|², linearised
-        residual, jacobian = goal.residuals(p, measured, colours), goal.jacobian(p)
-        matrix = jacobian.mT @ jacobian
+        residual = goal.residuals(p, measured, colours)
+        matrix, slope = goal.normal_equations(p, residual)
         damping = DAMPING * np.trace(matrix, axis1=1, axis2=2) / model.count
         matrix += damping[:, None, None] * np.eye(model.count)
-        trial = p - np.linalg.solve(matrix, jacobian.mT @ residual[..., None])[..., 0]
+        trial = p - np.linalg.solve(matrix, slope[..., None])[..., 0]
         better = (goal.residuals(trial, measured, colours) ** 2).sum(axis=1) < (residual**2).sum(axis=1)
         p[better] = trial[better]
     return multipliers

@@ -6,6 +6,7 @@ needs to be compiled for a few entries, and those that have converged leave the 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,7 +36,7 @@ FIRST_DAMPING = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class Objective:
-    """Residuals of the fit of a measured reflectance (N,), and their derivative.
+    """Residuals of the fit of a measured reflectance (N,), and their normal equations.
 
     ``values`` weighs a difference of spectra, ``weight`` a unit of CIE L*a*b*, ``multipliers`` (C,) the
     multipliers. ``lights`` (L, 3, N) maps spectra to XYZ, and ``whites`` (L, 3) are those of the perfect reflector.
@@ -49,9 +50,25 @@ class Objective:
     weight: float
     multipliers: Array
 
+    @cached_property
+    def basis_products(self) -> Array:
+        """B_kj B_kl (N, C²)."""
+        return np.einsum("kj,kl->kjl", self.basis, self.basis).reshape(len(self.basis), -1)
+
+    @cached_property
+    def light_basis(self) -> Array:
+        """Products (N, 3 L · C) of the rows of the lights with the basis."""
+        rows = self.lights.reshape(-1, len(self.basis))
+        return np.einsum("rk,kj->krj", rows, self.basis).reshape(len(self.basis), -1)
+
+    def xyz(self, spectra: Array) -> Array:
+        """XYZ (…, L, 3) of spectra (…, N) under the lights."""
+        rows = self.lights.reshape(-1, len(self.basis))
+        return (spectra @ rows.T).reshape(*spectra.shape[:-1], *self.lights.shape[:2])
+
     def colours(self, spectra: Array) -> Array:
         """CIE L*a*b* (…, L, 3) of spectra (…, N) under the lights."""
-        return lab((self.lights @ spectra[..., None, :, None])[..., 0], self.whites)
+        return lab(self.xyz(spectra), self.whites)
 
     def residuals(self, multipliers: Array, measured: Array, colours: Array) -> Array:
         """Residuals (…, N + 3 L + C) for measurements (…, N) with their `colours`."""
@@ -66,16 +83,22 @@ class Objective:
             axis=-1,
         )
 
-    def jacobian(self, multipliers: Array) -> Array:
-        """Derivative (…, N + 3 L + C, C) of the residuals; it does not depend on the measurements."""
-        *shape, count = multipliers.shape
-        x = multipliers @ self.basis.T
-        change = self.model.derivative(x)[..., None] * self.basis  # g = S(B p), so ∂g/∂p = S′(B p) B
-        xyz = (self.lights @ self.model.to_reflectance(x)[..., None, :, None])[..., 0]
-        colours = lab_jacobian(xyz, self.whites) @ (self.lights @ change[..., None, :, :])
-        own = np.broadcast_to(np.diag(self.multipliers), (*shape, count, count))
-        change *= self.values
-        return np.concatenate([change, self.weight * colours.reshape(*shape, -1, count), own], axis=-2)
+    def normal_equations(self, multipliers: Array, residuals: Array) -> tuple[Array, Array]:
+        """JᵀJ (n, C, C) and Jᵀf (n, C) of residuals f (n, N + 3 L + C), J = ∂f/∂p, at multipliers p (n, C).
+
+        J itself, which has a row for each residual, is not formed.
+        """
+        x, shape = multipliers @ self.basis.T, (*multipliers.shape, multipliers.shape[1])
+        spectra, lights, own = np.split(residuals, [len(self.basis), residuals.shape[1] - shape[1]], axis=1)
+        # g = S(B p), so ∂g/∂p = S′(B p) B, and ∂XYZ/∂p = M ∂g/∂p of each light
+        change = self.model.derivative(x)
+        xyz_change = (change @ self.light_basis).reshape(len(x), *self.lights.shape[:2], -1)
+        colours = lab_jacobian(self.xyz(self.model.to_reflectance(x)), self.whites) @ xyz_change
+        colours = self.weight * colours.reshape(len(x), -1, shape[1])
+        gram = self.values**2 * (change**2 @ self.basis_products).reshape(shape)
+        gram += colours.mT @ colours + np.diag(self.multipliers**2)
+        slope = self.values * (change * spectra) @ self.basis + (colours.mT @ lights[..., None])[..., 0]
+        return gram, slope + self.multipliers * own
 
 
 def objective(
@@ -114,8 +137,8 @@ class MarquardtState(NamedTuple):
 class Marquardt(BatchSolver):
     """Levenberg and Marquardt's method for a batch of fits in numpy, with Nielsen's damping.
 
-    The option ``jacobian`` maps ``y`` (n, C) to the derivative (n, m, C) of the residuals. Madsen, Nielsen & Tingleff
-    2004, "Methods for non-linear least squares problems", section 3.2.
+    The option ``normal_equations`` maps ``y`` (n, C) and the residuals f (n, m) to JᵀJ and Jᵀf. Madsen, Nielsen &
+    Tingleff 2004, "Methods for non-linear least squares problems", section 3.2.
     """
 
     rtol: float = PRECISION
@@ -132,12 +155,10 @@ class Marquardt(BatchSolver):
         self, fn: Any, y: Any, args: Any, options: Options, state: MarquardtState, tags: Any
     ) -> tuple[Any, MarquardtState, Any]:
         """Take one step in every fit that has not ended; no sum of squares increases."""
-        jacobian = options["jacobian"](y)
-        gram = jacobian.mT @ jacobian
+        gram, slope = options["normal_equations"](y, state.residual)
         diagonal = gram.diagonal(axis1=-2, axis2=-1).max(axis=-1)
         damping = np.where(state.damping > 0, state.damping, FIRST_DAMPING * diagonal)
         # (JᵀJ + μ I) Δy = −Jᵀ f
-        slope = (jacobian.mT @ state.residual[..., None])[..., 0]
         change = -np.linalg.solve(gram + damping[:, None, None] * np.eye(y.shape[-1]), slope[..., None])[..., 0]
         residual, aux = fn(y + change, args)
         before, after = ((each**2).sum(axis=-1) for each in (state.residual, residual))
@@ -170,7 +191,7 @@ def minimise(goal: Objective, measured: Array) -> Array:
         Marquardt(),
         lambda y, rows: (goal.residuals(y, measured[rows], colours[rows]), None),
         np.zeros((len(measured), goal.model.count)),
-        lambda _: {"jacobian": goal.jacobian},
+        lambda _: {"normal_equations": goal.normal_equations},
         MAX_STEPS,
     )
 
