@@ -243,6 +243,17 @@ def test_compiled_code_that_cannot_be_read_is_removed(tmp_path):
     assert b"damaged" not in [entry.read_bytes() for entry in entries]
 
 
+@needs_modes
+def test_compiled_code_of_users_whose_files_their_group_can_write_is_kept(tmp_path):
+    found = []
+    for _ in range(2):
+        done = shell(f"umask 0002; {BUILD} {tmp_path}/cube.uplift", XDG_CACHE_HOME=f"{tmp_path}/cache")
+        assert (done.returncode, done.stderr) == (0, b"")
+        found.append({entry.stat().st_ino for entry in tmp_path.glob("cache/uplift/*-cache")})
+    assert found[0]
+    assert found[0] == found[1]
+
+
 def test_a_missing_device_of_jax_is_no_internal_error(tmp_path):
     done = shell(f"{UPLIFT} build --dim 2 -o {tmp_path}/cube.uplift", JAX_PLATFORMS="cuda")
     assert (done.returncode, b"JAX_PLATFORMS=cuda" in done.stderr) == (2, True)
