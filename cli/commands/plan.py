@@ -1,7 +1,5 @@
 """``uplift plan``: choose cube, wavelengths and texture format for a scene."""
 
-from pathlib import Path
-
 import click
 
 from .. import options
@@ -12,7 +10,7 @@ from ..startup import enable_jit_cache
 
 @click.command("plan")
 @click.argument("scene", metavar="SCENE.toml", type=click.Path())
-@options.output("Plan to write. [default: SCENE.plan.json in the current folder]")
+@options.output("Plan to write. [default: SCENE.plan.json in the folder of the scene]")
 @click.option("--quick", is_flag=True, help="Fewer candidates, and fewer pixels.")
 @options.output_format("table", "json")
 @options.force
@@ -44,18 +42,17 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
     """
     enable_jit_cache()
     from uplift.common.files import check_output, write_text
-    from uplift.scene.plan import plan, read_scene_file
+    from uplift.scene.plan import plan, read_scene_file, summary
     from uplift.scene.plan.candidates import QUICK, SearchGrid
-    from uplift.scene.plan.plan_file import to_json
-    from uplift.scene.plan.summary import HEADINGS, describe_error, front_row, front_rows, notes, verdict
 
     scene_file = read_scene_file(scene)
     inputs = (scene_file.path, *scene_file.textures, *scene_file.atlases)
-    name = f"{Path(scene).stem}.plan.json" if output is None else output
+    name = summary.default_path(scene_file) if output is None else output
     path = check_output(name, inputs=inputs, force=force)
+    summary.check_path(scene_file, path)
     with progress_bar() as progress:
         result = plan(scene_file, QUICK if quick else SearchGrid(), progress)
-    fields = to_json(result, path)
+    fields = summary.to_json(result, path)
     write_text(json_text(fields) + "\n", path, force=force)
     if style == "json":
         print_json(fields)
@@ -65,14 +62,14 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
         say()
         worst = result.confirmed.worst
         paragraph(f"{result.scene.path.name}: {result.chosen.name}")
-        paragraph(f"{verdict(result)} ({worst.group} under {worst.light}). {' '.join(notes(result))}")
+        paragraph(f"{summary.verdict(result)} ({worst.group} under {worst.light}). {' '.join(summary.notes(result))}")
         say()
-        table = make_table(("",), HEADINGS[:4])
-        for heading in HEADINGS[4:]:
+        table = make_table(("",), summary.HEADINGS[:4])
+        for heading in summary.HEADINGS[4:]:
             table.add_column(heading)
-        for each in front_rows(result):
-            table.add_row("→" if each is result.chosen else "", *front_row(each))
+        for each in summary.front_rows(result):
+            table.add_row("→" if each is result.chosen else "", *summary.front_row(each))
         show(table)
         say()
-        paragraph(describe_error(result))
+        paragraph(summary.describe_error(result))
     say(str(path), err=True)

@@ -169,7 +169,8 @@ def use_palette(path: Path) -> None:
         raise ValueError("spectra that are not finite")
 
 
-ATLAS, TEXTURE = ROOT / "atlases" / "macbeth.txt", ROOT / "docs" / "plan" / "front.png"
+SOURCES = {"texture.png": ROOT / "docs" / "plan" / "front.png", "atlas.txt": ROOT / "atlases" / "macbeth.txt"}
+"""Texture and atlas by their names in the folder of a scene or a plan."""
 SCENE_FILE = b"""# a kitchen
 textures = ["texture.png", "*.png"]
 atlases = "atlas.txt"
@@ -185,7 +186,7 @@ illuminant = "D65"
 @functools.cache
 def _plan() -> Seeds:
     """Make the part of a plan that its reader uses."""
-    texture, atlas = ([{"path": str(path), "digest": file_digest(path)}] for path in (TEXTURE, ATLAS))
+    texture, atlas = ([{"path": name, "digest": file_digest(path)}] for name, path in SOURCES.items())
     scene = {"encoding": "auto", "textures": texture, "atlases": atlas}
     plan = {"format": FORMAT, "scene": scene, "build": dataclasses.asdict(Options(dim=8)), "cells": "sparse"}
     return (json.dumps(plan, indent=40).encode(),)  # mostly blanks, so that some mutations leave it valid
@@ -345,12 +346,12 @@ def use_image(path: Path) -> None:
         convert(_Same(observer.sensor(), "half", "auto", "clip", (), {}), path, Path(out) / "out.exr")
 
 
-def use_scene(path: Path) -> None:
-    """Read a scene file next to its texture and atlas."""
-    for name, file in (("texture.png", TEXTURE), ("atlas.txt", ATLAS)):
+def with_sources(path: Path) -> Path:
+    """Link texture and atlas into the folder of a file."""
+    for name, file in SOURCES.items():
         if not path.with_name(name).exists():
             path.with_name(name).symlink_to(file)
-    read_scene_file(path).sensor()
+    return path
 
 
 TARGETS = (
@@ -360,8 +361,8 @@ TARGETS = (
     mutated("colour table", use_colours, lambda: COLOUR_SEEDS),
     mutated("chart table", use_chart, _chart),
     mutated("palette", use_palette, lambda: PALETTE_SEEDS),
-    mutated("scene file", use_scene, lambda: (SCENE_FILE,)),
-    mutated("plan", read_plan, _plan),
+    mutated("scene file", lambda path: read_scene_file(with_sources(path)).sensor(), lambda: (SCENE_FILE,)),
+    mutated("plan", lambda path: read_plan(with_sources(path)), _plan),
     Target("cube, corrupted bytes", _corrupted, use_cube),
     Target("cube, valid digest", _forged, use_cube),
     mutated("image", use_image, _images),

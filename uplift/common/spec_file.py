@@ -85,7 +85,7 @@ class SpecFile:
     error: type[UpliftError]
 
     def validate(self, model: type[Model], hint: str = "") -> Model:
-        """Check the values against a model; the first that does not fit raises `error`, with a default ``hint``."""
+        """Check the values against a model; the first that does not fit raises `error`, with ``hint`` or its own."""
         try:
             return TypeAdapter(model).validate_python(self.values)
         except ValidationError as caught:
@@ -96,7 +96,7 @@ class SpecFile:
             text = TEXTS.get(kind) or re.sub(r"^\w+ should", "must", error["msg"])
             if kind != "uplift" and text.startswith("must"):
                 text = f"{text}, got {format_value(error['input'])}"
-            self.fail(error["loc"], text, code=context.get("code", INVALID), hint=context.get("hint") or hint)
+            self.fail(error["loc"], text, code=context.get("code", INVALID), hint=hint or context.get("hint", ""))
 
     def fail(self, keys: Iterable[Key], text: str, *, code: str = INVALID, hint: str = "") -> NoReturn:
         """Raise the error for the value at a key path such as ``apart[2].light``, empty for the file."""

@@ -13,7 +13,8 @@ from uplift_cli.main import main
 from tests.cli.conftest import home, refuse, run, shown  # noqa: F401
 from uplift.cube import read
 from uplift.scene.plan.candidates import PIXELS
-from uplift.scene.plan.plan_file import commands, cube_name
+from uplift.scene.plan.plan_file import cube_name
+from uplift.scene.plan.summary import commands
 
 
 @pytest.fixture
@@ -41,6 +42,13 @@ def test_a_plan_is_printed_written_and_built(run, here):
     assert (data.lattice.dim, data.model.count) == (values["build"]["dim"], values["build"]["coefficients"])
     error = run("build", "--plan", "kitchen.plan.json", "--dim", 4, "--light", "A", code=2).stderr
     assert "leave out --dim, --light." in error
+
+
+def test_a_plan_outside_the_folder_of_its_scene_is_refused_before_the_search(run, here, monkeypatch):
+    monkeypatch.setattr("uplift.scene.plan.plan", None)
+    (here / "empty").mkdir()
+    result = run("plan", "kitchen.toml", "-o", "empty/a.plan.json", code=2)
+    assert "must lie in the folder of wood.exr, or above it; write for example kitchen.plan.json" in result.stderr
 
 
 @pytest.mark.parametrize("pixel", PIXELS, ids=lambda pixel: f"{pixel.form}-{pixel.depth}{pixel.mode}")

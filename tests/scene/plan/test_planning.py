@@ -14,12 +14,12 @@ from tests.io.texture.conftest import planes, write_exr
 from tests.scene.plan.conftest import LIGHTS, SMALL, painted
 from uplift import models
 from uplift.colorimetry import observer
-from uplift.common.errors import PlanFileError
+from uplift.common.errors import OutputError, PlanFileError
 from uplift.io.scene_colours import Images
 from uplift.scene import plan
-from uplift.scene.plan.plan_file import read_plan, to_json
+from uplift.scene.plan.plan_file import read_plan
 from uplift.scene.plan.planning import no_candidate
-from uplift.scene.plan.summary import notes
+from uplift.scene.plan.summary import check_path, default_path, notes, to_json
 
 
 def test_the_choice_is_the_cheapest_within_the_tolerance(planned):
@@ -162,6 +162,33 @@ def test_changed_and_missing_sources_are_refused(plan_file):
         read_plan(path)
     assert "scene.textures[0].path" in caught.value.problem
     assert "wood.exr" in caught.value.problem
+
+
+@pytest.mark.parametrize(
+    "name", ["../kitchen/wood.exr", "a/../../wood.exr", "/etc/passwd", r"C:\wood.exr", r"..\wood.exr"]
+)
+@pytest.mark.parametrize("key", ["textures", "atlases"])
+def test_sources_outside_the_folder_of_the_plan_are_refused(plan_file, key, name):
+    path, values, write = plan_file
+    values["scene"][key][0]["path"] = name
+    write()
+    with raises(PlanFileError, "invalid-file") as caught:
+        read_plan(path)
+    assert caught.value.problem.startswith(f"scene.{key}[0].path must lie in the folder of this file, got")
+    assert caught.value.hint == "plan the scene again"
+
+
+def test_a_plan_is_written_where_it_can_be_read(planned, kitchen, tmp_path):
+    found = planned[0]
+    above = to_json(found, kitchen.parent.parent / "a.plan.json")["scene"]
+    assert [each["path"] for each in above["textures"]] == [f"{kitchen.parent.name}/wood.exr"]
+    default = default_path(found.scene)
+    assert default == kitchen.with_name("kitchen.plan.json")
+    check_path(found.scene, default)
+    for write in (lambda path: check_path(found.scene, path), lambda path: to_json(found, path)):
+        with raises(OutputError, "output") as caught:
+            write(tmp_path / "a.plan.json")
+        assert str(default) in caught.value.hint
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,7 @@
-"""Plans as JSON files, which ``uplift build --plan`` and other tools read, and the commands that carry them out."""
+"""Plan files as ``uplift build --plan`` reads them. They may come from a stranger."""
 
 import os
-import shlex
-from collections.abc import Iterable
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -13,107 +11,24 @@ from uplift.common.arrays import StrPath
 from uplift.common.errors import PlanFileError, unknown_name
 from uplift.common.files import file_digest
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.common.spec_file import SpecFile, SpecModel, read_json, resolves
+from uplift.common.spec_file import InsidePath, SpecFile, SpecModel, read_json, resolves
 from uplift.common.text import format_value
-from uplift.common.version import VERSION
 from uplift.io.scene_colours import Images
-from uplift.io.texture import Spectrum
 from uplift.io.texture.colours import check_encoding
 from uplift.lookup import Cube
 from uplift.pipeline.build import build, problem_of
 from uplift.pipeline.options import Options, recorded_options
-from uplift.scene.plan.planning import Plan
-from uplift.scene.plan.scene_file import SceneFile
 
 FORMAT: Literal["uplift plan 1"] = "uplift plan 1"
 HINT = "plan the scene again"
 MAX_FILES = 10_000
 SUFFIX = ".plan.json"
-CUBE_KEYS = ("model", "coefficients", "warp", "dim", "axis")
-"""Options of a build that a plan chooses."""
-SCENE_KEYS = ("lights", "tolerance", "quantile", "encoding", "minimise", "limits")
-
-
-def to_json(plan: Plan, path: Path) -> dict[str, Any]:
-    """The choice of a plan, its wavelengths and command lines, and the Pareto front, as JSON values.
-
-    ``path`` is the file to write them to: paths of textures and atlases are relative to its folder.
-    """
-    scene, chosen = plan.scene, plan.chosen
-    return {
-        "format": FORMAT,
-        "uplift": VERSION,
-        "scene": {
-            "file": scene.path.name,
-            **{key: getattr(scene, key) for key in SCENE_KEYS},
-            "textures": _sources(scene.textures, path),
-            "atlases": _sources(scene.atlases, path),
-        },
-        "name": chosen.name,
-        "build": chosen.cube and asdict(chosen.cube),
-        "cells": "sparse" if chosen.sparse else "whole",
-        "texture": asdict(chosen.pixel),
-        "rendering": _rendering_json(plan),
-        "spectra": plan.spectra
-        and [{"rgb": rgb.tolist(), "reflectance": row.tolist()} for rgb, row in zip(*plan.spectra, strict=True)],
-        "error": {
-            "predicted": asdict(chosen.error.worst) | asdict(chosen.error),
-            "confirmed": asdict(plan.confirmed.worst) | asdict(plan.confirmed),
-            "within": plan.within_tolerance,
-            "without_spectra": plan.without_spectra.quantile,
-            "expected_of_measurements": plan.expected_error,
-        },
-        "cost": chosen.cost._asdict(),
-        "search": {"considered": plan.considered, "measured": len(plan.measured)},
-        "front": [
-            {"name": each.name, "rendering": each.traced, "pixel": asdict(each.pixel)}
-            | {"cube": each.cube and {key: getattr(each.cube, key) for key in CUBE_KEYS}, "sparse": each.sparse}
-            | {**each.cost._asdict(), "error": asdict(each.error.worst)}
-            for each in plan.front
-        ],
-        "lines": list(commands(plan, path)),
-    }
-
-
-def _rendering_json(plan: Plan) -> dict[str, Any]:
-    """Wavelengths and their weights, the name of a representation, or matrices of RGB."""
-    if plan.chosen.rendering is None:
-        return {"rgb_to_xyz": dict(zip(plan.scene.lights, plan.matrices.tolist(), strict=True))}
-    if (sampling := plan.chosen.rendering.sampling) is None:
-        return {"representation": plan.chosen.rendering.name}
-    powers = dict(zip(sampling.lights, sampling.powers.tolist(), strict=True))
-    return {"wavelengths": sampling.wavelengths.tolist(), "to_xyz": sampling.to_xyz.tolist(), "powers": powers}
-
-
-def _sources(paths: Iterable[Path], plan: Path) -> list[dict[str, str]]:
-    return [
-        {"path": Path(os.path.relpath(path, plan.parent)).as_posix(), "digest": file_digest(path)} for path in paths
-    ]
 
 
 def cube_name(plan_path: StrPath) -> str:
     """File name of the cube of a plan: that of the plan with the suffix ``.uplift``."""
     name = Path(plan_path).name
     return f"{name.removesuffix(SUFFIX) if name.endswith(SUFFIX) else Path(name).stem}.uplift"
-
-
-def commands(plan: Plan, path: Path) -> tuple[str, ...]:
-    """Command lines for a plan at ``path``: its build, and its textures or the program that looks colours up."""
-    scene, pixel = plan.scene, plan.chosen.pixel
-    if plan.chosen.cube is None:
-        return ()
-    build, cube = f"uplift build --plan {shlex.quote(str(path))}", cube_name(path)
-    if pixel.mode:
-        return build, shlex.join(["uplift", "export", cube, "--format", "c", "--mode", pixel.mode])
-    target = f"{scene.textures[0].stem}-uplifted.exr" if len(scene.textures) == 1 else "uplifted"
-    words = ["uplift", "texture", *map(str, scene.textures), "-o", target, "--cube", cube]
-    words += ["--representation", pixel.form, "--depth", pixel.depth]
-    rendering = plan.chosen.rendering
-    if pixel.form == Spectrum.name and rendering is not None and rendering.sampling is not None:
-        words += ["--wavelengths", ",".join(f"{each:g}" for each in rendering.wavelengths)]
-    if scene.encoding != SceneFile.encoding:
-        words += ["--encoding", scene.encoding]
-    return build, shlex.join(words)
 
 
 @dataclass(frozen=True)
@@ -134,7 +49,7 @@ class PlanFile:
 class _Source(SpecModel):
     """A texture or an atlas with its SHA-256."""
 
-    path: str
+    path: InsidePath
     digest: str
 
 
@@ -170,9 +85,10 @@ class _PlanTable(SpecModel):
 
 
 def read_plan(path: StrPath) -> PlanFile:
-    """Read a plan file that was written from `to_json`.
+    """Read a plan file.
 
-    Raises `PlanFileError` if it is not a valid plan, or a texture or an atlas is missing or has changed.
+    Raises `PlanFileError` if it is not a valid plan, or a texture or an atlas is missing, has changed, or lies outside
+    the folder of the file.
     """
     file = read_json(path, PlanFileError)
     table = file.validate(_PlanTable, hint=HINT)

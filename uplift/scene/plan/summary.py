@@ -1,7 +1,20 @@
-"""Summary of a plan as text."""
+"""A plan as text, as the JSON values of a plan file, and as the command lines that carry it out."""
 
+import os
+import shlex
+from collections.abc import Iterable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from uplift.common.errors import OutputError
+from uplift.common.files import file_digest
+from uplift.common.version import VERSION
+from uplift.io.texture import Spectrum
 from uplift.scene.plan.candidates import INDEX, Candidate, Cost, cheapest_first
+from uplift.scene.plan.plan_file import FORMAT, SUFFIX, cube_name
 from uplift.scene.plan.planning import Plan, cost_text
+from uplift.scene.plan.scene_file import SceneFile
 from uplift.viz.format import format_error, format_size, pluralise
 
 HEADINGS = ("ΔE00", "memory", "time", "samples", "cube", "traced", "pixel")
@@ -9,6 +22,9 @@ CLEARLY_SMALLER = 0.95
 """Share of the error of a cheaper candidate that is worth a row."""
 SHARE = 0.5
 """Share of the expected error of measurements below which a plan spends more than its colours are worth."""
+CUBE_KEYS = ("model", "coefficients", "warp", "dim", "axis")
+"""Options of a build that a plan chooses."""
+SCENE_KEYS = ("lights", "tolerance", "quantile", "encoding", "minimise", "limits")
 
 
 def front_rows(plan: Plan) -> list[Candidate]:
@@ -77,3 +93,95 @@ def describe_error(plan: Plan) -> str:
         f"coefficients at all wavelengths{measured}. {len(plan.measured):,} of {plan.considered:,} candidates were "
         "measured; the bounds of the others exclude them."
     )
+
+
+def default_path(scene: SceneFile) -> Path:
+    """Path of the plan of a scene, in the folder of the scene file."""
+    return scene.path.with_name(scene.path.stem + SUFFIX)
+
+
+def check_path(scene: SceneFile, path: Path) -> None:
+    """Check that the folder of a plan holds the sources of its scene. `read_plan` opens no others."""
+    folder = os.path.abspath(path.parent)
+    for source in (*scene.textures, *scene.atlases):
+        if not Path(os.path.abspath(source)).is_relative_to(folder):
+            problem = f"must lie in the folder of {source}, or above it"
+            raise OutputError(problem, path=path, hint=f"write for example {default_path(scene)}")
+
+
+def to_json(plan: Plan, path: Path) -> dict[str, Any]:
+    """The choice of a plan, its wavelengths and command lines, and the Pareto front, as JSON values.
+
+    ``path`` is the file to write them to: paths of textures and atlases are relative to its folder. Raises
+    `OutputError` if they are outside.
+    """
+    scene, chosen = plan.scene, plan.chosen
+    check_path(scene, path)
+    return {
+        "format": FORMAT,
+        "uplift": VERSION,
+        "scene": {
+            "file": scene.path.name,
+            **{key: getattr(scene, key) for key in SCENE_KEYS},
+            "textures": _sources(scene.textures, path),
+            "atlases": _sources(scene.atlases, path),
+        },
+        "name": chosen.name,
+        "build": chosen.cube and asdict(chosen.cube),
+        "cells": "sparse" if chosen.sparse else "whole",
+        "texture": asdict(chosen.pixel),
+        "rendering": _rendering_json(plan),
+        "spectra": plan.spectra
+        and [{"rgb": rgb.tolist(), "reflectance": row.tolist()} for rgb, row in zip(*plan.spectra, strict=True)],
+        "error": {
+            "predicted": asdict(chosen.error.worst) | asdict(chosen.error),
+            "confirmed": asdict(plan.confirmed.worst) | asdict(plan.confirmed),
+            "within": plan.within_tolerance,
+            "without_spectra": plan.without_spectra.quantile,
+            "expected_of_measurements": plan.expected_error,
+        },
+        "cost": chosen.cost._asdict(),
+        "search": {"considered": plan.considered, "measured": len(plan.measured)},
+        "front": [
+            {"name": each.name, "rendering": each.traced, "pixel": asdict(each.pixel)}
+            | {"cube": each.cube and {key: getattr(each.cube, key) for key in CUBE_KEYS}, "sparse": each.sparse}
+            | {**each.cost._asdict(), "error": asdict(each.error.worst)}
+            for each in plan.front
+        ],
+        "lines": list(commands(plan, path)),
+    }
+
+
+def _rendering_json(plan: Plan) -> dict[str, Any]:
+    """Wavelengths and their weights, the name of a representation, or matrices of RGB."""
+    if plan.chosen.rendering is None:
+        return {"rgb_to_xyz": dict(zip(plan.scene.lights, plan.matrices.tolist(), strict=True))}
+    if (sampling := plan.chosen.rendering.sampling) is None:
+        return {"representation": plan.chosen.rendering.name}
+    powers = dict(zip(sampling.lights, sampling.powers.tolist(), strict=True))
+    return {"wavelengths": sampling.wavelengths.tolist(), "to_xyz": sampling.to_xyz.tolist(), "powers": powers}
+
+
+def _sources(paths: Iterable[Path], plan: Path) -> list[dict[str, str]]:
+    return [
+        {"path": Path(os.path.relpath(path, plan.parent)).as_posix(), "digest": file_digest(path)} for path in paths
+    ]
+
+
+def commands(plan: Plan, path: Path) -> tuple[str, ...]:
+    """Command lines for a plan at ``path``: its build, and its textures or the program that looks colours up."""
+    scene, pixel = plan.scene, plan.chosen.pixel
+    if plan.chosen.cube is None:
+        return ()
+    build, cube = f"uplift build --plan {shlex.quote(str(path))}", cube_name(path)
+    if pixel.mode:
+        return build, shlex.join(["uplift", "export", cube, "--format", "c", "--mode", pixel.mode])
+    target = f"{scene.textures[0].stem}-uplifted.exr" if len(scene.textures) == 1 else "uplifted"
+    words = ["uplift", "texture", *map(str, scene.textures), "-o", target, "--cube", cube]
+    words += ["--representation", pixel.form, "--depth", pixel.depth]
+    rendering = plan.chosen.rendering
+    if pixel.form == Spectrum.name and rendering is not None and rendering.sampling is not None:
+        words += ["--wavelengths", ",".join(f"{each:g}" for each in rendering.wavelengths)]
+    if scene.encoding != SceneFile.encoding:
+        words += ["--encoding", scene.encoding]
+    return build, shlex.join(words)
