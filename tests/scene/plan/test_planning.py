@@ -199,6 +199,11 @@ def test_a_plan_is_written_where_it_can_be_read(planned, kitchen, tmp_path):
         (lambda values: values["build"].update(dims=3), "unknown-name", "build: unknown option 'dims'"),
         (lambda values: values["build"].update(dim="x"), "option", "build: dim "),
         (lambda values: values["build"].update(lights=3), "option", "build: lights "),
+        (
+            lambda values: values["build"].update(observer="/etc/a.csv", space="camera"),
+            "unknown-name",
+            "build: unknown",
+        ),
         (lambda values: values["scene"].update(textures=[3]), "invalid-file", "scene.textures[0]"),
         (lambda values: values["scene"]["textures"][0].pop("digest"), "invalid-file", "scene.textures[0].digest"),
     ],

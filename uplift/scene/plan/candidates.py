@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from uplift.common.arrays import Array, Mask
+from uplift.common.arrays import Array
 from uplift.common.errors import UpliftError
 from uplift.io import texture
 from uplift.lattice import AXES
@@ -18,7 +18,7 @@ from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import refined_multipliers
 from uplift.models import Sigmoid, evaluate, reflectance
 from uplift.pipeline.options import Options
-from uplift.scene.plan.evaluation import UNMEASURED, ErrorSummary, Rendering
+from uplift.scene.plan.evaluation import UNMEASURED, ErrorSummary, Rendering, dominated
 
 MODELS: Mapping[str, tuple[int, ...]] = {
     "none": (3, 5, 7, 9, 11, 13, 15, 17),
@@ -205,11 +205,6 @@ def explore(candidates: Iterable[Candidate], measure: Measure, floor: float) -> 
             measured += measure(cube, promising)
             best = positions(pareto_front(measured), floor)
     return measured
-
-
-def dominated(rows: Array, by: Array) -> Mask:
-    """Rows (m, k) for which a row of ``by`` (f, k) is nowhere larger."""
-    return np.asarray((by[:, None] <= rows).all(axis=2).any(axis=0))
 
 
 def front(rows: Array) -> list[int]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab_jacobian
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, illuminant_spd
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback
 from uplift.lookup import Cube
@@ -17,7 +17,6 @@ from uplift.scene.representations import Representation, all_representations, sa
 from uplift.scene.wavelengths import Sampling, choose
 from uplift.scene.wavelengths.sampling import RenderSetup, interp_curves
 
-TEXTURES, MATERIALS = "textures", "materials"
 WORST_DELTA_E = 100.0
 """ΔE00 of colours that are not finite: the difference between black and white."""
 FEW = 200
@@ -154,11 +153,14 @@ def renderings(
     """Fit wavelengths, of ``counts`` in ascending order, up to an error of ``floor``; without it, all wavelengths.
 
     Those that do not lower the error are left out. Meyer's wavelengths and other representations follow for an
-    observer of that name, ``others``, where they cost less than wavelengths of their error.
+    observer of that name, ``others``, unless another rendering costs no more and is as accurate.
     """
 
     def measured(each: Rendering) -> Rendering:
         return replace(each, error=tests.error(each.xyz(reference.reflectance(tests.rgb, each.wavelengths))))
+
+    def numbers(*of: Rendering) -> Array:
+        return np.array([(each.samples, each.operations, each.surface, max(each.error.quantile, floor)) for each in of])
 
     setup = tests.setup.only(tests.subsample(FEW))
     found = list[Rendering]()
@@ -174,18 +176,16 @@ def renderings(
         if found[-1].error.quantile <= floor:
             break
     for each in _others(setup, tests, others) if others else ():
-        if each.samples < found[-1].samples and not _is_dominated(each := measured(each), found, floor):
-            found.append(each)
+        if each.samples < found[-1].samples:
+            each = measured(each)
+            if not dominated(numbers(each), numbers(*found))[0]:
+                found.append(each)
     return found
 
 
-def _is_dominated(rendering: Rendering, others: Sequence[Rendering], floor: float) -> bool:
-    """Whether another rendering costs no more and is as accurate; errors below the floor are equal."""
-
-    def numbers(each: Rendering) -> Array:
-        return np.array([each.samples, each.operations, each.surface, max(each.error.quantile, floor)])
-
-    return any((numbers(each) <= numbers(rendering)).all() for each in others)
+def dominated(rows: Array, by: Array) -> Mask:
+    """Rows (m, k) for which a row of ``by`` (f, k) is nowhere larger."""
+    return np.asarray((by[:, None] <= rows).all(axis=2).any(axis=0))
 
 
 def _others(setup: RenderSetup, tests: EvaluationSet, observer_name: str) -> Iterator[Rendering]:

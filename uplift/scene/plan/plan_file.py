@@ -5,8 +5,9 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
+from uplift.colorimetry.observer import matching_functions
 from uplift.common.arrays import StrPath
 from uplift.common.errors import PlanFileError, unknown_name
 from uplift.common.files import file_digest
@@ -53,10 +54,8 @@ class _Source(SpecModel):
     digest: str
 
 
-class _Scene(SpecModel):
+class _Scene(SpecModel, extra="ignore"):
     """Source files of a plan."""
-
-    model_config = ConfigDict(extra="ignore")
 
     encoding: Annotated[str, resolves(check_encoding)]
     textures: Annotated[list[_Source], Field(min_length=1, max_length=MAX_FILES)]
@@ -64,19 +63,18 @@ class _Scene(SpecModel):
 
 
 def _check_options(values: dict[str, Any]) -> None:
-    """Raise `UpliftError` unless a build accepts the options."""
+    """Raise `UpliftError` unless a build accepts the options and opens no file for them, as for a camera."""
     known = [field.name for field in fields(Options)]
     for name in values:
         if name not in known:
             raise unknown_name(name, known, "option")
     options = Options(**recorded_options(values))
+    matching_functions(options.observer)
     problem_of(options, options.observer, options.solver)
 
 
-class _PlanTable(SpecModel):
+class _PlanTable(SpecModel, extra="ignore"):
     """The keys of a plan file that a build needs."""
-
-    model_config = ConfigDict(extra="ignore")
 
     format: Literal["uplift plan 1"]
     scene: _Scene

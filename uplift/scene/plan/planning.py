@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError, PlanFileError
+from uplift.common.errors import PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.lookup import Cube
 from uplift.scene.plan.candidates import INDEX, Candidate, Cost, SearchGrid, explore, pareto_front, sufficient
 from uplift.scene.plan.evaluation import ErrorSummary
 from uplift.scene.plan.scene_file import SceneFile
@@ -116,6 +115,7 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         raise no_candidate(scene, measured)
     chosen, confirmed = _confirm(space, finalists)
     textures, few = space.colours.predicting, space.colours.few
+    known = (space.cubes[space.reference].standard_error(textures.rgb, light) for light in scene.lights)
     spectra = None
     if chosen.pixel.form == INDEX and chosen.rendering is not None and few is not None:
         wavelengths = chosen.rendering.wavelengths
@@ -129,7 +129,7 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         matrices=space.matrices,
         without_spectra=space.without_spectra,
         spectra=spectra,
-        expected_error=_expected_error(space.cubes[space.reference], scene, textures.rgb, textures.share),
+        expected_error=max((float(each @ textures.share) for each in known if each is not None), default=None),
     )
 
 
@@ -171,16 +171,3 @@ def cost_text(cost: Cost, key: str) -> str:
     """A cost with its unit."""
     value = getattr(cost, key)
     return format_size(value) if key == "memory" else f"{value:,.0f} {'operations' if key == 'time' else key}"
-
-
-def _expected_error(reference: Cube, scene: SceneFile, rgb: Array, weights: Array) -> float | None:
-    """Mean standard error of colours under the worst light; None if the cube has no estimates."""
-
-    found = []
-    for light in scene.lights:
-        try:
-            errors = reference.standard_error(rgb, light)
-        except OptionError:  # without left-out entries under one light only
-            errors = reference.standard_error(rgb)
-        found += [] if errors is None else [float(errors @ weights)]
-    return max(found, default=None)

@@ -28,15 +28,7 @@ from uplift.models.model import Model
 from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
 from uplift.pipeline.options import Options
 from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, Pixel, SearchGrid
-from uplift.scene.plan.evaluation import (
-    MATERIALS,
-    SAMPLE_OPERATIONS,
-    TEXTURES,
-    ErrorSummary,
-    EvaluationSet,
-    Rendering,
-    renderings,
-)
+from uplift.scene.plan.evaluation import SAMPLE_OPERATIONS, ErrorSummary, EvaluationSet, Rendering, renderings
 from uplift.scene.plan.scene_file import SceneFile
 from uplift.scene.wavelengths import make_setup
 
@@ -116,7 +108,7 @@ class CandidateSpace:
         spectra = np.concatenate([reference.reflectance(sample.rgb), self.reflectances])
         pixels, count = len(sample.rgb), len(self.materials)
         weights = np.concatenate([sample.share, np.full(count, 1 / max(count, 1))])
-        groups = {TEXTURES: slice(0, pixels)} | ({MATERIALS: slice(pixels, pixels + count)} if count else {})
+        groups = {"textures": slice(0, pixels)} | ({"materials": slice(pixels, pixels + count)} if count else {})
         nm, observer_name = self.sensor.wavelengths, self.sensor.observer
         setup = make_setup(spectra, self.scene.lights, wavelengths=nm, observer_name=observer_name)
         return EvaluationSet(setup, rgb, weights, groups, self.scene.quantile), reference
