@@ -107,15 +107,12 @@ def uncertainty(cube: Cube, colours: PixelSample, lights: Sequence[Light]) -> Un
     """Return the errors of a cube at the colours of a scene. Raises `OptionError` if it has no left-out entries."""
     data, prior = cube.data, cube.data.provenance.get("prior", {})
     kernel = Kernel(prior.get("length", DEFAULT.length), prior.get("noise", DEFAULT.noise))
-    squares, rest = np.empty((2, len(colours.rgb), len(lights)))
-    for column, light in enumerate(lights):
-        errors = light_errors(data, light)
-        squares[:, column] = errors(colours.rgb)[:, 0] ** 2
-        rest[:, column] = errors.expected.radii.standard**2 * errors.expected.floor
-    lab = rgb_to_lab(data.sensor, colours.rgb)
-    covariance = posterior(kernel, data.entry_lab, lab)
+    errors = [light_errors(data, light) for light in lights]
+    squares = np.stack([each(colours.rgb)[:, 0] ** 2 for each in errors], axis=1)
+    floors = np.concatenate([each.expected.radii.standard**2 * each.expected.floor for each in errors])
+    rest = np.minimum(floors, squares)
+    covariance = posterior(kernel, data.entry_lab, rgb_to_lab(data.sensor, colours.rgb))
     variance = np.maximum(np.diag(covariance), TINY)
-    rest = np.minimum(rest, squares)
     return Uncertainty(colours.share, covariance, (squares - rest) / variance[:, None], rest)
 
 

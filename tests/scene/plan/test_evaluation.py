@@ -18,13 +18,13 @@ ROWS = {"textures": slice(0, 40), "materials": slice(40, 47)}
 
 
 @pytest.fixture(scope="module")
-def tests():
+def tests(plain_cube):
     rng = np.random.default_rng(0)
     weights = rng.random(40)
     weights = np.concatenate([weights / weights.sum(), np.full(7, 1 / 7)])
     rgb = rng.random((47, 3))
     setup = make_setup(rng.random((47, 81)), LIGHTS, wavelengths=observer.grid())
-    return EvaluationSet(setup, rgb, weights, ROWS, 0.8)
+    return EvaluationSet(plain_cube, setup, rgb, weights, ROWS, 0.8)
 
 
 def weighted_quantile(values, weights, share):
@@ -50,15 +50,15 @@ def test_errors_agree_with_a_slow_oracle(tests):
     assert error.quantile == max(part.quantile for part in error.parts)
 
 
-def test_other_representations_cost_less_or_are_more_accurate_than_fitted_wavelengths(tests, plain_cube):
+def test_other_representations_cost_less_or_are_more_accurate_than_fitted_wavelengths(tests):
     """Each of them against all others, by its own numbers; the fitted ones are as without."""
 
     def numbers(each):
         return np.array([each.samples, each.operations, each.surface, each.error.quantile])
 
     counts, floor = (3, 16), 1e-3
-    fitted = renderings(counts, tests, plain_cube, floor, ignore_progress, None)
-    found = renderings(counts, tests, plain_cube, floor, ignore_progress, observer.DEFAULT_OBSERVER)
+    fitted = renderings(counts, tests, floor, ignore_progress, None)
+    found = renderings(counts, tests, floor, ignore_progress, observer.DEFAULT_OBSERVER)
     others = found[len(fitted) :]
     assert [each.name for each in found[: len(fitted)]] == [each.name for each in fitted]
     assert any(each.sampling is None for each in others)
@@ -139,11 +139,11 @@ def test_images_without_pixels_are_refused(image, sensor, monkeypatch):
         sample([image([[[0.1, 0.2, 0.3]]])], sensor, (5, 5))
 
 
-def test_the_best_matrices_map_rgb_under_the_light_of_the_space_exactly(sensor):
+def test_the_best_matrices_map_rgb_under_the_light_of_the_space_exactly(sensor, plain_cube):
     spectra = np.random.default_rng(4).random((30, 81)) ** 2
     rgb = spectra @ sensor.matrix.T
     setup = make_setup(spectra, ("D65", "A"), wavelengths=observer.grid())
-    tests = EvaluationSet(setup, rgb, np.full(30, 1 / 30), {"textures": slice(0, 30)}, 0.9)
+    tests = EvaluationSet(plain_cube, setup, rgb, np.full(30, 1 / 30), {"textures": slice(0, 30)}, 0.9)
     matrices = tests.matrices()
     np.testing.assert_allclose(matrices[0], np.linalg.inv(sensor.xyz_to_rgb), atol=1e-9)
     fitted = tests.error(rgb @ matrices.mT)

@@ -49,8 +49,8 @@ def fitted_wavelengths(sampling: Sampling, lights: Array) -> Representation:
         f"FW{len(sampling)}",
         "fitted wavelengths",
         partial(_known_rows, lights, sampling.powers),
+        lambda reflectance: reflectance @ points,
         lambda light: light @ sampling.to_xyz,
-        surface_encoder=lambda reflectance: reflectance @ points,
     )
 
 
@@ -64,9 +64,9 @@ def _factors(scene: Scene) -> Iterator[Representation]:
             f"BF{count}",
             "factor model",
             lambda power: model.light(power[:, ::step]),
+            lambda reflectance: model.reflectance(reflectance[:, ::step]),
             lambda light: model.rgb(light) @ np.linalg.inv(sensor.xyz_to_rgb).T,
             model.product,
-            lambda reflectance: model.reflectance(reflectance[:, ::step]),
         )
 
     return map(of_size, FACTORS)

@@ -125,7 +125,7 @@ class Pixel:
         NaN where no spectrum has the rounded moments.
         """
         kind = DEPTHS[self.depth or "float"]
-        if self.mode or self.form == texture.Spectrum.name:
+        if self.mode or self.form in (texture.Spectrum.name, INDEX):
             return cube.reflectance(rgb, nm, self.mode or "spectra").astype(kind).astype(float)
         if self.form == texture.Multipliers.name:
             values = blockwise(partial(refined_multipliers, cube.data), rgb, cube.coefficient_count, kind, 1)

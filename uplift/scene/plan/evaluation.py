@@ -90,12 +90,13 @@ class Rendering:
 
 @dataclass(frozen=True, eq=False)
 class EvaluationSet:
-    """Test colours: n reference spectra under the lights of the scene, linear RGB (n, 3), and weights (n,).
+    """Test colours: n spectra under the lights of the scene, linear RGB (n, 3), and weights (n,).
 
-    Weights have the sum 1 in each group, a slice of the rows with one statistic. ``quantile`` is the share of the
-    colours whose largest ΔE00 is the error of a group.
+    The spectra are those of the ``reference``, or measured. Weights have the sum 1 in each group, a slice of the rows
+    with one statistic. ``quantile`` is the share of the colours whose largest ΔE00 is the error of a group.
     """
 
+    reference: Cube
     setup: RenderSetup
     rgb: Array
     weights: Array
@@ -143,12 +144,7 @@ class EvaluationSet:
 
 
 def renderings(
-    counts: Sequence[int],
-    tests: EvaluationSet,
-    reference: Cube,
-    floor: float,
-    progress: ProgressCallback,
-    others: str | None,
+    counts: Sequence[int], tests: EvaluationSet, floor: float, progress: ProgressCallback, others: str | None
 ) -> list[Rendering]:
     """Fit wavelengths, of ``counts`` in ascending order, up to an error of ``floor``; without it, all wavelengths.
 
@@ -157,7 +153,7 @@ def renderings(
     """
 
     def measured(each: Rendering) -> Rendering:
-        return replace(each, error=tests.error(each.xyz(reference.reflectance(tests.rgb, each.wavelengths))))
+        return replace(each, error=tests.error(each.xyz(tests.reference.reflectance(tests.rgb, each.wavelengths))))
 
     def numbers(*of: Rendering) -> Array:
         return np.array([(each.samples, each.operations, each.surface, max(each.error.quantile, floor)) for each in of])

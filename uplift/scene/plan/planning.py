@@ -115,7 +115,7 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
         raise no_candidate(scene, measured)
     chosen, confirmed = _confirm(space, finalists)
     textures, few = space.colours.predicting, space.colours.few
-    known = (space.cubes[space.reference].standard_error(textures.rgb, light) for light in scene.lights)
+    known = (space.tests.reference.standard_error(textures.rgb, light) for light in scene.lights)
     spectra = None
     if chosen.pixel.form == INDEX and chosen.rendering is not None and few is not None:
         wavelengths = chosen.rendering.wavelengths
@@ -136,13 +136,13 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
 def _confirm(space: CandidateSpace, finalists: Sequence[Candidate]) -> tuple[Candidate, ErrorSummary]:
     """The first finalist within the tolerance on other pixels, or else the one of the smallest error there."""
     space.progress(Progress("confirmation", 0, 1))
-    tests, reference = space.evaluation_set(space.colours.confirming)
+    tests = space.evaluation_set(space.colours.confirming)
     tried: list[tuple[Candidate, ErrorSummary]] = []
     for each in finalists:
         if tried and each.error.quantile > CLEARLY_SMALLER * tried[-1][0].error.quantile:
             continue
         cube = None if each.cube is None else space.cube(tests.rgb, each.cube)
-        tried.append((each, space.errors(cube, [each], tests, reference)[0].error))
+        tried.append((each, space.errors(cube, [each], tests)[0].error))
         if tried[-1][1].quantile <= space.scene.tolerance or len(tried) == FINALISTS:
             break
     return min(tried, key=lambda each: (each[1].quantile > space.scene.tolerance, each[1].quantile))

@@ -7,6 +7,7 @@ a lattice add, to predict the error of a cube. The squares of the errors of a cu
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import cache
 from itertools import product
 from typing import Any
 
@@ -63,13 +64,13 @@ class CandidateSpace:
         self.learnt: dict[tuple[Model, Model], Learnt] = {}
         self.floor, self.ceiling = (share * scene.tolerance for share in (FLOOR, CEILING))
         progress(Progress("reference cube", 0, 1))
-        tests, reference = self.evaluation_set(self.colours.predicting)
+        tests = self.evaluation_set(self.colours.predicting)
         others = self.sensor.observer if grid.others else None
-        self.renderings = renderings(grid.samples, tests, reference, self.floor, progress, others)
-        self.cubes = {self.reference: reference}
+        self.renderings = renderings(grid.samples, tests, self.floor, progress, others)
+        self.cubes = {self.reference: tests.reference}
         self.tests, self.matrices = tests, tests.matrices()
-        self.base = tests.xyz(reference.reflectance(tests.rgb))
-        arrays = contents(reference.data)[0]
+        self.base = self._xyz(self.reference)
+        arrays = contents(tests.reference.data)[0]
         rows = {name: array for name, array in arrays.items() if name in POINTS}
         self.row_bytes = sum(array[0].nbytes for name, array in rows.items() if name != "coefficients")
         self.other_bytes = sum(array.nbytes for name, array in arrays.items() if name not in rows)
@@ -101,8 +102,8 @@ class CandidateSpace:
             options, problem = problem_of(options, options.observer, options.solver)
             return build_stages(self.atlas, options, problem, scene=ColourSet(rgb), learn=shared)
 
-    def evaluation_set(self, sample: PixelSample) -> tuple[EvaluationSet, Cube]:
-        """Test colours, with the spectra of the reference cube or of the measurement, and this cube."""
+    def evaluation_set(self, sample: PixelSample) -> EvaluationSet:
+        """Pixels with the spectra of a reference cube for them, and the materials as measured."""
         rgb = np.concatenate([sample.rgb, self.materials])
         reference = self.cube(rgb, self.reference)
         spectra = np.concatenate([reference.reflectance(sample.rgb), self.reflectances])
@@ -111,7 +112,7 @@ class CandidateSpace:
         groups = {"textures": slice(0, pixels)} | ({"materials": slice(pixels, pixels + count)} if count else {})
         nm, observer_name = self.sensor.wavelengths, self.sensor.observer
         setup = make_setup(spectra, self.scene.lights, wavelengths=nm, observer_name=observer_name)
-        return EvaluationSet(setup, rgb, weights, groups, self.scene.quantile), reference
+        return EvaluationSet(reference, setup, rgb, weights, groups, self.scene.quantile)
 
     def candidates(self) -> list[Candidate]:
         """All candidates with their costs and the lower bounds of their errors; RGB alone is the first.
@@ -135,28 +136,22 @@ class CandidateSpace:
         """Build the cube that candidates share, and measure their errors."""
         self.progress(Progress(candidates[0].name, 0, 1))
         cube = None if choice is None else self._cube(choice)
-        return self.errors(cube, candidates, self.tests, self.cubes[self.reference])
+        return self.errors(cube, candidates, self.tests)
 
-    def errors(
-        self, cube: Cube | None, candidates: Sequence[Candidate], tests: EvaluationSet, reference: Cube
-    ) -> list[Candidate]:
-        """Measure the errors of candidates that share a cube, on test colours with the reference cube of these."""
+    def errors(self, cube: Cube | None, candidates: Sequence[Candidate], tests: EvaluationSet) -> list[Candidate]:
+        """Measure the errors of candidates that share a cube."""
         traced = list(dict.fromkeys(each.rendering for each in candidates if each.rendering))
         needed = [each.wavelengths for each in traced]
         nm, ends = np.concatenate([[], *needed]), np.cumsum([0, *map(len, needed)])
         columns = dict(zip(traced, map(slice, ends, ends[1:]), strict=False))
-        spectra: dict[Pixel, Array] = {}
-        found = []
-        for each in candidates:
+        spectra = cache(lambda pixel: pixel.decoded(cube or tests.reference, tests.rgb, nm))
+
+        def xyz(each: Candidate) -> Array:
             if each.rendering is None:
-                xyz = tests.rgb @ self.matrices.mT
-            else:
-                if each.pixel not in spectra:
-                    pixel = Pixel(texture.Spectrum.name, each.pixel.depth) if cube is None else each.pixel
-                    spectra[each.pixel] = pixel.decoded(cube or reference, tests.rgb, nm)
-                xyz = each.rendering.xyz(spectra[each.pixel][:, columns[each.rendering]])
-            found.append(replace(each, error=tests.error(xyz)))
-        return found
+                return tests.rgb @ self.matrices.mT
+            return each.rendering.xyz(spectra(each.pixel)[:, columns[each.rendering]])
+
+        return [replace(each, error=tests.error(xyz(each))) for each in candidates]
 
     def _with_cubes(self) -> Iterator[Candidate]:
         """Candidates that need a cube and whose bounds are below the ceiling."""

@@ -96,7 +96,7 @@ def composite(name: str, family: str, smooth: Representation, decoder: Array, th
     def xyz(light: CompositeCode) -> Array:
         return smooth.xyz(light.smooth) + light.heights @ spike_xyz()[light.positions]
 
-    return Representation(name, family, encode, xyz, multiply, storage=storage)
+    return Representation(name, family, encode, encode, xyz, multiply, storage)
 
 
 def fourier_coefficients(count: int) -> Representation:
@@ -122,6 +122,7 @@ def fourier_coefficients(count: int) -> Representation:
     return Representation(
         f"F{count}",
         "Fourier coefficients",
+        encode,
         encode,
         lambda light: light @ (dense @ samples.xyz_weights()),
         lambda light, surface: _analyse((light @ product) * (surface @ product), product),

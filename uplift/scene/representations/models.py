@@ -38,9 +38,9 @@ def tabulated(name: str, family: str, model: Model, encode: Callable[[Array], Ar
         name,
         family,
         lambda power: power[:, :: samples.TABLE_STRIDE],
+        encode,
         lambda light: light @ spike_xyz(),
         lambda light, surface: light * reflectance(model, surface, table),
-        encode,
         decode_light=lambda code: code @ hats,
         decode_surface=lambda code: reflectance(model, code, table) @ hats,
     )
@@ -111,9 +111,9 @@ def linear_model(count: int, lights: Array, surfaces: Array) -> Representation:
         f"LM{count}",
         "linear model (PCA)",
         lambda power: power @ basis,
+        lambda surface: np.einsum("ik,ni,il->nkl", basis, surface, basis, optimize=True),
         lambda light: light @ (basis.T @ samples.xyz_weights()),
         lambda light, surface: (surface @ light[:, :, None])[:, :, 0],
-        lambda surface: np.einsum("ik,ni,il->nkl", basis, surface, basis, optimize=True),
     )
 
 
@@ -145,4 +145,4 @@ def hero_wavelengths(paths: int) -> Representation:
         weights = (np.interp(drawn, samples.wavelengths(), column) for column in samples.xyz_weights().T)
         return np.stack([(estimate * weight).mean(axis=1) for weight in weights], axis=1)
 
-    return Representation(f"HW{WAVELENGTHS_PER_PATH * paths}", "hero wavelengths", encode, xyz)
+    return Representation(f"HW{WAVELENGTHS_PER_PATH * paths}", "hero wavelengths", encode, encode, xyz)

@@ -53,7 +53,7 @@ class Representation:
     ``name`` is the abbreviation of the thesis with the number of coefficients, such as ``PS16``, and ``family`` the
     method without its size. A code holds n spectra; its type belongs to the representation:
 
-    - ``encode_light`` makes a code of spectral powers (n, 401), ``encode_surface`` of reflectances, by default alike;
+    - ``encode_light`` makes a code of spectral powers (n, 401), ``encode_surface`` of reflectances;
     - ``multiply`` makes the code of the light that surfaces reflect, which may meet the next surface. Row r of a light
       meets row r of the surfaces;
     - ``xyz`` is XYZ (n, 3) of lights, in the units of `xyz_weights`;
@@ -64,17 +64,12 @@ class Representation:
     name: str
     family: str
     encode_light: Callable[[Array], Any]
+    encode_surface: Callable[[Array], Any]
     xyz: Callable[[Any], Array]
     multiply: Callable[[Any, Any], Any] = mul
-    surface_encoder: Callable[[Array], Any] | None = None
     storage: Callable[[Any], Array] = lambda code: np.full(len(code), float(code[0].size))
     decode_light: Callable[[Any], Array] | None = None
     decode_surface: Callable[[Any], Array] | None = None
-
-    @property
-    def encode_surface(self) -> Callable[[Array], Any]:
-        """Function that encodes reflectances (n, 401)."""
-        return self.surface_encoder or self.encode_light
 
     def numbers(self, powers: Array, reflectances: Array) -> tuple[float, float]:
         """Return the mean numbers stored of a light, and of a surface."""
@@ -102,13 +97,12 @@ def linear(name: str, family: str, encoder: Array, weights: Array, decoder: Arra
     ``spectra @ encoder`` (401, n) is the code, and ``code @ weights`` (n, 3) the XYZ of a light. ``code @ decoder``
     (n, 401) is a spectrum with this XYZ, if a sample stands for one.
     """
-    return Representation(
-        name,
-        family,
-        lambda spectra: blocked_matmul(spectra, encoder),
-        lambda light: light @ weights,
-        decode_light=None if decoder is None else lambda code: code @ decoder,
-    )
+
+    def encode(spectra: Array) -> Array:
+        return blocked_matmul(spectra, encoder)
+
+    decode = None if decoder is None else lambda code: code @ decoder
+    return Representation(name, family, encode, encode, lambda light: light @ weights, decode_light=decode)
 
 
 def sample_points(count: int) -> Array:

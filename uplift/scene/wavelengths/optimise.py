@@ -83,13 +83,10 @@ class FitProblem:
 
 def local_fit(problem: FitProblem, start: Sampling, *, fix_wavelengths: bool = False) -> Sampling:
     """Find the local minimum nearest to ``start`` with weights and powers of at least 0."""
-    nm = problem.setup.wavelengths
-    count, fixed = len(start), len(start) if fix_wavelengths else 0
-    unknowns = problem.pack(start)
-    others = len(unknowns) - count
-    low = np.concatenate([np.full(count, nm[0]), np.zeros(others)])
-    high = np.concatenate([np.full(count, nm[-1]), np.full(others, np.inf)])
-    unknowns = np.clip(unknowns, low, high)
+    count, unknowns = len(start), problem.pack(start)
+    low, high = np.zeros_like(unknowns), np.full_like(unknowns, np.inf)
+    low[:count], high[:count] = problem.setup.wavelengths[[0, -1]]
+    unknowns, fixed = np.clip(unknowns, low, high), count if fix_wavelengths else 0
 
     def with_fixed(free: Array) -> Array:
         return np.concatenate([unknowns[:fixed], free])
