@@ -16,6 +16,8 @@ from uplift.scene.wavelengths import meyer as paper
 from uplift.scene.wavelengths.sampling import RenderSetup, evaluate, statistics
 from uplift.viz.figure import GREY, INK, colour_map, new_figure, style_axes, styled, write_png
 
+SPACES = {"AC1C2": "opponent", "SML": "cones", "XYZ": "xyz"}
+"""Names of the paper, and of `uplift.scene.wavelengths.choose_orders`."""
 CHANNELS = ("A", "C1", "C2")
 OPTIMISED, FITTED = "optimised", "fitted"
 OTHERS = ("meyer", "uniform", "bins")
@@ -43,7 +45,7 @@ def printed_rules(table: str, key: str) -> dict[tuple[str, str], Nodes]:
     return found
 
 
-def mean_error(setup: RenderSetup, space: paper.ChannelSpace, allocation: Sequence[QuadratureRule]) -> float:
+def mean_error(setup: RenderSetup, space: Array, allocation: Sequence[QuadratureRule]) -> float:
     """Mean ΔE76 of an allocation: a rule for each channel.
 
     The white of L*a*b* is the perfect reflector, sampled at the same wavelengths as the materials. The paper uses the
@@ -55,11 +57,11 @@ def mean_error(setup: RenderSetup, space: paper.ChannelSpace, allocation: Sequen
         channels.append(
             np.concatenate([powers @ setup.curves(rule.nodes).T, powers.sum(axis=1, keepdims=True)], axis=1)
         )
-    xyz = np.stack(channels, axis=-1) @ np.linalg.inv(space.matrix).T  # (K, M + 1, 3)
+    xyz = np.stack(channels, axis=-1) @ np.linalg.inv(space).T  # (K, M + 1, 3)
     return float(delta_e_1976(setup.lab, np.stack([lab(each[:-1], each[-1]) for each in xyz])).mean())
 
 
-def run_trials(setup: RenderSetup, space: paper.ChannelSpace) -> tuple[Array, Array]:
+def run_trials(setup: RenderSetup, space: Array) -> tuple[Array, Array]:
     """Evaluate every allocation of defined orders up to 10: numbers of wavelengths (T, 3) and mean ΔE76 (T,)."""
     candidates = list(paper.allocations(setup, space))
     counts = [[len(rule) for rule in allocation] for allocation in candidates]
@@ -77,9 +79,9 @@ def compared(expected: Array, ours: Array) -> Row:
     return {"printed": expected, "ours": ours, "difference": float(np.abs(expected - ours).max())}
 
 
-def compare_meyer(setup: RenderSetup, opponent: paper.ChannelSpace) -> Row:
+def compare_meyer(setup: RenderSetup, spaces: Mapping[str, Array]) -> Row:
     """Recompute the matrices, tables 1a and 1b, and table 2."""
-    space, expected = opponent, printed_rules("meyer1988_table1.csv", "order")
+    space, expected = spaces["AC1C2"], printed_rules("meyer1988_table1.csv", "order")
     rules = paper.quadrature_rules(space, setup.wavelengths, setup.cmfs)
     orders = [(key, order, rule) for key, each in zip(CHANNELS, rules, strict=True) for order, rule in each.items()]
     defined = [(key, order, rule) for key, order, rule in orders if isinstance(rule, QuadratureRule)]
@@ -92,7 +94,7 @@ def compare_meyer(setup: RenderSetup, opponent: paper.ChannelSpace) -> Row:
         for key, order, rule in defined
     ]
     return {
-        "opponent": matrices(setup, opponent),
+        "opponent": matrices(setup, spaces),
         "weight_factor": factor,
         "nodes": [node_row(key, order, rule, expected.get((key, str(order)))) for key, order, rule in orders],
         "weights": weights,
@@ -100,16 +102,15 @@ def compare_meyer(setup: RenderSetup, opponent: paper.ChannelSpace) -> Row:
     }
 
 
-def matrices(setup: RenderSetup, opponent: paper.ChannelSpace) -> list[Row]:
+def matrices(setup: RenderSetup, spaces: Mapping[str, Array]) -> list[Row]:
     """Return each channel as a sum of X, Y and Z."""
-    spaces = {"SML": paper.cone_space(setup.wavelengths, setup.cmfs), "AC1C2": opponent}
+    _, eigenvalues = paper.opponent_space(setup.wavelengths, setup.cmfs)
     rows = []
     for row in read_reference("meyer1988_matrices.csv"):
-        space = spaces[row["space"]]
-        index = space.channels.index(row["channel"])
-        values = (float(row["eigenvalue"]), float(opponent.eigenvalues[index])) if row["eigenvalue"] else (None, None)
+        index = CHANNELS.index(row["channel"]) if row["space"] == "AC1C2" else row["space"].index(row["channel"])
+        values = (float(row["eigenvalue"]), float(eigenvalues[index])) if row["eigenvalue"] else (None, None)
         eigenvalue = dict(zip(("printed", "ours"), values, strict=True))
-        matrix = compared(np.array([float(row[axis]) for axis in "XYZ"]), space.matrix[index])
+        matrix = compared(np.array([float(row[axis]) for axis in "XYZ"]), spaces[row["space"]][index])
         rows.append({"channel": row["channel"], **matrix, "eigenvalue": eigenvalue})
     return rows
 
@@ -123,7 +124,7 @@ def node_row(channel: str, order: int, rule: QuadratureRule | str, expected: Nod
 
 
 def four_wavelengths(
-    setup: RenderSetup, space: paper.ChannelSpace, rules: list[dict[int, QuadratureRule | str]], factor: float
+    setup: RenderSetup, space: Array, rules: list[dict[int, QuadratureRule | str]], factor: float
 ) -> Iterator[Row]:
     """Yield the rows of table 2; the first of each allocation has its error."""
     separate = tuple(orders[order] for orders, order in zip(rules, (3, 2, 1), strict=True))
@@ -196,14 +197,14 @@ def spread(ratios: Array) -> Row:
 # --- pictures ---
 
 
-def figure_6(trials: Mapping[paper.ChannelSpace, tuple[Array, Array]]) -> Any:
+def figure_6(trials: Mapping[str, tuple[Array, Array]]) -> Any:
     """Plot the mean over all allocations, and the best of them, over the number of wavelengths."""
     figure = new_figure(7.2, 3.6)
     axes = figure.subplots()
-    for (space, (counts, errors)), colour in zip(trials.items(), COLOURS, strict=False):
+    for (name, (counts, errors)), colour in zip(trials.items(), COLOURS, strict=False):
         by_total = errors_by_total(counts, errors)
         means, best = ([reduce(each) for each in by_total.values()] for reduce in (np.mean, np.min))
-        axes.plot(list(by_total), means, "o-", color=colour, markersize=3, label=space.name)
+        axes.plot(list(by_total), means, "o-", color=colour, markersize=3, label=name)
         axes.plot(list(by_total), best, ":", color=colour)
     axes.plot([], [], "o-", color=GREY, markersize=3, label="mean of all allocations")
     axes.plot([], [], ":", color=GREY, label="best allocation")
@@ -214,7 +215,7 @@ def figure_6(trials: Mapping[paper.ChannelSpace, tuple[Array, Array]]) -> Any:
     return figure
 
 
-def figure_7(space: paper.ChannelSpace, counts: Array, errors: Array, divisions: int = 10) -> Any:
+def figure_7(counts: Array, errors: Array, divisions: int = 10) -> Any:
     """Plot the mean error over the shares of the channels as small triangles, darker for larger errors."""
     from matplotlib.collections import PolyCollection
 
@@ -230,7 +231,7 @@ def figure_7(space: paper.ChannelSpace, counts: Array, errors: Array, divisions:
     style = {"cmap": colour_map(), "edgecolors": "white", "linewidths": 0.6}
     triangles = axes.add_collection(PolyCollection(shares @ CORNERS, array=means, **style))
     axes.plot(*CORNERS[[0, 1, 2, 0]].T, color=GREY, linewidth=0.8)
-    for name, corner, side, offset in zip(space.channels, CORNERS, ("bottom", "top", "top"), (5, -5, -5), strict=True):
+    for name, corner, side, offset in zip(CHANNELS, CORNERS, ("bottom", "top", "top"), (5, -5, -5), strict=True):
         place = {"xytext": (0, offset), "textcoords": "offset points", "ha": "center", "va": side}
         axes.annotate(f"all for {name}", corner, color=INK, fontsize=9, **place)
     axes.set_aspect("equal")
@@ -260,21 +261,20 @@ def plot_methods(comparisons: Mapping[tuple[str, ...], Mapping[str, Errors]]) ->
 def main() -> None:
     """Measure, draw and store."""
     checker = make_setup(on_grid(uplift.read_atlas(MACBETH), grid()), ["C"])
-    opponent = paper.opponent_space(checker.wavelengths, checker.cmfs)
-    spaces = (opponent, paper.cone_space(checker.wavelengths, checker.cmfs), paper.XYZ)
-    trials = {space: run_trials(checker, space) for space in spaces}
+    spaces = {name: paper.SPACES[key](checker.wavelengths, checker.cmfs) for name, key in SPACES.items()}
+    trials = {name: run_trials(checker, space) for name, space in spaces.items()}
     materials = on_grid(uplift.read_atlas(*sorted(ATLASES.glob("*.txt"))), grid())
     comparisons = {lights: compare_methods(materials, lights) for lights in LIGHTS}
     found = [table for lights, comparison in comparisons.items() for table in tables(lights, comparison)]
     PICTURES.mkdir(exist_ok=True)
     with styled():
         write_png(figure_6(trials), PICTURES / "figure-6.png", force=True)
-        write_png(figure_7(opponent, *trials[opponent]), PICTURES / "figure-7.png", force=True)
+        write_png(figure_7(*trials["AC1C2"]), PICTURES / "figure-7.png", force=True)
         write_png(plot_methods(comparisons), PICTURES / "methods.png", force=True)
     record(
         "wavelengths",
         materials=len(materials),
         summary=[summary for summary, _ in found],
         errors=[row for _, rows in found for row in rows],
-        **compare_meyer(checker, opponent),
+        **compare_meyer(checker, spaces),
     )

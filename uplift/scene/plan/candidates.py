@@ -3,7 +3,6 @@
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from math import prod
 from typing import Any, Literal, NamedTuple
 
@@ -14,7 +13,6 @@ from uplift.common.errors import UpliftError
 from uplift.io import texture
 from uplift.lattice import AXES
 from uplift.lookup import Cube
-from uplift.lookup.blocks import blockwise
 from uplift.lookup.interpolate import refined_multipliers
 from uplift.models import Sigmoid, evaluate, reflectance
 from uplift.pipeline.options import Options
@@ -128,7 +126,7 @@ class Pixel:
         if self.mode or self.form in (texture.Spectrum.name, INDEX):
             return cube.reflectance(rgb, nm, self.mode or "spectra").astype(kind).astype(float)
         if self.form == texture.Multipliers.name:
-            values = blockwise(partial(refined_multipliers, cube.data), rgb, cube.coefficient_count, kind, 1)
+            values = refined_multipliers(cube.data, rgb).astype(kind)
             return evaluate(cube.data.model, values.astype(float), nm)
         try:
             return reflectance(cube.data.model, cube.coefficients(rgb).astype(kind).astype(float), nm)

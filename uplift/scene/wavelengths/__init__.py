@@ -170,9 +170,9 @@ def choose_orders(setup: RenderSetup, orders: tuple[int, int, int], channels: st
     UnknownNameError
         The channels do not exist.
     """
-    if channels not in meyer.CHANNELS:
-        raise unknown_name(channels, meyer.CHANNELS, "channels")
-    space = meyer.CHANNELS[channels](setup.wavelengths, setup.cmfs)
+    if channels not in meyer.SPACES:
+        raise unknown_name(channels, meyer.SPACES, "channels")
+    space = meyer.SPACES[channels](setup.wavelengths, setup.cmfs)
     return _judged("meyer", setup, meyer.meyer_orders(setup, orders, space))
 
 

@@ -7,7 +7,6 @@ Sections 3 and 4: quadrature, tables 1a, 1b and 2.
 
 import itertools
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,24 +24,8 @@ S_TO_ML_AT_BLUE, L_TO_M_AT_YELLOW = 1 / 16, 2.0
 """Cone ratios s / (m + l) at the first and l / m at the second of these wavelengths (eq. 21; Walraven 1974)."""
 
 
-@dataclass(frozen=True, eq=False)
-class ChannelSpace:
-    """Three channels that are linear in XYZ: a ``name``, the names of the channels, the matrix (3, 3) from XYZ.
-
-    The ``eigenvalues`` (3,) of the opponent space are the squared errors of omitting a channel.
-    """
-
-    name: str
-    channels: tuple[str, str, str]
-    matrix: Array
-    eigenvalues: Array | None = None
-
-
-XYZ = ChannelSpace("XYZ", ("X", "Y", "Z"), np.eye(3))
-
-
-def cone_space(wavelengths: Array, cmfs: Array) -> ChannelSpace:
-    """Cone fundamentals for colour-matching functions (N, 3) at wavelengths (N,) nm, the peak of l at 1.
+def cone_space(wavelengths: Array, cmfs: Array) -> Array:
+    """Matrix (3, 3) from XYZ to S, M and L, for colour-matching functions (N, 3) at (N,) nm, the peak of l at 1.
 
     The confusion points are the chromaticities of the cone primaries, which determine the fundamentals up to a
     factor each. Two cone ratios and the peak determine the factors (eq. 1).
@@ -57,31 +40,31 @@ def cone_space(wavelengths: Array, cmfs: Array) -> ChannelSpace:
     long = 1 / (cmfs @ unscaled[2]).max()
     medium = long * yellow[2] / yellow[1] / L_TO_M_AT_YELLOW
     short = S_TO_ML_AT_BLUE * (medium * blue[1] + long * blue[2]) / blue[0]
-    return ChannelSpace("SML", ("S", "M", "L"), np.array([short, medium, long])[:, None] * unscaled)
+    return np.array([short, medium, long])[:, None] * unscaled
 
 
-def opponent_space(wavelengths: Array, cmfs: Array) -> ChannelSpace:
+def opponent_space(wavelengths: Array, cmfs: Array) -> tuple[Array, Array]:
     """Karhunen–Loève transform of the cones for spectra with uncorrelated wavelengths (eq. 3–10).
 
-    Channels are ordered by descending eigenvalue. Each peaks at 1 or −1, with signs such that A and C1 increase with
-    Y, and C2 with Z.
+    Returns the matrix (3, 3) from XYZ to A, C1 and C2, by descending eigenvalue, and the eigenvalues (3,): the squared
+    errors of omitting a channel. Each peaks at 1 or −1. A and C1 increase with Y, C2 with Z.
     """
-    fundamentals = cone_space(wavelengths, cmfs).matrix
+    fundamentals = cone_space(wavelengths, cmfs)
     responses = cmfs @ fundamentals.T
     step = wavelengths[1] - wavelengths[0]
     values, vectors = np.linalg.eigh(responses.T @ responses * step)
     matrix = vectors[:, ::-1].T @ fundamentals
     matrix /= np.abs(cmfs @ matrix.T).max(axis=0)[:, None]
     matrix *= np.sign(matrix[[0, 1, 2], [1, 1, 2]])[:, None]
-    return ChannelSpace("AC1C2", ("A", "C1", "C2"), matrix, values[::-1])
+    return matrix, values[::-1]
 
 
-CHANNELS: dict[str, Callable[[Array, Array], ChannelSpace]] = {
-    "opponent": opponent_space,
+SPACES: dict[str, Callable[[Array, Array], Array]] = {
+    "opponent": lambda wavelengths, cmfs: opponent_space(wavelengths, cmfs)[0],
     "cones": cone_space,
-    "xyz": lambda wavelengths, cmfs: XYZ,
+    "xyz": lambda wavelengths, cmfs: np.eye(3),
 }
-"""Channel spaces of the paper by name: functions of wavelengths (N,) in nm and colour-matching functions (N, 3)."""
+"""Matrices of channels by name: functions of wavelengths (N,) in nm and colour-matching functions (N, 3)."""
 
 
 POINTS = np.linspace(380.0, 770.0, 101)
@@ -94,12 +77,12 @@ Rules = tuple[QuadratureRule, ...]
 """A rule for each channel."""
 
 
-def channel_functions(space: ChannelSpace, wavelengths: Array, cmfs: Array) -> Array:
-    """Channels (3, 101) of a space at `POINTS`, multiplied by the step."""
-    return (POINTS[1] - POINTS[0]) * space.matrix @ interp_curves(POINTS, wavelengths, cmfs.T)
+def channel_functions(space: Array, wavelengths: Array, cmfs: Array) -> Array:
+    """Channels (3, 101) of a space, by its matrix, at `POINTS`, multiplied by the step."""
+    return (POINTS[1] - POINTS[0]) * space @ interp_curves(POINTS, wavelengths, cmfs.T)
 
 
-def quadrature_rules(space: ChannelSpace, wavelengths: Array, cmfs: Array) -> list[dict[int, QuadratureRule | str]]:
+def quadrature_rules(space: Array, wavelengths: Array, cmfs: Array) -> list[dict[int, QuadratureRule | str]]:
     """Rules of orders 1 to `MAX_ORDER` for each channel of a space, or why there is none (tables 1a and 1b)."""
 
     def rule(masses: Array, order: int) -> QuadratureRule | str:
@@ -112,7 +95,7 @@ def quadrature_rules(space: ChannelSpace, wavelengths: Array, cmfs: Array) -> li
     return [{order: rule(masses, order) for order in range(1, MAX_ORDER + 1)} for masses in functions]
 
 
-def allocations(setup: RenderSetup, space: ChannelSpace, count: int | None = None) -> Iterator[Rules]:
+def allocations(setup: RenderSetup, space: Array, count: int | None = None) -> Iterator[Rules]:
     """Yield every combination of defined rules, or only those of ``count`` wavelengths in total."""
     rules = quadrature_rules(space, setup.wavelengths, setup.cmfs)
     defined = [[rule for rule in channel.values() if isinstance(rule, QuadratureRule)] for channel in rules]
@@ -129,18 +112,18 @@ def four_wavelength_rule(functions: Array) -> Rules:
     return interpolatory_rule([*c1.nodes, a.nodes[1]], POINTS, functions[0]), c1, c2
 
 
-def combine_rules(setup: RenderSetup, space: ChannelSpace, rules: Sequence[QuadratureRule]) -> Sampling:
+def combine_rules(setup: RenderSetup, space: Array, rules: Sequence[QuadratureRule]) -> Sampling:
     """Sample the lights at the nodes of all channels, with weights that map the channels to XYZ."""
     nm = np.unique(np.concatenate([rule.nodes for rule in rules]))
     weights = np.zeros((len(nm), 3))
     for channel, rule in enumerate(rules):
         weights[np.searchsorted(nm, rule.nodes), channel] = rule.weights
     step = setup.wavelengths[1] - setup.wavelengths[0]
-    to_xyz = weights @ np.linalg.inv(space.matrix).T / step
+    to_xyz = weights @ np.linalg.inv(space).T / step
     return Sampling(nm, to_xyz, setup.lights, setup.sampled_powers(nm))
 
 
-def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: ChannelSpace) -> Sampling:
+def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: Array) -> Sampling:
     """Quadrature of a given order, 1 to `MAX_ORDER`, for each channel of a space; whites balanced.
 
     Figure 6 of the paper compares AC1C2, the cones and XYZ in this way.
@@ -161,7 +144,7 @@ def meyer(setup: RenderSetup, count: int) -> Sampling:
     The paper does not state how to allocate. The best allocation is an upper bound on the method.
     Raises `OptionError` if no allocation of orders 1 to 10 has ``count`` wavelengths.
     """
-    space = opponent_space(setup.wavelengths, setup.cmfs)
+    space, _ = opponent_space(setup.wavelengths, setup.cmfs)
     candidates = list(allocations(setup, space, count))
     if count == 4:
         candidates.append(four_wavelength_rule(channel_functions(space, setup.wavelengths, setup.cmfs)))
