@@ -21,7 +21,7 @@ BUILD = {
     "uplift.pipeline.entries:fit_constraints": "entries",
     "uplift.pipeline.build:learn_base": "learnt base",
     "uplift.pipeline.build:fit_prior": "kriging of the entries",
-    "uplift.pipeline.build:initial_guess": "prior of the nodes",
+    "uplift.fit.seeds:initial_guess": "prior of the nodes",
     "uplift.fit.growth:Growth.attempt": "steps of the solver",
     "uplift.pipeline.build:store": "storing",
     "uplift.fit.prior:Prior.standard_error": "standard errors",

@@ -196,8 +196,7 @@ def test_defaults_of_build_are_those_of_the_recorded_options():
 
 
 def test_the_dim_that_an_error_names_fits_into_free_memory(monkeypatch):
-    for name in ("uplift.common.machine.free_memory", "uplift.pipeline.options.free_memory"):
-        monkeypatch.setattr(name, lambda: 2_000_000_000)
+    monkeypatch.setattr("uplift.common.machine.free_memory", lambda: 2_000_000_000)
     with raises(OptionError, "out-of-memory") as caught:
         check_memory(Options(dim=3000))
     largest = int(re.search(r"dim=(\d+)", caught.value.hint)[1])

@@ -22,32 +22,18 @@ from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import format_value
 from uplift.common.version import VERSION
 from uplift.cube import CubeData
+from uplift.fit import growth, growth_coarse, growth_outward, growth_thesis, seeds
 from uplift.fit.base import learn_base
 from uplift.fit.families import Family
-from uplift.fit.growth import STEPS, THESIS_STEPS, Growth, improve
-from uplift.fit.growth_coarse import grow_coarse_to_fine
-from uplift.fit.growth_outward import grow_outward
-from uplift.fit.growth_thesis import grow_from_neighbours
 from uplift.fit.prior import Prior, fit_prior
 from uplift.fit.problem import Problem, nodes_of
-from uplift.fit.seeds import (
-    DIMS,
-    FULL_ENTRY,
-    HALF_ENTRY,
-    Blend,
-    choose_lattice,
-    half_widths,
-    initial_guess,
-    outside_half_widths,
-    seed,
-)
 from uplift.fit.store import store
 from uplift.lattice import EntryBoxes, Lattice, axis_nodes
 from uplift.lookup import Cube
 from uplift.models.model import Model
 from uplift.models.moments import MAX_COUNT
-from uplift.pipeline import entries as spectra
-from uplift.pipeline.entries import AtlasLike, MeasuredEntries
+from uplift.pipeline import entries
+from uplift.pipeline.entries import AtlasLike, Constraints, MeasuredEntries
 from uplift.pipeline.options import (
     AUTO,
     CUSTOM,
@@ -65,10 +51,10 @@ if TYPE_CHECKING:
     from uplift.fit.stock_solvers import Solver
     from uplift.pipeline.look import LooksLike
 
-GROWTH: dict[str, Callable[..., Growth]] = {
-    "outward": grow_outward,
-    "coarse-to-fine": grow_coarse_to_fine,
-    "neighbours": grow_from_neighbours,
+GROWTH: dict[str, Callable[..., growth.Growth]] = {
+    "outward": growth_outward.grow_outward,
+    "coarse-to-fine": growth_coarse.grow_coarse_to_fine,
+    "neighbours": growth_thesis.grow_from_neighbours,
 }
 
 
@@ -155,7 +141,7 @@ def build(
         Spectra of colours that no entry constrains: those expected of real materials, or smooth ones.
     neutral : {"expected", "flat"}, default "expected"
         Spectra of colours with equal components: as of all other colours, or flat, fading to those expected of real
-        materials from a CIE L*a*b* chroma of 4 to 12. Entries keep their measured spectra.
+        materials from a CIE L*a*b* chroma of 4 to 12. Entries keep their measured entries.
     library : Atlas, path-like or sequence of path-like, optional
         Measured spectra that shape the learnt prior but are not constraints. Each file is a family of materials like
         those to be expected; with an atlas, its weight is learnt.
@@ -221,13 +207,10 @@ def build(
     [1.0, 1.0, 1.0]
     """
     given = locals()  # the arguments by name
-    options = Options(
-        **{each.name: given[each.name] for each in fields(Options)}
-        | {
-            "observer": observer.name if isinstance(observer, Camera) else observer,
-            "solver": solver if isinstance(solver, str) else CUSTOM,
-        }
-    )
+    recorded = {each.name: given[each.name] for each in fields(Options)}
+    recorded["observer"] = observer.name if isinstance(observer, Camera) else observer
+    recorded["solver"] = solver if isinstance(solver, str) else CUSTOM
+    options = Options(**recorded)
     if isinstance(scene, str | os.PathLike | Sequence):
         from uplift.io.scene_colours import Images  # a build without images needs no image code
 
@@ -243,9 +226,9 @@ def problem_of(options: Options, observer: str | Camera, solver: str | Solver) -
     camera = observer if isinstance(observer, Camera) else options.observer
     wavelengths = options.shortest, options.longest, options.step
     sensor = observers.sensor(options.space, options.illuminant, camera, wavelengths)
-    lights = tuple(observers.light(name, sensor.observer, *sensor.range) for name in options.lights)
-    error_light = observers.light(ERROR_ILLUMINANT, sensor.observer, *sensor.range)
-    problem = Problem(sensor, options.spectrum_model(), lights, error_light, options.threshold)
+    names = (*options.lights, ERROR_ILLUMINANT)
+    *lights, error_light = (observers.light(name, sensor.observer, *sensor.range) for name in names)
+    problem = Problem(sensor, options.spectrum_model(), tuple(lights), error_light, options.threshold)
     if solver != SOLVERS[0]:
         from uplift.fit import stock_solvers
 
@@ -262,13 +245,13 @@ def problem_of(options: Options, observer: str | Camera, solver: str | Solver) -
 
 
 def _choose_lattice(
-    options: Options, problem: Problem, constraints: spectra.Constraints, prior: Prior, blend: Blend
+    options: Options, problem: Problem, constraints: Constraints, prior: Prior, blend: seeds.Blend
 ) -> Options:
     """Replace ``dim="auto"`` by the smallest lattice that keeps every entry, if it fits into memory."""
-    axis, dim, lost = choose_lattice(problem, prior, blend, constraints.at_nodes, options.auto_tolerance)
+    axis, dim, lost = seeds.choose_lattice(problem, prior, blend, constraints.at_nodes, options.auto_tolerance)
     if lost:
-        spectra.warn(
-            f"no dim up to {DIMS[-1]} keeps every entry within ΔE00 {options.auto_tolerance:g}: "
+        entries.warn(
+            f"no dim up to {seeds.DIMS[-1]} keeps every entry within ΔE00 {options.auto_tolerance:g}: "
             f"{lost} of {len(constraints.names)} are too close to others; dim {dim} keeps the most",
             code="no-dim-keeps-all-entries",
         )
@@ -277,7 +260,7 @@ def _choose_lattice(
     return options
 
 
-Learnt = tuple[spectra.Constraints, Prior, tuple[float, ...]]
+Learnt = tuple[Constraints, Prior, tuple[float, ...]]
 """Fitted entries, the prior, and the relevance of the families: they do not depend on the lattice."""
 
 
@@ -285,7 +268,7 @@ def learn(problem: Problem, entry_model: Model, measured: MeasuredEntries, famil
     """Fit the entries and the prior."""
     # Entries p_i: min ‖g − m‖² + Σ |w ΔL*a*b*|² subject to r(p) = t (docs/mathematics.md, 6).
     # Prior c(x) = s(x) + d(x): smooth spectra, what families deviate from them, and kriging of the entries (7).
-    constraints = spectra.fit_constraints(problem, entry_model, measured)
+    constraints = entries.fit_constraints(problem, entry_model, measured)
     base, relevance = learn_base(problem, families, constraints.at_nodes)
     return constraints, fit_prior(problem, constraints.at_nodes, base), relevance
 
@@ -306,10 +289,10 @@ def build_stages(
     neighbours = options.growth == "neighbours"
 
     # The spectra: families of the library, entries of the atlas, and looks, which become further entries.
-    libraries = () if library is None else spectra.read_libraries(library)
-    families = spectra.families_of(options, libraries, sensor)
-    atlas = spectra.as_atlas(atlas)
-    measured, outside = spectra.split_by_gamut(atlas, sensor)
+    libraries = () if library is None else entries.read_libraries(library)
+    families = entries.families_of(options, libraries, sensor)
+    atlas = entries.as_atlas(atlas)
+    measured, outside = entries.split_by_gamut(atlas, sensor)
     targets = None
     if looks is not None:
         from uplift.pipeline.looks import targets_of
@@ -323,12 +306,13 @@ def build_stages(
         targets, constraints, prior = targets.fit(problem, constraints, prior)
 
     # The lattice, the boxes of the entries in it (8), and the nodes that start from entries: c = w c_i + (1 − w) c(x).
-    blend = FULL_ENTRY if options.seed_corners or neighbours else HALF_ENTRY
+    blend = seeds.FULL_ENTRY if options.seed_corners or neighbours else seeds.HALF_ENTRY
     if options.dim == AUTO:
         options = _choose_lattice(options, problem, constraints, prior, blend)
     lattice, rgb = Lattice(axis_nodes(options.axis, int(options.dim))), constraints.at_nodes.rgb
-    boxes, seeds = EntryBoxes(lattice, rgb, half_widths(lattice.to_steps(rgb))), seed(lattice, rgb)
-    spectra.warn_of_close(constraints.names, boxes.half_width, seeds.crowded)
+    boxes = EntryBoxes(lattice, rgb, seeds.half_widths(lattice.to_steps(rgb)))
+    seeded = seeds.seed(lattice, rgb)
+    entries.warn_of_close(constraints.names, boxes.half_width, seeded.crowded)
     own = constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
 
     # The nodes that a scene needs, or all, grow from the seeds: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7),
@@ -336,29 +320,30 @@ def build_stages(
     kept = None if scene is None else np.flatnonzero(scene.required_points(boxes, sensor, progress))
     nodes = nodes_of(lattice, sensor, None if neighbours else kept)
 
-    expected = partial(initial_guess, prior=prior, seeds=seeds, entries=own, blend=blend)
-    grown = GROWTH[options.growth](problem, nodes, expected, seeds.points, progress)
-    improvements = improve(grown, THESIS_STEPS if neighbours else STEPS)
-    points = store(grown, seeds, prior)
+    expected = partial(seeds.initial_guess, prior=prior, seeds=seeded, entries=own, blend=blend)
+    grown = GROWTH[options.growth](problem, nodes, expected, seeded.points, progress)
+    improvements = growth.improve(grown, growth.THESIS_STEPS if neighbours else growth.STEPS)
+    points = store(grown, seeded, prior)
     if options.solver != SOLVERS[0] and (unfitted := points.counts()["unfitted"]):
         problem_text = f"{unfitted} nodes are over the threshold with the solver '{options.solver}'"
-        spectra.warn(problem_text, code="nodes-unfitted", hint="use the default solver")
+        entries.warn(problem_text, code="nodes-unfitted", hint="use the default solver")
     points = points if kept is None else points.restricted_to(kept)
 
     # Entries outside the RGB space constrain no node: their spectra answer XYZ and textures of other spaces.
     # Errors are learnt from measured reflectances, and from those expected without each of them.
-    known, beyond = [None if prior.left_out is None else each.reflectances for each in (measured, outside)], None
+    known = [None if prior.left_out is None else each.reflectances.astype(np.float32) for each in (measured, outside)]
+    table = constraints.table(model, boxes.half_width, known[0])
+    if prior.left_out is not None:
+        table = replace(table, left_out=prior.left_out.astype(np.float32))
     if outside.names:
-        half_width = outside_half_widths(lattice, outside.rgb)
-        spectra.warn_of_close(outside.names, half_width)
-        fitted = spectra.fit_constraints(problem, entry_model, outside)
-        beyond = fitted.table(model, half_width, known[1])
-    table = constraints.table(model, boxes.half_width, known[0], prior.left_out, beyond)
+        half_width = seeds.outside_half_widths(lattice, outside.rgb)
+        entries.warn_of_close(outside.names, half_width)
+        fitted = entries.fit_constraints(problem, entry_model, outside)
+        table = replace(table, outside=fitted.table(model, half_width, known[1]))
     # What the kriging learnt, if there is an atlas, and the errors, if it is large enough
     learnt = {} if prior.kriging is None else prior.kriging.kernel._asdict()
     if prior.errors is not None:
         learnt["error_bound"] = prior.errors.radii.bound / prior.errors.radii.standard
-    used = set(measured.names)
     provenance = {
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
@@ -367,7 +352,7 @@ def build_stages(
             | ({} if source.measured == "auto" else {"measured": source.measured})
             for source in atlas.sources
         ],
-        "left_out": [name for name in atlas.names if name not in used],
+        "left_out": list(outside.names),
         "skipped": [entry.name for entry in atlas.skipped],
         "prior": learnt,
         "improvements": [{"step": step, "tried": tried, "mended": fixed} for step, tried, fixed in improvements],

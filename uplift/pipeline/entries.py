@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uplift.atlas import Atlas, Source, on_grid, read_atlas, resample
 from uplift.colorimetry.observer import COMMON_SPACES, grid, smallest_space
@@ -59,31 +60,14 @@ class Constraints:
         stored = self.entry_model.to_storage(self.at_entries.multipliers)  # c_j = (1/π) ∫ g cos jφ dφ for any count
         return model.from_storage(stored[:, : model.count])
 
-    def table(
-        self,
-        model: Model,
-        half_width: Array,
-        measured: Array | None,
-        left_out: Array | None = None,
-        outside: AtlasTable | None = None,
-    ) -> AtlasTable:
+    def table(self, model: Model, half_width: Array, measured: NDArray[np.float32] | None) -> AtlasTable:
         """Return the part of a cube that records the constraints; entries with more coefficients have them there."""
         coefficients = model.to_storage(self.at_nodes.multipliers)
         spectra = EntrySpectra(model, coefficients)
         if self.at_entries is not self.at_nodes and len(self.names):
             spectra = EntrySpectra(self.entry_model, self.entry_model.to_storage(self.at_entries.multipliers))
-        return AtlasTable(
-            self.names,
-            self.at_nodes.rgb,
-            coefficients,
-            half_width,
-            self.at_entries.error,
-            spectra,
-            None if measured is None else measured.astype(np.float32),
-            None if left_out is None else left_out.astype(np.float32),
-            self.looks,
-            outside,
-        )
+        rgb, error = self.at_nodes.rgb, self.at_entries.error
+        return AtlasTable(self.names, rgb, coefficients, half_width, error, spectra, measured, looks=self.looks)
 
 
 def as_atlas(atlas: AtlasLike) -> Atlas:

@@ -134,19 +134,17 @@ def targets_of(
 
 
 def _screens(look: Look, sensor: Sensor) -> tuple[Sensor, ...]:
-    screens: dict[str, Sensor] = {}
-    for name in look.lights:
-        try:
-            (screen,) = display_sensors([name], sensor.observer, *sensor.range)
-        except UpliftError as error:
-            raise look_error(look, error.problem, error.code, error.hint) from error
-        if screen.illuminant == sensor.illuminant:
-            problem = f"{name} is the illuminant of the build, under which the colour is that of rgb"
-            raise look_error(look, problem, hint="remove it")
-        if screen.illuminant in screens:
-            raise look_error(look, f"{name} occurs twice", hint="remove one of the two")
-        screens[screen.illuminant] = screen
-    return tuple(screens.values())
+    try:
+        screens = display_sensors(list(look.lights), sensor.observer, *sensor.range)
+    except UpliftError as error:
+        raise look_error(look, error.problem, error.code, error.hint) from error
+    if len(screens) < len(look.lights):
+        problem = f"two of its lights are the same: {', '.join(look.lights)}"
+        raise look_error(look, problem, hint="remove one of the two")
+    if sensor.illuminant in (screen.illuminant for screen in screens):
+        problem = f"{sensor.illuminant} is the illuminant of the build, under which the colour is that of rgb"
+        raise look_error(look, problem, hint="remove it")
+    return screens
 
 
 def _goal(look: Look, sensor: Sensor, screens: Sequence[Sensor]) -> LookGoal:
@@ -174,14 +172,9 @@ def _warn_of_missed(look: Look, lights: Sequence[Mapping[str, Any]]) -> None:
     missed = [light for light in lights if light["delta_e"] > MET]
     if not missed:
         return
-    code, problem, hint = (
-        "look-not-reached",
-        "the coefficients of its spectrum do not reach it",
-        "use more entry_coefficients",
-    )
     impossible = any(light["possible"] > MET for light in lights)
-    if impossible:
-        code, problem, hint = "look-impossible", "no reflectance meets it", ""
+    problem = "no reflectance meets it" if impossible else "the coefficients of its spectrum do not reach it"
+    code, hint = ("look-impossible", "") if impossible else ("look-not-reached", "use more entry_coefficients")
     shown = []
     for light in missed:
         answer, target = hex_codes(np.array([light["answer"], light["wish"]]))

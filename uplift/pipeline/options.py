@@ -12,7 +12,6 @@ from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP
 from uplift.common import machine
 from uplift.common.errors import OptionError, unknown_name
-from uplift.common.machine import PROCESS_BYTES, free_memory
 from uplift.common.text import format_value
 from uplift.cube.file import MAX_LIGHTS, MAX_THRESHOLD, MIN_THRESHOLD
 from uplift.lattice import AXES
@@ -30,13 +29,14 @@ MODELS, SOLVERS = get_args(ModelName), get_args(SolverName)
 CUSTOM = "custom"
 """Recorded in place of a solver that was given as an object, and cannot be repeated."""
 CHOICES: dict[str, tuple[str, ...]] = {
+    "model": MODELS,
     "axis": AXES,
     "prior": get_args(PriorName),
     "neutral": get_args(NeutralName),
     "growth": get_args(GrowthName),
     "solver": (*SOLVERS, CUSTOM),
 }
-"""Names of options that have a choice. That of models is by `Options.spectrum_model`."""
+"""Names of options that have a choice."""
 MAX_AUTO_TOLERANCE = 100.0
 """ΔE00 between black and white."""
 MAX_RANGE = 300.0, 1000.0
@@ -91,10 +91,10 @@ class Options:
             object.__setattr__(self, field.name, _plain(field.name, field.type, getattr(self, field.name)))
         for problem, hint in self._faults():
             raise OptionError(problem, hint=hint)
-        self.spectrum_model()
         for option, names in CHOICES.items():
             if getattr(self, option) not in names:
                 raise unknown_name(getattr(self, option), [name for name in names if name != CUSTOM], option)
+        self.spectrum_model()  # which checks the coefficients
 
     def _faults(self) -> Iterator[tuple[str, str]]:
         """Yield problems of the values, with hints. The first one counts."""
@@ -127,12 +127,9 @@ class Options:
 
     def spectrum_model(self, coefficients: int | None = None) -> Model:
         """Create the spectrum model, from `shortest` to `longest` nm, of the nodes or of other moments."""
-        if self.model == Moments.name:
-            count = self.coefficients if coefficients is None else coefficients
-            return Moments(count, self.shortest, self.longest, self.warp)
         if self.model == Sigmoid.name:
             return Sigmoid(self.shortest, self.longest)
-        raise unknown_name(self.model, MODELS, "model")
+        return Moments(coefficients or self.coefficients, self.shortest, self.longest, self.warp)
 
 
 def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
@@ -169,7 +166,7 @@ def check_memory(options: Options) -> None:
         return
     # Peak memory of a node: multipliers, and coefficients in single precision, and the other arrays.
     node = 16 * options.spectrum_model().count + 60
-    largest = int(max(((free_memory() or 0) - PROCESS_BYTES) / node, 8) ** (1 / 3))
+    largest = int(max(((machine.free_memory() or 0) - machine.PROCESS_BYTES) / node, 8) ** (1 / 3))
     hint = f"use dim={largest} or less" if largest > 2 else "use a machine with more memory"
-    need = PROCESS_BYTES + min(options.dim, 10**90) ** 3 * node  # a float overflows for absurd values of dim
+    need = machine.PROCESS_BYTES + min(options.dim, 10**90) ** 3 * node  # a float overflows for absurd values of dim
     machine.check_memory(need, "a lattice of this dim", OptionError, hint)

@@ -34,9 +34,6 @@ class StoredScene:
 
     def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
         """Return the nodes that are present in the cube; see `SceneLike`."""
-        dim = self.data.lattice.dim
-        if dim != boxes.lattice.dim:
-            raise OptionError(f"the points of a stored scene need dim {dim}, got {boxes.lattice.dim}")
         return self.data.points.present
 
     def describe(self) -> list[dict[str, Any]]:
@@ -45,7 +42,7 @@ class StoredScene:
 
 
 def rebuild(
-    stored: Cube, path: StrPath, folders: Iterable[StrPath] = (), *, progress: ProgressCallback = ignore_progress
+    stored: Cube, path: StrPath, folders: Sequence[StrPath] = (), *, progress: ProgressCallback = ignore_progress
 ) -> Cube:
     """Build a cube, read from ``path``, again. Warnings of the first build are not repeated.
 
@@ -58,11 +55,9 @@ def rebuild(
         raise CubeFileError(
             "was filled from another cube and cannot be rebuilt", path=path, hint="rebuild the cube that was filled"
         )
-    candidates = _search_path(path, folders)
-    atlases, libraries = (_find_all(stored.data, path, kind, candidates) for kind in ("atlases", "libraries"))
-    for error in (*atlases.values(), *libraries.values()):
-        if error is not None:
-            warnings.warn(UpliftWarning(error.problem, code=error.code, path=path), stacklevel=2)
+    atlases, libraries = (_find_all(stored.data, path, kind, folders) for kind in ("atlases", "libraries"))
+    for error in filter(None, (*atlases.values(), *libraries.values())):
+        warnings.warn(UpliftWarning(error.problem, code=error.code, path=path), stacklevel=2)
     atlas, library = _read(stored.data, atlases), tuple(libraries)
     scene = StoredScene(stored.data) if "scene" in stored.data.provenance else None
     given = asdict(options)
@@ -80,17 +75,16 @@ def rebuild(
             raise _unknown_options(error, path) from error
 
 
-def recorded_atlas(data: CubeData, path: StrPath, folders: Iterable[StrPath] = ()) -> Atlas | None:
+def recorded_atlas(data: CubeData, path: StrPath, folders: Sequence[StrPath] = ()) -> Atlas | None:
     """Read the atlas that a cube, read from ``path``, was built from; None for a cube without one.
 
     The files are searched by name and digest in ``folders``, in the folder of the cube, and in folders ``atlases`` in
     these, and by digest among the shipped atlases. A recorded name never opens a file elsewhere. Warnings are not
     repeated. Raises `CubeFileError` if the cube does not record its atlas, or a file is missing or has changed.
     """
-    files = _find_all(data, path, "atlases", _search_path(path, folders))
-    for error in files.values():
-        if error is not None:
-            raise error
+    files = _find_all(data, path, "atlases", folders)
+    for error in filter(None, files.values()):
+        raise error
     return _read(data, files)
 
 
@@ -103,17 +97,14 @@ def _read(data: CubeData, files: Iterable[Path]) -> Atlas | None:
     return merge(atlases) if atlases else None
 
 
-def _find_all(data: CubeData, path: StrPath, kind: str, folders: Sequence[Path]) -> dict[Path, CubeFileError | None]:
+def _find_all(data: CubeData, path: StrPath, kind: str, folders: Sequence[StrPath]) -> dict[Path, CubeFileError | None]:
     """Find the recorded files of a kind, each with an error if it has changed."""
     if kind == "atlases" and kind not in data.provenance:
         raise _missing_provenance(path)
-    sources = data.provenance.get(kind, ())
-    return dict(_find(path, source["name"], source["digest"], folders) for source in sources)
-
-
-def _search_path(path: StrPath, folders: Iterable[StrPath]) -> list[Path]:
     roots = [*map(Path, folders), Path(path).resolve().parent]
-    return [folder for root in roots for folder in (root, root / "atlases")]
+    searched = [folder for root in roots for folder in (root, root / "atlases")]
+    sources = data.provenance.get(kind, ())
+    return dict(_find(path, source["name"], source["digest"], searched) for source in sources)
 
 
 def _find(path: StrPath, name: str, digest: str, folders: Sequence[Path]) -> tuple[Path, CubeFileError | None]:
