@@ -16,7 +16,6 @@ from uplift.cube import CubeData
 BLOCK = 4096
 """Rows per block: their temporary arrays fit into a core's cache."""
 
-FLOAT_TYPES = (np.dtype(np.float64), np.dtype(np.float32))
 Function = Callable[[Array], NDArray[Any]]
 """From rows (k, K) to rows (k, N)."""
 
@@ -71,7 +70,7 @@ def as_wavelengths(wavelengths: ArrayLike | None, default: Array) -> Array:
 def as_float_type(dtype: DTypeLike) -> np.dtype[Any]:
     """Convert to float64 or float32; `OptionError` for other types."""
     with contextlib.suppress(TypeError):
-        if np.dtype(dtype) in FLOAT_TYPES:
+        if np.dtype(dtype) in (np.float64, np.float32):
             return np.dtype(dtype)
     raise OptionError(f"dtype must be float64 or float32, got {dtype!r}")
 

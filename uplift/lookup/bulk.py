@@ -64,12 +64,12 @@ class Grid(NamedTuple):
     """(2,) smallest and largest value."""
 
 
-def _make_grid(table: NodeTable) -> Grid:
-    """Make the arrays of a table."""
+def _sampler(table: NodeTable, threads: int) -> "Sampler":
+    """Put the arrays of a table on the device of JAX."""
     lattice, boxes = table.data.lattice, table.data.entry_boxes
     bins, most = _bins(lattice)
     values = np.concatenate([table.lattice.ravel(), table.atlas.ravel()])
-    return Grid(
+    grid = Grid(
         np.append(lattice.nodes, np.inf),
         bins,
         np.zeros(most),
@@ -79,6 +79,7 @@ def _make_grid(table: NodeTable) -> Grid:
         np.concatenate([table.atlas, np.zeros_like(table.lattice[:1])]),
         np.array([np.nanmin(values), np.nanmax(values)]),
     )
+    return _on_device(table.data.sensor, grid, threads, table.exact)
 
 
 def _bins(lattice: Lattice) -> tuple[Places, int]:
@@ -275,10 +276,6 @@ def coefficients(cube: Cube, count: int | None = None, *, threads: int = 2) -> S
     """
     width, threads = as_coefficient_count(count, cube.data), as_thread_count(threads)
     return _sampler(tabulate_coefficients(cube.data, width, np.float32, threads), threads)
-
-
-def _sampler(table: NodeTable, threads: int) -> Sampler:
-    return _on_device(table.data.sensor, _make_grid(table), threads, table.exact)
 
 
 def _on_device(sensor: Sensor, grid: Grid, threads: int, exact: Exact | None) -> Sampler:

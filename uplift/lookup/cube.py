@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
@@ -377,7 +376,7 @@ def expected_errors(cube: Cube, rgb: ArrayLike, light: str | Light | None = None
     return blocks.blockwise(function, blocks.as_colours(rgb, data.sensor), 2)
 
 
-def find_file(path: str | os.PathLike[str], packaged: Mapping[str, Path] = PACKAGED) -> str | os.PathLike[str]:
+def find_file(path: str | os.PathLike[str], packaged: dict[str, Path] = PACKAGED) -> str | os.PathLike[str]:
     """Return the packaged file that a name, in any case, stands for, or else the path. A file takes precedence."""
     found = packaged.get(os.fsdecode(path).casefold())
     return path if found is None or os.path.lexists(path) else found

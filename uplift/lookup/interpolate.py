@@ -21,7 +21,7 @@ from functools import partial
 import numpy as np
 
 from uplift.colorimetry.sensor import format_rgb
-from uplift.common.arrays import Array, Indices, Mask
+from uplift.common.arrays import Array, Mask
 from uplift.common.errors import ColourError
 from uplift.cube import CubeData
 from uplift.lattice import Nodes, weighted_sum
@@ -56,11 +56,12 @@ def exact(mix: Mode, data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     mixed = mix(data, rgb, wavelengths)
     if data.inexact_cells is None:
         return mixed
-    rows, share = fading_rows(data, rgb) if mix is mixed_moments else (inexact_rows(data, rgb), 1)
+    share = fading_share(data, rgb) if mix is mixed_moments else is_inexact(data, rgb)
+    rows = np.flatnonzero(share)
     if rows.size:
         at_sensor = mix(data, rgb[rows], data.sensor.wavelengths)
         moved = with_colours(data, mixed[rows], at_sensor, rgb[rows], wavelengths)
-        mixed[rows] = (1 - share) * mixed[rows] + share * moved
+        mixed[rows] = (1 - share[rows, None]) * mixed[rows] + share[rows, None] * moved
     return mixed
 
 
@@ -75,35 +76,34 @@ def mixed_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     return _mix_entries(data, nodes, lattice, wavelengths)
 
 
-def inexact_rows(data: CubeData, rgb: Array) -> Indices:
-    """Return the rows of linear RGB (n, 3) in [0, 1] whose nodes do not all have their own colours.
+def is_inexact(data: CubeData, rgb: Array) -> Mask:
+    """Whether the nodes around linear RGB (n, 3) in [0, 1] do not all have their own colours.
 
     A wide-gamut lattice has corners of colours that no reflectance has, and stores other colours there. Mixtures of
     such corners miss the requested colour, although most colours of their cells are realisable.
     """
     if data.inexact_cells is None:
-        return np.zeros(0, dtype=np.int64)
-    return np.flatnonzero(data.inexact_cells[data.entry_boxes.cell(rgb)])
+        return np.zeros(len(rgb), dtype=bool)
+    return data.inexact_cells[data.entry_boxes.cell(rgb)]
 
 
-def fading_rows(data: CubeData, rgb: Array) -> tuple[Indices, Array]:
-    """Return the rows (k,) of linear RGB (n, 3) whose weighted coefficients are moved, and by which share (k, 1).
+def fading_share(data: CubeData, rgb: Array) -> Array:
+    """Return the share (n,) by which weighted coefficients at linear RGB (n, 3) are moved.
 
     Weighted coefficients miss their colour in all cells. The share is 1 in cells with a node that has not its own
     colour, and falls to 0 across the cells around them, so that answers are continuous.
     """
     if data.inexact_corners is None:
-        return np.zeros(0, dtype=np.int64), np.zeros((0, 1))
+        return np.zeros(len(rgb))
     nodes = around(data, rgb)
-    share = np.minimum((data.inexact_corners[nodes.points] * nodes.weights).sum(axis=1), 1)
-    rows = np.flatnonzero(share)
-    return rows, share[rows, None]
+    return np.minimum((data.inexact_corners[nodes.points] * nodes.weights).sum(axis=1), 1)
 
 
 def mixed_moments(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the weighted coefficients of the lattice, mixed with entries."""
     nodes = around(data, rgb)
-    lattice = reflectance(data.model, _lattice_coefficients(data, nodes), wavelengths)
+    weighted = weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
+    lattice = reflectance(data.model, weighted, wavelengths)
     return _mix_entries(data, nodes, lattice, wavelengths)
 
 
@@ -111,8 +111,6 @@ def mixed_refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) of the weighted coefficients of the lattice and of entries, moved to their colours."""
     nodes = around(data, rgb)
     lattice = evaluate(data.model, _exact_lattice(data, nodes, rgb), wavelengths)
-    if not nodes.hits.rows.size:
-        return lattice
     return nodes.hits.mix(lattice, evaluate(data.atlas.spectra.model, _exact_entries(data, nodes), wavelengths))
 
 
@@ -156,9 +154,11 @@ def exact_coefficients(
     data: CubeData, model: Model, rgb: Array, weighted: Array, multipliers: Callable[[CubeData, Array], Array]
 ) -> Array:
     """Move coefficients (n, K), where nodes have not their own colours, to those of exact ``multipliers``."""
-    rows, share = fading_rows(data, rgb)
+    share = fading_share(data, rgb)
+    rows = np.flatnonzero(share)
     if rows.size:
-        weighted[rows] = (1 - share) * weighted[rows] + share * model.to_storage(multipliers(data, rgb[rows]))
+        moved = model.to_storage(multipliers(data, rgb[rows]))
+        weighted[rows] = (1 - share[rows, None]) * weighted[rows] + share[rows, None] * moved
     return weighted
 
 
@@ -190,8 +190,6 @@ def extended_multipliers(data: CubeData, rgb: Array) -> Array:
     """
     nodes, model = around(data, rgb), data.atlas.spectra.model
     extended = _append_zeros(data, _exact_lattice(data, nodes, rgb))
-    if not nodes.hits.rows.size:
-        return extended
     inside = nodes.hits._replace(rows=np.arange(len(nodes.hits.rows)))
     mixed = inside.mix(model.to_storage(extended[nodes.hits.rows]), model.to_storage(_exact_entries(data, nodes)))
     extended[nodes.hits.rows] = refine_to_rgb(data, model, model.from_storage(mixed), rgb[nodes.hits.rows])
@@ -208,14 +206,10 @@ def node_errors(data: CubeData, rgb: Array) -> Array:
     return nodes.hits.mix(lattice, entries[nodes.hits.entry])
 
 
-def _lattice_coefficients(data: CubeData, nodes: Nodes) -> Array:
-    return weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
-
-
 def _exact_lattice(data: CubeData, nodes: Nodes, rgb: Array) -> Array:
     """Multipliers (n, C) of the lattice that have exactly its share of the colours (n, 3)."""
     # The mean moments nearly have the mean colour: a step or two of Δx = A⁺ (t − r) suffice (5).
-    start = data.model.from_storage(_lattice_coefficients(data, nodes))
+    start = data.model.from_storage(weighted_sum(data.points.coefficients, nodes.points, nodes.weights))
     return refine_to_rgb(data, data.model, start, nodes.lattice_rgb(rgb))
 
 

@@ -89,22 +89,19 @@ class LabErrors:
 
         Positive semidefinite; [:, 1:, 1:] is that of a* and b*.
         """
-        expected, hits = (
-            self.expected(rgb_to_lab(self.data.sensor, np.clip(rgb, 0, 1))),
-            self.data.outside_boxes.find(rgb),
-        )
+        expected = self.expected(rgb_to_lab(self.data.sensor, np.clip(rgb, 0, 1)))
+        hits = self.data.outside_boxes.find(rgb)
         expected[hits.rows] *= hits.lattice_weight[:, None] ** 2  # the share of the answer that no entry gives
-        products = expected + self.expected.floor
-        return (self.expected.radii.scale**2 * products).reshape(-1, 3, 3)
+        return (self.expected.radii.scale**2 * (expected + self.expected.floor)).reshape(-1, 3, 3)
 
 
 def lab_errors(data: CubeData, light: Light) -> LabErrors:
     """Learn the covariances in CIE L*a*b* under a light; `OptionError` without left-out entries."""
     measured, left_out = _evidence(data)
-    coefficients = data.atlas.coefficients[: len(measured)]
-    spectra = (left_out, reflectance(data.model, coefficients, data.sensor.wavelengths))
+    spectra = (left_out, reflectance(data.model, data.atlas.coefficients[: len(measured)], data.sensor.wavelengths))
     missed, kept = (delta_e_spectra(light, each, measured) for each in spectra)
-    differences = [_differences(light, each, measured) for each in spectra]
+    measured_lab = lab(measured @ light.xyz.T, light.white)
+    differences = [measured_lab - lab(each @ light.xyz.T, light.white) for each in spectra]
     # Products (E, 9) of the components
     left_out_products, kept_products = ((each[:, :, None] * each[:, None, :]).reshape(-1, 9) for each in differences)
     expected = expected_error(data.entry_lab, missed, kept, (left_out_products, kept_products))
@@ -124,9 +121,3 @@ def _evidence(data: CubeData) -> tuple[NDArray[Any], NDArray[Any]]:
             hint="build the cube again, with an atlas of at least 8 entries",
         )
     return data.atlas.measured, data.atlas.left_out
-
-
-def _differences(light: Light, answered: NDArray[Any], measured: NDArray[Any]) -> Array:
-    """Differences (E, 3) in L*a*b*."""
-    answered_lab, measured_lab = (lab(spectra @ light.xyz.T, light.white) for spectra in (answered, measured))
-    return measured_lab - answered_lab

@@ -4,15 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uplift.colorimetry import mismatch
 from uplift.colorimetry.delta_e import lab
-from uplift.colorimetry.mismatch import (
-    DIVISIONS,
-    LargestDifference,
-    MismatchVolumes,
-    largest_difference,
-    mismatch_volumes,
-    outline,
-)
 from uplift.colorimetry.sensor import Light, in_unit_cube
 from uplift.colorimetry.solid import solid_volume
 from uplift.common.arrays import Array
@@ -30,9 +23,9 @@ class Bounds:
     """(n, N) the answers at the wavelengths of the sensor."""
     xyz: Array
     """(n, 3) their XYZ under the light."""
-    volumes: MismatchVolumes
+    volumes: mismatch.MismatchVolumes
     """XYZ of all reflectances of the colours."""
-    largest: LargestDifference
+    largest: mismatch.LargestDifference
     """The reflectances whose colour differs most from that of the answer."""
     covariance: Array | None
     """(n, 3, 3) expected covariance of L*a*b* of a material of the colour; None without left-out entries."""
@@ -57,7 +50,7 @@ class Bounds:
 
     def outline(self, row: int) -> Array:
         """Compute the outline (M, 2) in a* and b* of all colours that the reflectances of colour ``row`` can have."""
-        return outline(self.volumes.lab[row, :, 1:], self.volumes.directions.faces)
+        return mismatch.outline(self.volumes.lab[row, :, 1:], self.volumes.directions.faces)
 
     def likely(self, row: int) -> Array | None:
         """Compute the ellipse (M, 2) in a* and b* that holds `LIKELY` of the materials like the atlas, if known."""
@@ -70,17 +63,18 @@ class Bounds:
         return np.asarray(self.lab[row, 1:] + self.likely_radius * (circle * np.sqrt(np.maximum(values, 0))) @ axes.T)
 
 
-def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", divisions: int = DIVISIONS) -> Bounds:
+def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", divisions: int = mismatch.DIVISIONS) -> Bounds:
     """Compute bounds of the answers to linear RGB (n, 3) under a light at the wavelengths of the sensor.
 
     Colours outside [0, 1] are answered by `reflectance_anywhere`; ``divisions`` is the density of the boundary points.
     Raises `ColourError` if no reflectance has a colour.
     """
     data = cube.data
-    volumes = mismatch_volumes(data.sensor, light, rgb, divisions)
+    volumes = mismatch.mismatch_volumes(data.sensor, light, rgb, divisions)
     spectra = reflectance_anywhere(data, rgb, data.sensor.wavelengths, mode, ~in_unit_cube(rgb))
     xyz = spectra @ light.xyz.T
-    errors = None if data.atlas.left_out is None else lab_errors(data, light)
-    covariance = None if errors is None else errors.covariance(rgb)
-    radius = None if errors is None else errors.likely_radius
-    return Bounds(light, spectra, xyz, volumes, largest_difference(volumes, xyz), covariance, radius)
+    largest, covariance, radius = mismatch.largest_difference(volumes, xyz), None, None
+    if data.atlas.left_out is not None:
+        errors = lab_errors(data, light)
+        covariance, radius = errors.covariance(rgb), errors.likely_radius
+    return Bounds(light, spectra, xyz, volumes, largest, covariance, radius)

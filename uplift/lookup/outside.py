@@ -40,22 +40,17 @@ def reflectance_outside(data: CubeData, rgb: Array, at: Array) -> Array:
             hint="reduce its luminance, where white has Y = 1, or its distance from white",
         )
     # Start from the nearest colour inside, and near an entry outside from its spectrum, unless that answers alone.
-    hits, outside = data.outside_boxes.find(rgb), data.atlas.outside
-    entries = None if outside is None else outside.spectra
-    has_lattice = np.ones(len(rgb), dtype=bool)
-    has_lattice[hits.rows[hits.lattice_weight == 0]] = False
+    # A cube without entries outside has no boxes there, and no hits.
+    hits, entries = data.outside_boxes.find(rgb), (data.atlas.outside or data.atlas).spectra
+    has_lattice = ~np.isin(np.arange(len(rgb)), hits.rows[hits.lattice_weight == 0])
     start = data.model.from_storage(coefficients(data, map_to_gamut(rgb[has_lattice], data.sensor, MAPPING).rgb))
     multipliers = refine_to_rgb(data, data.model, start, rgb[has_lattice])
-    own = None
-    if entries is not None and hits.rows.size:
-        own = refine_to_rgb(data, entries.model, entries.multipliers[hits.entry], rgb[hits.rows])
+    own = refine_to_rgb(data, entries.model, entries.multipliers[hits.entry], rgb[hits.rows])
 
     def spectra(wavelengths: Array) -> Array:
         found = np.zeros((len(rgb), len(wavelengths)))
         found[has_lattice] = evaluate(data.model, multipliers, wavelengths)
-        if entries is not None and own is not None:
-            hits.mix(found, evaluate(entries.model, own, wavelengths))
-        return found
+        return hits.mix(found, evaluate(entries.model, own, wavelengths))
 
     reached = data.sensor.rgb(spectra(data.sensor.wavelengths))
     distance = np.abs(reached - rgb).max(axis=1)
@@ -86,21 +81,17 @@ def fill_missing(data: CubeData, points: Indices, other: CubeData, threads: int 
     target, table = data.lattice.target(points), data.points
     multipliers = blockwise(partial(_fit_to_other, data, other), target, data.model.count, threads=threads)
     stored = data.model.to_storage(multipliers)
-    coefficients = stored.astype(table.coefficients.dtype)
-    rgb = _rgb(data, coefficients)
-    if (np.abs(target - rgb) > data.threshold).any():  # single precision is not accurate enough
-        coefficients, rgb = stored, _rgb(data, stored)
-    distance = np.abs(target - rgb).max(axis=1)
-    rows: dict[str, NDArray[Any]] = {"coefficients": coefficients, "rgb": rgb, "distance": distance}
+    for values in (stored.astype(table.coefficients.dtype), stored):
+        rgb = data.sensor.rgb(reflectance(data.model, values, data.sensor.wavelengths))
+        distance = np.abs(target - rgb).max(axis=1)
+        if (distance <= data.threshold).all():
+            break  # single precision is accurate enough
+    rows: dict[str, NDArray[Any]] = {"coefficients": values, "rgb": rgb, "distance": distance}
     rows["status"] = np.where(distance > data.threshold, Status.UNFITTED, Status.REGULAR)
     if table.standard_error is not None:
         rows["standard_error"] = np.full(len(points), table.standard_error.max())
     provenance = {**data.provenance, "filled": {"points": len(points), "cube": digest(other)}}
     return replace(data, provenance=provenance, points=table.filled(points, rows))
-
-
-def _rgb(data: CubeData, coefficients: Array) -> Array:
-    return data.sensor.rgb(reflectance(data.model, coefficients, data.sensor.wavelengths))
 
 
 def _fit_to_other(data: CubeData, other: CubeData, rgb: Array) -> Array:

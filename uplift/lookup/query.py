@@ -57,10 +57,6 @@ class QueryResult:
     realisable: bool
     """Whether a reflectance with the colour exists. If not, the answer has less chroma."""
 
-    def __repr__(self) -> str:
-        values = ", ".join(f"{value:.4g}" for value in self.rgb)
-        return f"QueryResult(rgb ({values}), {len(self.wavelengths)} wavelengths, ΔE00 {self.delta_e_2000:.2g})"
-
 
 def query(
     cube: Cube,

@@ -27,7 +27,7 @@ from uplift.io.texture.image import Image, Part, Values
 from uplift.lattice.entry_boxes import BoxHits, OutsideBoxes
 from uplift.lookup import Cube
 from uplift.lookup.blocks import as_wavelengths, blockwise
-from uplift.lookup.interpolate import extended_multipliers, inexact_rows, refined_multipliers
+from uplift.lookup.interpolate import extended_multipliers, is_inexact, refined_multipliers
 from uplift.lookup.light_errors import LightErrors, light_errors
 from uplift.lookup.refine import refine_to_rgb
 from uplift.models.model import Model
@@ -272,7 +272,7 @@ class Uplifter(Converter):
             if hits.rows.size:
                 return self._convert_outside(rgb, hits, self.outside)
         data, colours = self.cube.data, rgb.reshape(-1, 3).astype(float)
-        near = colours[inexact_rows(data, colours)]
+        near = colours[is_inexact(data, colours)]
         is_off = data.solid.signed_distance(near) > data.threshold if near.size else near
         return (rgb, self.sample(rgb)), Counts(unrealisable=int(np.count_nonzero(is_off)))
 
