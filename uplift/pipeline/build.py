@@ -141,7 +141,7 @@ def build(
         Spectra of colours that no entry constrains: those expected of real materials, or smooth ones.
     neutral : {"expected", "flat"}, default "expected"
         Spectra of colours with equal components: as of all other colours, or flat, fading to those expected of real
-        materials from a CIE L*a*b* chroma of 4 to 12. Entries keep their measured entries.
+        materials from a CIE L*a*b* chroma of 4 to 12. Entries keep their measured spectra.
     library : Atlas, path-like or sequence of path-like, optional
         Measured spectra that shape the learnt prior but are not constraints. Each file is a family of materials like
         those to be expected; with an atlas, its weight is learnt.

@@ -129,7 +129,8 @@ class Options:
         """Create the spectrum model, from `shortest` to `longest` nm, of the nodes or of other moments."""
         if self.model == Sigmoid.name:
             return Sigmoid(self.shortest, self.longest)
-        return Moments(coefficients or self.coefficients, self.shortest, self.longest, self.warp)
+        count = self.coefficients if coefficients is None else coefficients
+        return Moments(count, self.shortest, self.longest, self.warp)
 
 
 def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
