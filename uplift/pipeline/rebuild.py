@@ -34,9 +34,8 @@ class StoredScene:
 
     def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
         """Return the nodes that are present in the cube; see `SceneLike`."""
-        dim = self.data.lattice.dim
-        if dim != boxes.lattice.dim:
-            raise OptionError(f"the points of a stored scene need dim {dim}, got {boxes.lattice.dim}")
+        if self.data.lattice.dim != boxes.lattice.dim:
+            raise OptionError(f"a stored scene of dim {self.data.lattice.dim} needs it, got {boxes.lattice.dim}")
         return self.data.points.present
 
     def describe(self) -> list[dict[str, Any]]:
