@@ -178,7 +178,7 @@ def command(
     if plan_path is not None:
         if others := [option for name, option in given.items() if name not in ALLOWED_WITH_PLAN]:
             raise click.UsageError(f"The plan already sets these options: leave out {', '.join(others)}.")
-        from uplift.scene.plan.plan_file import cube_name, read_plan
+        from uplift.scene.plan.files import cube_name, read_plan
 
         plan = read_plan(plan_path)
         make: Callable[..., Cube] = partial(plan.build, debug=settings["debug"])

@@ -44,10 +44,11 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
     from uplift.common.files import check_output, write_text
     from uplift.scene.plan import plan, read_scene_file, summary
     from uplift.scene.plan.candidates import QUICK, SearchGrid
+    from uplift.scene.plan.files import SUFFIX
 
     scene_file = read_scene_file(scene)
     inputs = (scene_file.path, *scene_file.textures, *scene_file.atlases)
-    name = summary.default_path(scene_file) if output is None else output
+    name = scene_file.path.with_suffix(SUFFIX) if output is None else output
     path = check_output(name, inputs=inputs, force=force)
     summary.check_path(scene_file, path)
     with progress_bar() as progress:

@@ -36,7 +36,7 @@ from uplift.lookup.query import query
 from uplift.pipeline.options import Options
 from uplift.pipeline.rebuild import recorded_atlas
 from uplift.scene.plan import read_scene_file
-from uplift.scene.plan.plan_file import FORMAT, read_plan
+from uplift.scene.plan.files import FORMAT, read_plan
 
 # --- atlases ---
 

@@ -13,7 +13,7 @@ from uplift_cli.main import main
 from tests.cli.conftest import home, refuse, run, shown  # noqa: F401
 from uplift.cube import read
 from uplift.scene.plan.candidates import PIXELS
-from uplift.scene.plan.plan_file import cube_name
+from uplift.scene.plan.files import cube_name
 from uplift.scene.plan.summary import commands
 
 

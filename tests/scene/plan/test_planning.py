@@ -17,9 +17,9 @@ from uplift.colorimetry import observer
 from uplift.common.errors import OutputError, PlanFileError
 from uplift.io.scene_colours import Images
 from uplift.scene import plan
-from uplift.scene.plan.plan_file import read_plan
+from uplift.scene.plan.files import read_plan
 from uplift.scene.plan.planning import no_candidate
-from uplift.scene.plan.summary import check_path, default_path, notes, to_json
+from uplift.scene.plan.summary import check_path, notes, to_json
 
 
 def test_the_choice_is_the_cheapest_within_the_tolerance(planned):
@@ -182,8 +182,7 @@ def test_a_plan_is_written_where_it_can_be_read(planned, kitchen, tmp_path):
     found = planned[0]
     above = to_json(found, kitchen.parent.parent / "a.plan.json")["scene"]
     assert [each["path"] for each in above["textures"]] == [f"{kitchen.parent.name}/wood.exr"]
-    default = default_path(found.scene)
-    assert default == kitchen.with_name("kitchen.plan.json")
+    default = kitchen.with_name("kitchen.plan.json")
     check_path(found.scene, default)
     for write in (lambda path: check_path(found.scene, path), lambda path: to_json(found, path)):
         with raises(OutputError, "output") as caught:

@@ -10,8 +10,9 @@ import pytest
 from tests.scene.plan.conftest import SMALL
 from uplift.pipeline.options import Options
 from uplift.scene import plan
-from uplift.scene.plan.candidates import Candidate, Cost, Minimised, Pixel, explore, pareto_front, positions, sufficient
+from uplift.scene.plan.candidates import Candidate, Cost, Pixel, explore, pareto_front, positions, sufficient
 from uplift.scene.plan.evaluation import ErrorSummary, GroupError
+from uplift.scene.plan.files import Minimised
 from uplift.scene.plan.space import CandidateSpace
 
 PIXELS = (Pixel("spectrum", "half"), Pixel("rgb", mode="moments"))

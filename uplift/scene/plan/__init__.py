@@ -8,7 +8,7 @@ Each decision is measured on colours of the scene's own textures; docs/plan.md d
     result.chosen.name, result.confirmed.quantile, result.chosen.cube
 """
 
+from uplift.scene.plan.files import SceneFile, read_scene_file
 from uplift.scene.plan.planning import Plan, plan
-from uplift.scene.plan.scene_file import SceneFile, read_scene_file
 
 __all__ = ["Plan", "SceneFile", "plan", "read_scene_file"]

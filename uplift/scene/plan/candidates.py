@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import prod
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from uplift.lookup.interpolate import refined_multipliers
 from uplift.models import Sigmoid, evaluate, reflectance
 from uplift.pipeline.options import Options
 from uplift.scene.plan.evaluation import UNMEASURED, ErrorSummary, Rendering, dominated
+from uplift.scene.plan.files import CostName, Minimised
 
 MODELS: Mapping[str, tuple[int, ...]] = {
     "none": (3, 5, 7, 9, 11, 13, 15, 17),
@@ -51,9 +52,6 @@ QUICK = SearchGrid(
 )
 """Fewer candidates and pixels: seconds."""
 
-CostName = Literal["memory", "time", "samples"]
-Minimised = Literal["balance", CostName]
-"""Cost that the choice minimises; the balance is the product of all three."""
 DEPTHS: dict[str, np.dtype[Any]] = {"half": np.dtype(np.float16), "float": np.dtype(np.float32)}
 RGB, INDEX = "rgb", "index"
 """Forms of pixels without a pixel encoding: colours, and numbers of a list of spectra."""

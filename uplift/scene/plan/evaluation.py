@@ -82,10 +82,12 @@ class Rendering:
 
     @classmethod
     def of_sampling(cls, name: str, sampling: Sampling) -> "Rendering":
-        """Return the rendering with the wavelengths of a sampling."""
+        """Return the rendering with the wavelengths of a sampling, rounded to `DIGITS` and all distinct."""
         count = len(sampling)
-        operations, nm = SAMPLE_OPERATIONS * count, sampling.wavelengths
-        return cls(f"{count} {name}", count, operations, count, nm, sampling.xyz, sampling)
+        steps = np.arange(count) / 10**DIGITS
+        nm = np.round(np.maximum.accumulate(np.round(sampling.wavelengths, DIGITS) - steps) + steps, DIGITS)
+        rounded = replace(sampling, wavelengths=nm)
+        return cls(f"{count} {name}", count, SAMPLE_OPERATIONS * count, count, nm, rounded.xyz, rounded)
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,13 +161,11 @@ def renderings(
         return np.array([(each.samples, each.operations, each.surface, max(each.error.quantile, floor)) for each in of])
 
     setup = tests.setup.only(tests.subsample(FEW))
+    full = Sampling(setup.wavelengths, setup.cmfs, setup.lights, setup.powers)
     found = list[Rendering]()
     for done, count in enumerate((*counts, None)):
         progress(Progress("wavelengths", done, len(counts)))
-        if count is None:
-            sampling = Sampling(setup.wavelengths, setup.cmfs, setup.lights, setup.powers)
-        else:
-            sampling = _rounded(choose(setup, count=count).sampling)
+        sampling = full if count is None else choose(setup, count=count).sampling
         each = measured(Rendering.of_sampling("wavelengths", sampling))
         if not found or each.error.quantile < found[-1].error.quantile:
             found.append(each)
@@ -188,7 +188,7 @@ def _others(setup: RenderSetup, tests: EvaluationSet, observer_name: str) -> Ite
     """Meyer's wavelengths, and representations, which are defined for one observer."""
     for count in range(4, MAX_MEYER + 1):
         with contextlib.suppress(OptionError):  # no rule of this order
-            sampling = _rounded(choose(setup, count=count, method="meyer").sampling)
+            sampling = choose(setup, count=count, method="meyer").sampling
             yield Rendering.of_sampling("wavelengths of Meyer", sampling)
     if observer_name != DEFAULT_OBSERVER:
         return
@@ -207,10 +207,3 @@ def _represented_xyz(representation: Representation, powers: Array, tests: Evalu
     found = representation.reflected(powers, reflectances)
     exact = (powers[:, None] * reflectances) @ samples.xyz_weights()
     return tests.xyz(reflectances[:, :: samples.TABLE_STRIDE]) + found - exact
-
-
-def _rounded(sampling: Sampling) -> Sampling:
-    """Round wavelengths to `DIGITS`, all distinct."""
-    steps = np.arange(len(sampling)) / 10**DIGITS
-    distinct = np.maximum.accumulate(np.round(sampling.wavelengths, DIGITS) - steps) + steps
-    return replace(sampling, wavelengths=np.round(distinct, DIGITS))

@@ -10,7 +10,7 @@ from uplift.common.errors import PlanFileError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.scene.plan.candidates import INDEX, Candidate, Cost, SearchGrid, explore, pareto_front, sufficient
 from uplift.scene.plan.evaluation import ErrorSummary
-from uplift.scene.plan.scene_file import SceneFile
+from uplift.scene.plan.files import SceneFile
 from uplift.scene.plan.space import CandidateSpace
 from uplift.viz.format import format_error, format_size
 
@@ -141,7 +141,7 @@ def _confirm(space: CandidateSpace, finalists: Sequence[Candidate]) -> tuple[Can
     for each in finalists:
         if tried and each.error.quantile > CLEARLY_SMALLER * tried[-1][0].error.quantile:
             continue
-        cube = None if each.cube is None else space.cube(tests.rgb, each.cube)
+        cube = space.cube(tests.rgb, each.cube) if each.cube else tests.reference
         tried.append((each, space.errors(cube, [each], tests)[0].error))
         if tried[-1][1].quantile <= space.scene.tolerance or len(tried) == FINALISTS:
             break

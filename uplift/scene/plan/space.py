@@ -30,7 +30,7 @@ from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
 from uplift.pipeline.options import Options
 from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, Pixel, SearchGrid
 from uplift.scene.plan.evaluation import SAMPLE_OPERATIONS, ErrorSummary, EvaluationSet, Rendering, renderings
-from uplift.scene.plan.scene_file import SceneFile
+from uplift.scene.plan.files import SceneFile
 from uplift.scene.wavelengths import make_setup
 
 FLOOR, CEILING = 0.5, 2.0
@@ -55,11 +55,11 @@ class CandidateSpace:
     def __init__(self, scene: SceneFile, grid: SearchGrid, progress: ProgressCallback) -> None:
         self.scene, self.grid, self.progress, self.sensor = scene, grid, progress, scene.sensor()
         self.atlas = read_atlas(*scene.atlases) if scene.atlases else None
-        self.images = Images(scene.textures, scene.encoding)
         reflectances = resample(self.atlas or Atlas(), self.sensor.wavelengths).values
         rgb = self.sensor.rgb(reflectances)
         inside = in_unit_cube(rgb)
-        self.colours = sample_colours(self.images, self.sensor, (grid.predicting, grid.confirming), progress)
+        images, sizes = Images(scene.textures, scene.encoding), (grid.predicting, grid.confirming)
+        self.colours = sample_colours(images, self.sensor, sizes, progress)
         self.reflectances, self.materials = reflectances[inside], np.clip(rgb[inside], 0, 1)
         self.learnt: dict[tuple[Model, Model], Learnt] = {}
         self.floor, self.ceiling = (share * scene.tolerance for share in (FLOOR, CEILING))
@@ -135,16 +135,15 @@ class CandidateSpace:
     def measure(self, choice: Options | None, candidates: Sequence[Candidate]) -> list[Candidate]:
         """Build the cube that candidates share, and measure their errors."""
         self.progress(Progress(candidates[0].name, 0, 1))
-        cube = None if choice is None else self._cube(choice)
-        return self.errors(cube, candidates, self.tests)
+        return self.errors(self._cube(choice) if choice else self.tests.reference, candidates, self.tests)
 
-    def errors(self, cube: Cube | None, candidates: Sequence[Candidate], tests: EvaluationSet) -> list[Candidate]:
-        """Measure the errors of candidates that share a cube."""
+    def errors(self, cube: Cube, candidates: Sequence[Candidate], tests: EvaluationSet) -> list[Candidate]:
+        """Measure the errors of candidates that share a cube, or need none."""
         traced = list(dict.fromkeys(each.rendering for each in candidates if each.rendering))
         needed = [each.wavelengths for each in traced]
         nm, ends = np.concatenate([[], *needed]), np.cumsum([0, *map(len, needed)])
         columns = dict(zip(traced, map(slice, ends, ends[1:]), strict=False))
-        spectra = cache(lambda pixel: pixel.decoded(cube or tests.reference, tests.rgb, nm))
+        spectra = cache(lambda pixel: pixel.decoded(cube, tests.rgb, nm))
 
         def xyz(each: Candidate) -> Array:
             if each.rendering is None:

@@ -12,9 +12,8 @@ from uplift.common.files import file_digest
 from uplift.common.version import VERSION
 from uplift.io.texture import Spectrum
 from uplift.scene.plan.candidates import INDEX, Candidate, Cost, cheapest_first
-from uplift.scene.plan.plan_file import FORMAT, SUFFIX, cube_name
+from uplift.scene.plan.files import FORMAT, SUFFIX, SceneFile, cube_name
 from uplift.scene.plan.planning import Plan, cost_text
-from uplift.scene.plan.scene_file import SceneFile
 from uplift.viz.format import format_error, format_size, pluralise
 
 HEADINGS = ("ΔE00", "memory", "time", "samples", "cube", "traced", "pixel")
@@ -95,18 +94,13 @@ def describe_error(plan: Plan) -> str:
     )
 
 
-def default_path(scene: SceneFile) -> Path:
-    """Path of the plan of a scene, in the folder of the scene file."""
-    return scene.path.with_name(scene.path.stem + SUFFIX)
-
-
 def check_path(scene: SceneFile, path: Path) -> None:
     """Check that the folder of a plan holds the sources of its scene. `read_plan` opens no others."""
     folder = os.path.abspath(path.parent)
     for source in (*scene.textures, *scene.atlases):
         if not Path(os.path.abspath(source)).is_relative_to(folder):
-            problem = f"must lie in the folder of {source}, or above it"
-            raise OutputError(problem, path=path, hint=f"write for example {default_path(scene)}")
+            hint = f"write for example {scene.path.with_suffix(SUFFIX)}"
+            raise OutputError(f"must lie in the folder of {source}, or above it", path=path, hint=hint)
 
 
 def to_json(plan: Plan, path: Path) -> dict[str, Any]:
