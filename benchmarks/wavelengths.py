@@ -13,7 +13,7 @@ from uplift.common.arrays import Array
 from uplift.scene.quadrature import QuadratureRule
 from uplift.scene.wavelengths import METHODS, choose, grid, make_setup
 from uplift.scene.wavelengths import meyer as paper
-from uplift.scene.wavelengths.sampling import RenderSetup, evaluate, statistics
+from uplift.scene.wavelengths.sampling import RenderSetup, evaluate, interp_curves, statistics
 from uplift.viz.figure import GREY, INK, colour_map, new_figure, style_axes, styled, write_png
 
 SPACES = {"AC1C2": "opponent", "SML": "cones", "XYZ": "xyz"}
@@ -53,7 +53,7 @@ def mean_error(setup: RenderSetup, space: Array, allocation: Sequence[Quadrature
     """
     channels = []
     for rule in allocation:
-        powers = setup.sampled_powers(rule.nodes) * rule.weights
+        powers = interp_curves(rule.nodes, setup.wavelengths, setup.powers) * rule.weights
         channels.append(
             np.concatenate([powers @ setup.curves(rule.nodes).T, powers.sum(axis=1, keepdims=True)], axis=1)
         )

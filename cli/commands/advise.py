@@ -66,10 +66,12 @@ def command(
         chosen, after = advice.advise(before, count)
     rgb = colours.rgb[[each.colour for each in chosen]]
     if plot_path is not None:
+        from uplift.viz.figure import write_figure
+
         shown = paths[:SHOWN]
         pictures = {path: each.rgb for path, each in zip(shown, read_pictures(shown, sensor, **pixels), strict=True)}
         chips = [(f"−{each.gain:.2g}", colour) for each, colour in zip(chosen, rgb, strict=True)]
-        advice.plot_advice(cube, pictures, lit, chips, plot_path, force=force)
+        write_figure(advice.draw_advice(cube, pictures, lit, chips), plot_path, force=force)
     stages = zip(lit, before.by_light(), after.by_light(), strict=True)
     errors = {each.name: {"before": now, "after": then} for each, now, then in stages}
     swatches = [{"hex": code, **asdict(each)} for code, each in zip(hex_codes(rgb, sensor), chosen, strict=True)]

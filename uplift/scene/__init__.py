@@ -1,3 +1,1 @@
 """Choices for the rendering of a scene: smallest cube, fewest wavelengths, cheapest representation, quadrature."""
-
-__all__: list[str] = []

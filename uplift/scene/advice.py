@@ -8,20 +8,21 @@ each of the largest gain.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from uplift.colorimetry import Light, Sensor
 from uplift.colorimetry.delta_e import rgb_to_lab
 from uplift.colorimetry.srgb import to_display_codes
-from uplift.common.arrays import Array, StrPath, Values, blocks, distances
+from uplift.common.arrays import Array, Values, blocks, distances
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
 from uplift.fit.kriging import DEFAULT, Kernel, posterior
 from uplift.io.scene_colours import BINS, Images, PixelSample, bin_index
 from uplift.lookup import Cube
 from uplift.lookup.light_errors import light_errors
-from uplift.viz.figure import ACCENT, colour_map, figure_text, new_figure, show_image, write_figure
+from uplift.viz.figure import ACCENT, colour_map, figure_text, new_figure, show_image
 
 STEPS = (1, 2, 4, 8)
 """Bins along each channel that are joined; the first that leave few colours are taken."""
@@ -148,16 +149,10 @@ def advise(scene: Uncertainty, count: int) -> tuple[list[Swatch], Uncertainty]:
     return chosen, scene
 
 
-def plot_advice(
-    cube: Cube,
-    pictures: Mapping[str, Values],
-    lights: Sequence[Light],
-    swatches: Sequence[tuple[str, Array]],
-    path: StrPath,
-    *,
-    force: bool = False,
-) -> None:
-    """Plot images, linear RGB (height, width, 3) by path, their mean standard errors, and numbered swatches.
+def draw_advice(
+    cube: Cube, pictures: Mapping[str, Values], lights: Sequence[Light], swatches: Sequence[tuple[str, Array]]
+) -> Any:
+    """Draw images, linear RGB (height, width, 3) by path, their mean standard errors, and numbered swatches.
 
     The swatches are linear RGB (3,) and the text below each. Their numbers stand at the pixels of the nearest colours.
     """
@@ -189,4 +184,4 @@ def plot_advice(
         chips[number].set_xlabel(text, fontsize=7)
     for unused in chips[len(swatches) :]:
         unused.set_axis_off()
-    write_figure(figure, path, force=force)
+    return figure

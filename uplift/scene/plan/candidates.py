@@ -139,10 +139,6 @@ PIXELS = (
 """Pixels that need a cube."""
 
 
-WITHOUT_SPECTRA = "RGB × light"
-"""What a renderer traces without spectra: RGB, by a matrix for each light."""
-
-
 @dataclass(frozen=True)
 class Candidate:
     """A complete choice: pixels, wavelengths or None for RGB × light, a cube with all cells or those of the textures.
@@ -170,8 +166,8 @@ class Candidate:
 
     @property
     def traced(self) -> str:
-        """Short text."""
-        return self.rendering.name if self.rendering else WITHOUT_SPECTRA
+        """Short text; without spectra RGB, by a matrix for each light."""
+        return self.rendering.name if self.rendering else "RGB × light"
 
     @property
     def name(self) -> str:

@@ -80,8 +80,7 @@ class Plan:
         Candidate or None
             The cheapest measured candidate within it and the limits of the scene.
         """
-        found = sufficient(self.measured, tolerance, self.scene.minimise, self.scene.limits)
-        return found[0] if found else None
+        return next(iter(sufficient(self.measured, tolerance, self.scene.minimise, self.scene.limits)), None)
 
 
 def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCallback = ignore_progress) -> Plan:

@@ -63,6 +63,15 @@ class CandidateSpace:
         self.reflectances, self.materials = reflectances[inside], np.clip(rgb[inside], 0, 1)
         self.learnt: dict[tuple[Model, Model], Learnt] = {}
         self.floor, self.ceiling = (share * scene.tolerance for share in (FLOOR, CEILING))
+        # Entries hold under the scene's lights and the illuminant of the RGB space.
+        self.reference = Options(
+            dim=grid.reference,
+            coefficients=grid.models[Options.warp][-1],
+            space=scene.space,
+            illuminant=scene.illuminant,
+            observer=scene.observer,
+            lights=tuple(dict.fromkeys((self.sensor.illuminant, *scene.lights))),
+        )
         progress(Progress("reference cube", 0, 1))
         tests = self.evaluation_set(self.colours.predicting)
         others = self.sensor.observer if grid.others else None
@@ -75,18 +84,6 @@ class CandidateSpace:
         self.row_bytes = sum(array[0].nbytes for name, array in rows.items() if name != "coefficients")
         self.other_bytes = sum(array.nbytes for name, array in arrays.items() if name not in rows)
         self.considered = 0
-
-    @property
-    def reference(self) -> Options:
-        """Options of the reference cube. Entries hold under the scene's lights and the illuminant of the RGB space."""
-        return Options(
-            dim=self.grid.reference,
-            coefficients=self.grid.models[Options.warp][-1],
-            space=self.scene.space,
-            illuminant=self.scene.illuminant,
-            observer=self.scene.observer,
-            lights=tuple(dict.fromkeys((self.sensor.illuminant, *self.scene.lights))),
-        )
 
     def cube(self, rgb: Array, options: Options) -> Cube:
         """Build a sparse cube for linear RGB (n, 3)."""

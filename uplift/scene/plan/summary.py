@@ -62,18 +62,12 @@ def notes(plan: Plan) -> list[str]:
         found.append(f"Without spectra, by RGB and the best 3 × 3 matrix per light, ΔE00 is {rgb}.")
     if plan.chosen.pixel.form == INDEX and plan.spectra is not None:
         found.append(f"The textures have {pluralise(len(plan.spectra[0]), 'colour')}: a list of spectra suffices.")
-    if plan.expected_error is not None:
-        found.append(_yardstick(plan, plan.expected_error))
+    if (known := plan.expected_error) is not None:  # RGB alone does not identify a material
+        found.append(f"Your colours are known within ΔE00 {known:.2g}; this plan adds {plan.confirmed.quantile:.2g}.")
+        cheaper = plan.cheapest(known)
+        if cheaper is not None and plan.confirmed.quantile <= SHARE * known:
+            found.append(f"With tolerance {known:.2g} it would need {_costs(cheaper)}.")
     return found
-
-
-def _yardstick(plan: Plan, expected: float) -> str:
-    """The error of the plan against that of any answer, as RGB alone does not identify a material."""
-    text = f"Your colours are known within ΔE00 {expected:.2g}; this plan adds {plan.confirmed.quantile:.2g}"
-    cheaper = plan.cheapest(expected)
-    if plan.confirmed.quantile > SHARE * expected or cheaper is None:
-        return f"{text}."
-    return f"{text}. With tolerance {expected:.2g} it would need {_costs(cheaper)}."
 
 
 def _costs(candidate: Candidate) -> str:

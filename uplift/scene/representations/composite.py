@@ -20,8 +20,6 @@ from uplift.scene.representations.samples import Representation
 
 NOISE = 1e-9
 """Heights below this fraction of the highest sample are rounding."""
-NUMBERS_PER_SPIKE = 2
-"""A position and a height."""
 SUN_THRESHOLD, ENHANCED_THRESHOLD = 0.3, 0.2
 """Relative gradients of spikes, from Kment 2011, section 6.1."""
 
@@ -91,7 +89,8 @@ def composite(name: str, family: str, smooth: Representation, decoder: Array, th
         return CompositeCode(smooth.multiply(light.smooth, surface.smooth), positions, heights)
 
     def storage(code: CompositeCode) -> Array:
-        return smooth.storage(code.smooth) + NUMBERS_PER_SPIKE * (code.heights != 0).sum(axis=1, dtype=float)
+        # A spike is a position and a height.
+        return smooth.storage(code.smooth) + 2 * (code.heights != 0).sum(axis=1, dtype=float)
 
     def xyz(light: CompositeCode) -> Array:
         return smooth.xyz(light.smooth) + light.heights @ spike_xyz()[light.positions]

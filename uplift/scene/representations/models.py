@@ -62,19 +62,17 @@ def trigonometric_moments(count: int) -> Representation:
 
 def sigmoid_coefficients(count: int = 3) -> Representation:
     """Sigmoid (SG): the three coefficients of Jakob & Hanika 2019 (`uplift.models.sigmoid`)."""
-    model = Sigmoid()
-    return tabulated(
-        f"SG{count}", "sigmoid", model, lambda spectra: fit_sigmoids(model, spectra[:, :: samples.TABLE_STRIDE])
-    )
+    return tabulated(f"SG{count}", "sigmoid", Sigmoid(), fit_sigmoids)
 
 
-def fit_sigmoids(model: Sigmoid, table: Array) -> Array:
-    """Fit coefficients (n, 3) to reflectances (n, 81) by the Levenberg–Marquardt method.
+def fit_sigmoids(spectra: Array) -> Array:
+    """Fit coefficients (n, 3) to reflectances (n, 401) by the Levenberg–Marquardt method.
 
     The objective is the colour under D65. Values at 5 nm, with a small weight, determine the fit where the colour does
     not or cannot be met.
     """
-    light, basis = observer.light(DEFAULT_ILLUMINANT), model.basis(observer.grid())
+    model, table, light = Sigmoid(), spectra[:, :: samples.TABLE_STRIDE], observer.light(DEFAULT_ILLUMINANT)
+    basis = model.basis(observer.grid())
     measurement = np.concatenate([light.xyz / light.white[:, None], SHAPE_WEIGHT * np.eye(len(basis))])
 
     def residuals(coefficients: Array, rows: Indices) -> tuple[Array, None]:

@@ -33,8 +33,6 @@ METHODS: Mapping[str, Callable[[RenderSetup, int], Sampling]] = {
     "fitted": lambda setup, count: optimise.fit_at(setup, setups.midpoints(count)),
 }
 """Methods by name: all fitted, Meyer 1988, and three with even spacing."""
-GIVEN = "given"
-"""Method of a `Choice` whose wavelengths were given."""
 MAX_COUNT = 40
 """Largest number of wavelengths: as many as tables at 10 nm have."""
 
@@ -141,7 +139,7 @@ def fit_weights(setup: RenderSetup, wavelengths: ArrayLike) -> Choice:
     OptionError
         No wavelengths, one that lies outside the grid, or one given twice.
     """
-    return _judged(GIVEN, setup, optimise.fit_at(setup, wavelengths))
+    return _judged("given", setup, optimise.fit_at(setup, wavelengths))
 
 
 def choose_orders(setup: RenderSetup, orders: tuple[int, int, int], channels: str = "opponent") -> Choice:

@@ -120,7 +120,7 @@ def combine_rules(setup: RenderSetup, space: Array, rules: Sequence[QuadratureRu
         weights[np.searchsorted(nm, rule.nodes), channel] = rule.weights
     step = setup.wavelengths[1] - setup.wavelengths[0]
     to_xyz = weights @ np.linalg.inv(space).T / step
-    return Sampling(nm, to_xyz, setup.lights, setup.sampled_powers(nm))
+    return Sampling(nm, to_xyz, setup.lights, interp_curves(nm, setup.wavelengths, setup.powers))
 
 
 def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: Array) -> Sampling:

@@ -56,10 +56,10 @@ class FitProblem:
 
     def unpack(self, unknowns: Array) -> Sampling:
         """Invert `pack`."""
-        lights = len(self.setup.lights)
-        count = len(unknowns) // (4 + lights)
+        lights = self.setup.lights
+        count = len(unknowns) // (4 + len(lights))
         nm, weights, powers = np.split(unknowns, [count, 4 * count])
-        return Sampling(nm, weights.reshape(count, 3), self.setup.lights, powers.reshape(lights, count))
+        return Sampling(nm, weights.reshape(-1, 3), lights, powers.reshape(len(lights), -1))
 
     def residuals(self, unknowns: Array) -> Array:
         """Differences (K · M · 3,) from the colours of the full grid; the length of each triple is ΔE00."""

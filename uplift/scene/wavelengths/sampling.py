@@ -62,10 +62,6 @@ class RenderSetup:
         """Convert XYZ (K, M, 3) to CIE L*a*b* relative to the white of each light."""
         return lab(xyz, self.whites[:, None])
 
-    def sampled_powers(self, wavelengths: Array) -> Array:
-        """Powers (K, n) of the lights at wavelengths (n,) nm, as a renderer without prefiltering reads them."""
-        return interp_curves(wavelengths, self.wavelengths, self.powers)
-
     def only(self, materials: ArrayLike) -> "RenderSetup":
         """Some of the materials, by indices or a mask (M,), under the same lights."""
         return replace(self, reflectances=self.reflectances[np.asarray(materials)])
@@ -116,12 +112,20 @@ def make_setup(
     """
     nm = grid() if wavelengths is None else np.asarray(wavelengths, dtype=float)
     materials = np.asarray(reflectances, dtype=float)
-    _check(nm, materials)
+    steps = np.diff(nm)
+    if nm.ndim != 1 or len(nm) < MIN_SAMPLES or not np.allclose(steps, steps[0], rtol=1e-6) or steps[0] <= 0:
+        problem = f"wavelengths must be at least {MIN_SAMPLES}, ascending and evenly spaced"
+        raise OptionError(problem, hint="give a grid such as 380, 381, …, 770 nm")
+    if materials.ndim != 2 or not len(materials) or materials.shape[1] != len(nm):
+        problem = f"reflectances must have shape (M, {len(nm)}) with M > 0, got {materials.shape}"
+        raise OptionError(problem, hint="give one row per material")
+    if not np.isfinite(materials).all() or materials.min() < 0:
+        raise OptionError("reflectances must be finite and at least 0", hint="give values from 0 to 1")
     lights = tuple(dict.fromkeys(lights))
     if not lights:
         raise OptionError("lights must not be empty", hint="name at least one, such as D65")
     # The tables have steps of whole nanometres; the grid may have any step.
-    step = nm[1] - nm[0] if (nm % 1 == 0).all() else 1.0
+    step = steps[0] if (nm % 1 == 0).all() else 1.0
     shape = np.floor(nm[0]), np.ceil(nm[-1]), step
     table = np.arange(shape[0], shape[1] + step / 2, step)
     cmfs = interp_curves(nm, table, observer.matching_functions(observer_name, *shape).T).T
@@ -132,18 +136,6 @@ def make_setup(
 def interp_curves(wavelengths: Array, known: Array, curves: Array) -> Array:
     """Interpolate curves (C, N), sampled at ``known`` (N,) nm, linearly at wavelengths (n,) nm to (C, n)."""
     return np.stack([np.interp(wavelengths, known, curve) for curve in curves])
-
-
-def _check(nm: Array, materials: Array) -> None:
-    steps = np.diff(nm)
-    if nm.ndim != 1 or len(nm) < MIN_SAMPLES or not np.allclose(steps, steps[0], rtol=1e-6) or steps[0] <= 0:
-        problem = f"wavelengths must be at least {MIN_SAMPLES}, ascending and evenly spaced"
-        raise OptionError(problem, hint="give a grid such as 380, 381, …, 770 nm")
-    if materials.ndim != 2 or not len(materials) or materials.shape[1] != len(nm):
-        problem = f"reflectances must have shape (M, {len(nm)}) with M > 0, got {materials.shape}"
-        raise OptionError(problem, hint="give one row per material")
-    if not np.isfinite(materials).all() or materials.min() < 0:
-        raise OptionError("reflectances must be finite and at least 0", hint="give values from 0 to 1")
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,7 +228,7 @@ def uniform(setup: RenderSetup, count: int) -> Sampling:
     """Point sample the lights and the colour-matching functions at even spacing; whites balanced."""
     nm = midpoints(count)
     weights = interp_curves(nm, setup.wavelengths, setup.cmfs.T).T
-    return balanced(Sampling(nm, weights, setup.lights, setup.sampled_powers(nm)))
+    return balanced(Sampling(nm, weights, setup.lights, interp_curves(nm, setup.wavelengths, setup.powers)))
 
 
 def prefiltered(setup: RenderSetup, wavelengths: Array) -> Sampling:
