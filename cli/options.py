@@ -265,7 +265,7 @@ def wavelengths(help: str) -> Decorator:
 
 
 cube_argument = click.argument("cube", metavar="CUBE", shell_complete=complete_cube)
-scale = choice(  # names of uplift.atlas.MEASURED, which is not imported here
+scale = choice(  # names of uplift.atlas.measurements.MEASURED, which is not imported here
     "--scale",
     *("auto", "percent", "fraction"),
     help="Scale of measured values. auto: as the atlas file states, or else by its values.",

@@ -11,7 +11,7 @@ from tests.atlas.vendor_files import VENDORS, sample
 from tests.helpers import raises, warns
 from uplift.atlas import FORMATS, read_atlas
 from uplift.atlas.formats import spreadsheet
-from uplift.common.errors import AtlasError, OptionError
+from uplift.common.errors import AtlasError, UnknownNameError
 
 MACBETH = sample(read_atlas("macbeth"))
 LAYOUTS = {vendor.name: vendor for vendor in VENDORS}
@@ -71,7 +71,7 @@ def test_scale_given_by_the_caller(save):
     dark = save(ROW + "trap,0.4,0.5,0.5,0.4\ngrey,20,20,20,20\n")
     found = read_atlas(dark, measured="percent")
     assert (found["trap"].values.tolist(), found.sources[0].measured) == ([0.004, 0.005, 0.005, 0.004], "percent")
-    for scale, error, code in (("fraction", AtlasError, "atlas"), ("per mille", OptionError, "option")):
+    for scale, error, code in (("fraction", AtlasError, "atlas"), ("per mille", UnknownNameError, "unknown-name")):
         with raises(error, code):
             read_atlas(dark, measured=scale)
 

@@ -2,19 +2,16 @@
 
 from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source, merge
 from uplift.atlas.formats import FORMATS, Format
-from uplift.atlas.measurements import MEASURED, Measured
 from uplift.atlas.resample import Clip, Resampled, on_grid, resample
 from uplift.atlas.sources import ShippedAtlas, from_distributions, read_atlas, shipped_atlases, write_atlas
 
 __all__ = [
     "FORMATS",
-    "MEASURED",
     "Atlas",
     "Clip",
     "Entry",
     "Format",
     "Header",
-    "Measured",
     "Resampled",
     "ShippedAtlas",
     "SkippedEntry",

@@ -299,10 +299,8 @@ def merge(parts: Iterable[Atlas]) -> Atlas:
 
 def _faults(name: str, wavelengths: Array, values: Array) -> Iterator[tuple[str, str]]:
     """Yield problems of a name and of samples (N,) in nm and units of 1, with hints. The first one counts."""
-    if not name.strip():
-        yield "an entry needs a name", "give every entry a unique name"
     if name != name.strip() or len(name.splitlines()) != 1 or "\0" in name:
-        yield "the name has line breaks or surrounding blanks", "give the entry a name of one line"
+        yield "the name must be one line of text without surrounding blanks", "give every entry a unique name"
     if len(name) > MAX_NAME or name != name.encode(errors="ignore").decode():
         problem = f"the name must have at most {MAX_NAME} characters, all of them valid Unicode"
         yield problem, "give the entry a shorter name"

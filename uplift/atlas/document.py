@@ -1,9 +1,8 @@
 """Files as text with source locations, and parsing steps that all readers share: numbers, scales, units, XML."""
 
-import dataclasses
 import hashlib
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 from xml.parsers import expat
@@ -38,7 +37,7 @@ class SourceLocation:
 
     def at(self, line: int | None = None, entry: str | None = None) -> "SourceLocation":
         """Return the location of another line or entry of the same file."""
-        return dataclasses.replace(self, line=line or self.line, entry=entry or self.entry)
+        return replace(self, line=line or self.line, entry=entry or self.entry)
 
     def error(self, problem: str, hint: str, *, code: str | None = None) -> AtlasError:
         """Create an error at this location."""
@@ -135,12 +134,8 @@ def parse_number(token: str, location: SourceLocation, label: str) -> float:
     try:
         return parse_float(token)
     except ValueError:
-        raise not_a_number(token, location, label) from None
-
-
-def not_a_number(token: str, location: SourceLocation, label: str) -> AtlasError:
-    """Create the error for a token that should be a number."""
-    return location.error(f"{label} '{truncate(token)}' is not a number", "write a plain number such as 0.125")
+        problem = f"{label} '{truncate(token)}' is not a number"
+        raise location.error(problem, "write a plain number such as 0.125") from None
 
 
 def check_scale(scale: float, label: str, location: SourceLocation) -> float:

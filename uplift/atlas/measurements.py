@@ -91,9 +91,7 @@ def to_atlas(document: Document, measurements: Measurements, format_name: str, m
 def not_used_note(labels: Iterable[str]) -> tuple[str, ...]:
     """Return the note about columns that are not spectra; none without labels."""
     names = [truncate(label) or "(no label)" for label in labels]
-    if not names:
-        return ()
-    return (f"not used: {listed(names)}",)
+    return (f"not used: {listed(names)}",) if names else ()
 
 
 def wrong_quantity(problem: str, location: SourceLocation) -> AtlasError:

@@ -6,7 +6,7 @@ import hashlib
 import os
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas.atlas import Atlas, Entry, Header, Source, merge
-from uplift.atlas.document import SourceLocation, read_document, truncate
+from uplift.atlas.document import SourceLocation, read_document
 from uplift.atlas.formats import art, read_any
 from uplift.atlas.measurements import MEASURED, Measured, to_atlas
 from uplift.common.arrays import StrPath
-from uplift.common.errors import OptionError, OutputError, UpliftWarning
+from uplift.common.errors import OutputError, UpliftWarning, unknown_name
 from uplift.common.files import write_text
 
 PACKAGE = "uplift_atlases"
@@ -49,7 +49,7 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
     ------
     AtlasError
         A file cannot be read, or two entries share a name. The error has path, line, entry and hint.
-    OptionError
+    UnknownNameError
         The scale is unknown.
 
     Warns
@@ -66,8 +66,7 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
     Entry('orange', 81 samples, 380–780 nm)
     """
     if measured not in MEASURED:
-        problem = f"unknown scale of measured values '{truncate(str(measured))}'"
-        raise OptionError(problem, hint=f"use one of {', '.join(MEASURED)}")
+        raise unknown_name(str(measured), MEASURED, "scale")
     atlases = []
     for document in map(read_document, list(map(find_atlas_file, paths))):
         chosen, found = read_any(document)
@@ -104,11 +103,8 @@ def write_atlas(atlas: Atlas, path: StrPath, header: Header | None = None, *, fo
         problem = "an atlas to write must have entries, got none"
         raise OutputError(problem, path=path, hint="give an atlas that contains reflectances")
     if header is None:  # the statements of all sources, each one once
-        stated = {
-            key: dict.fromkeys(getattr(source.header, key) for source in atlas.sources)
-            for key in ("content", "copyright", "licence")
-        }
-        header = Header(**{key: "; ".join(filter(None, texts)) for key, texts in stated.items()})
+        stated = zip(*(astuple(source.header) for source in atlas.sources), strict=True)
+        header = Header(*("; ".join(filter(None, dict.fromkeys(texts))) for texts in stated))
     is_table = os.fspath(path).lower().endswith(".csv")
     write_text(table.text(atlas) if is_table else art.text(atlas, header), path, force=force)
 
@@ -142,7 +138,7 @@ def from_distributions(distributions: Any) -> Atlas:
     named = distributions
     if not isinstance(distributions, Mapping):
         named = {getattr(distributions, "name", type(distributions).__name__): distributions}
-    samples: list[tuple[str, Any, Any]] = []
+    entries = list[Entry]()
     for name, each in named.items():
         try:
             nm, values = each.wavelengths, each.values
@@ -151,16 +147,17 @@ def from_distributions(distributions: Any) -> Atlas:
             raise SourceLocation(entry=str(name)).error(problem, FORMS) from None
         labels = getattr(each, "labels", None)
         if labels is None or named is distributions:
-            samples.append((str(name), nm, values))
+            entries.append(Entry(str(name), nm, values))
         elif np.ndim(values) != 2 or np.shape(values)[1] != len(labels):
             problem = f"values must have shape (N, {len(labels)}) for {len(labels)} labels, got {np.shape(values)}"
             raise SourceLocation().error(problem, "give one column of values per label")
         else:
-            samples += [(str(label), nm, column) for label, column in zip(labels, np.transpose(values), strict=True)]
-    entries = tuple(Entry(*each) for each in samples)
+            entries += [
+                Entry(str(label), nm, column) for label, column in zip(labels, np.transpose(values), strict=True)
+            ]
     # The digest is that of the file that `write_atlas` writes.
-    digest = hashlib.sha256(art.text(Atlas(entries), Header()).encode()).hexdigest()
-    return Atlas(entries, sources=(Source("distributions", digest),))
+    digest = hashlib.sha256(art.text(Atlas(tuple(entries)), Header()).encode()).hexdigest()
+    return Atlas(tuple(entries), sources=(Source("distributions", digest),))
 
 
 @dataclass(frozen=True)

@@ -13,16 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from uplift.atlas.atlas import Atlas, Entry, Header, SkippedEntry, Source
-from uplift.atlas.document import (
-    Document,
-    SourceLocation,
-    check_scale,
-    not_a_number,
-    one_line,
-    parse_number,
-    truncate,
-    without_unit,
-)
+from uplift.atlas.document import Document, SourceLocation, check_scale, one_line, parse_number, truncate, without_unit
 from uplift.common.arrays import Array
 from uplift.common.text import parse_float
 
@@ -51,6 +42,8 @@ NOT_STATED = "not stated"
 """Placeholder of a header line without a value: other readers require a value in every line."""
 QUOTED = re.compile(r'"([^"]*|"(?:.*")?)"')
 """A text in one pair of quotes, which do not belong to it; those of ``"a" and "b"`` do not enclose."""
+LIST = re.compile(r"\{((?:[^{}]++|\{[^{}]*+\})*+)\}")
+"""Samples between braces, which may enclose pairs of them."""
 PAIR = re.compile(r"[\s,]*\{([^{}]*)\}")
 """A pair of samples; the comma before it is optional."""
 COMPLETE_ENTRY = "complete the entry (the file may be truncated here) or remove it"
@@ -99,7 +92,7 @@ class Fields:
 def read(document: Document) -> Atlas:
     """Read the reflectances of an archive; entries of other types are skipped."""
     header = read_header(document)
-    lines = _content(enumerate(document.lines, start=1))
+    lines = _content(document.lines)
     starts = [index for index, line in enumerate(lines) if line.key == ENTRY]
     if not starts:
         hint = "add entries, each beginning with a line 'Entry ID: …'"
@@ -117,7 +110,7 @@ def read(document: Document) -> Atlas:
 
 def read_header(document: Document) -> Header:
     """Read the statements of an archive about itself. Raise `AtlasError`."""
-    lines = list(itertools.takewhile(lambda line: line.key != ENTRY, _content(enumerate(document.lines, start=1))))
+    lines = list(itertools.takewhile(lambda line: line.key != ENTRY, _content(document.lines)))
     if lines and lines[0].key.startswith(MAGIC.lower()):
         number, text, _ = lines.pop(0)
         version = text.split()[-1]
@@ -130,12 +123,11 @@ def read_header(document: Document) -> Header:
     return Header(**{name: "" if value == NOT_STATED else value for name, value in values.items()})
 
 
-def _content(lines: Iterable[tuple[int, str]]) -> list[Line]:
-    """Return the lines that are neither blank nor a rule."""
-    stripped = ((number, text.strip()) for number, text in lines)
+def _content(lines: Iterable[str], first: int = 1) -> list[Line]:
+    """Return the lines, numbered from ``first``, that are neither blank nor a rule."""
     return [
         Line(number, text, one_line(text.partition(":")[0]).casefold())
-        for number, text in stripped
+        for number, text in enumerate(map(str.strip, lines), first)
         if text.strip("-") and not text.casefold().startswith("<hr")
     ]
 
@@ -202,19 +194,14 @@ def _sample_list(document: Document, lines: list[Line], location: SourceLocation
     first, last = lines[0].number, lines[-1].number
     start = location.at(first)
     text = "\n".join(document.lines[first - 1 : last]).strip()
-    # The list ends with the brace that closes the first one; only rules may follow it.
-    depth = 0
-    for brace in re.finditer(r"[{}]", text):
-        depth += 1 if brace[0] == "{" else -1
-        if depth == 0:
-            break
-    else:
+    found = LIST.match(text)
+    if found is None:
         raise start.error("the sample list is not closed by '}'", COMPLETE_ENTRY)
-    end = brace.end()
-    after = _content(enumerate(text[end:].split("\n"), first + text.count("\n", 0, end)))
+    # Only rules may follow the list.
+    after = _content(text[found.end() :].split("\n"), first + found[0].count("\n"))
     if after:
         raise start.at(after[0].number).error("unexpected text after the sample list", "end the entry with '}'")
-    return text[1 : end - 1], start
+    return found[1], start
 
 
 def _sampled(sampling: Fields, samples: str, start: SourceLocation) -> tuple[Array, Array]:
@@ -257,9 +244,9 @@ def _numbers(samples: str, first: int, last: int, start: SourceLocation) -> list
     for token in samples[first:last].split(","):
         try:
             numbers.append(parse_float(token))
-        except ValueError:
+        except ValueError:  # the error names its line
             blanks = token[: len(token) - len(token.lstrip())]
-            raise not_a_number(token, _below(start, samples[:first] + blanks), "sample") from None
+            numbers.append(parse_number(token, _below(start, samples[:first] + blanks), "sample"))
         first += len(token) + 1
     return numbers
 

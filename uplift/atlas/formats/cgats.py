@@ -10,7 +10,7 @@ import numpy as np
 
 from uplift.atlas.atlas import Header
 from uplift.atlas.document import EXPORT, Document, check_scale, one_line, parse_number
-from uplift.atlas.formats.table import Cell, Row, read_grid, wavelength
+from uplift.atlas.formats.table import Cell, Row, read_grid, split_label
 from uplift.atlas.measurements import Measurements, find_quantity, wrong_quantity
 from uplift.common.text import parse_float
 
@@ -26,7 +26,7 @@ def read(document: Document) -> Measurements:
     """Read the sets of a CGATS file. Fields other than the name and the spectrum are not used."""
     location = document.location
     preamble, rows = _parse(document)
-    if not any(wavelength(cell.text) is not None for cell in rows[0]):
+    if not any(split_label(cell.text)[1] is not None for cell in rows[0]):
         problem = "the CGATS file has no spectral fields"
         raise location.at(rows[0][0].line).error(problem, "export the spectra with the colours")
     keywords = {match[1]: match[2] or match[3] or "" for line in preamble if (match := KEYWORD.match(line))}
@@ -64,8 +64,7 @@ def _parse(document: Document) -> tuple[list[str], list[Row]]:
         elif not sets:
             preamble.append(text)
     if not fields or not sets:
-        location = document.location.at(len(document.lines))
-        raise location.error("a CGATS file must have fields and sets of data", EXPORT)
+        raise document.location.at(len(document.lines)).error("a CGATS file must have fields and sets of data", EXPORT)
     return preamble, [tuple(fields), *sets]
 
 

@@ -6,8 +6,8 @@ from uplift.atlas.atlas import Header, SkippedEntry
 from uplift.atlas.document import Document, one_line
 from uplift.atlas.measurements import Measurements, Spectrum, not_used_note, parsed_by
 
-INCREMENT = 10
-"""Step in nm of spectra whose colour specification states none."""
+START, STEP = 380.0, 10.0
+"""Start and step in nm of spectra whose colour specification states none."""
 REFLECTANCE = "ReflectanceSpectrum"
 OTHER_SPECTRA = {
     "TransmittanceSpectrum": "transmittance",
@@ -57,21 +57,20 @@ def _content(cxf: Any, path: str) -> Measurements:
     return Measurements(tuple(spectra), tuple(skipped), scale, header, notes)
 
 
-def _wavelength_ranges(resources: Any) -> dict[str, tuple[float | None, float]]:
+def _wavelength_ranges(resources: Any) -> dict[str, tuple[float, float]]:
     """Return start and step in nm by the identifier of the colour specification."""
     collection = resources.color_specification_collection if resources else None
     ranges = {}
     for each in collection.color_specification if collection else []:
         span = each.measurement_spec.wavelength_range if each.measurement_spec else None
         if span is not None:
-            ranges[each.id] = (span.start_wl, span.increment or INCREMENT)
+            ranges[each.id] = (span.start_wl or START, span.increment or STEP)
     return ranges
 
 
-def _spectrum(name: str, choice: Any, ranges: dict[str, tuple[float | None, float]]) -> Spectrum:
-    stated, step = ranges.get(choice.color_specification, (None, INCREMENT))
-    start = choice.start_wl if choice.start_wl is not None else stated
-    first = 380 if start is None else start
+def _spectrum(name: str, choice: Any, ranges: dict[str, tuple[float, float]]) -> Spectrum:
+    start, step = ranges.get(choice.color_specification, (START, STEP))
+    first = start if choice.start_wl is None else choice.start_wl
     values = [float(value) for value in choice.value]
     nm = [float(first + step * index) for index in range(len(values))]
     return Spectrum(name, nm, values, date=one_line(choice.measure_date))

@@ -13,7 +13,6 @@ from uplift.common.files import read_bytes
 HEADER, LIBRARY = ".hdr", ".sli"
 MAGIC = b"ENVI"
 FILE_TYPE = "ENVI Spectral Library"
-MAX_HEADER_BYTES = 16 << 20
 HINT = "write the library again as an ENVI spectral library, or export a CSV table"
 
 
@@ -55,7 +54,7 @@ def _pair(document: Document) -> tuple[Path, Path]:
         candidates = [path.with_suffix(HEADER), path.with_suffix(HEADER.upper()), Path(f"{path}{HEADER}")]
     other = next((each for each in candidates if each.is_file() and each != path), candidates[0])
     hint = f"put {other.name} next to it: an ENVI library has two files"
-    content = read_bytes(other, AtlasError, limit=MAX_BYTES if is_header else MAX_HEADER_BYTES, hint=hint)
+    content = read_bytes(other, AtlasError, limit=MAX_BYTES, hint=hint)
     if not is_header and not content.lstrip().startswith(MAGIC):
         raise SourceLocation(os.fspath(other)).error("is not an ENVI header", HINT, code="not-an-atlas")
     return (path, other) if is_header else (other, path)

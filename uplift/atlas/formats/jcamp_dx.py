@@ -20,8 +20,7 @@ def read(document: Document) -> Measurements:
     # The library allocates what the file states.
     for count in POINTS.findall(document.text):
         if not re.fullmatch(r"\d{1,7}(\.0*)?", count) or float(count) > MAX_POINTS:
-            problem = f"NPOINTS must be at most {MAX_POINTS:,}, got {truncate(count)}"
-            raise document.location.error(problem, EXPORT)
+            raise document.location.error(f"NPOINTS must be at most {MAX_POINTS:,}, got {truncate(count)}", EXPORT)
     with parsed_by("jcamp", "JCAMP-DX files", document), contextlib.redirect_stdout(io.StringIO()) as printed:
         import jcamp
 

@@ -37,12 +37,11 @@ def read(document: Document) -> Measurements:
     for name in names:
         try:
             found = read_grid(_rows(book, name, document), document.location)
+            return replace(found, notes=(f"sheet: {name}", *found.notes))
         except AtlasError as error:
             if error.code != problem.code:
                 raise
             problem = error
-        else:
-            return replace(found, notes=(f"sheet: {name}", *found.notes))
     raise problem
 
 
@@ -93,10 +92,8 @@ def _extent(content: bytes) -> tuple[int, int]:
             row, column = (int(place[2]) if place else row + 1), 0
             continue
         if place:
-            row, column = (
-                int(place[2]),
-                functools.reduce(lambda sum, letter: 26 * sum + letter - 64, place[1].upper(), 0),
-            )
+            row = int(place[2])
+            column = functools.reduce(lambda sum, letter: 26 * sum + letter - 64, place[1].upper(), 0)
         else:
             column += 1
         if not text.endswith(b"/"):  # a format without a value

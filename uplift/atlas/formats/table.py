@@ -75,13 +75,11 @@ class Run(NamedTuple):
     prefix: str
     nm: list[float]
 
-    @property
     def is_visible(self) -> bool:
         """Whether they cover the visible range."""
         low, high = min(self.nm), max(self.nm)
         return len(self.nm) > 1 and SHORTEST <= low <= VISIBLE[0] + SLACK and high >= VISIBLE[1] - SLACK
 
-    @property
     def is_labelled(self) -> bool:
         """Whether their labels are those of wavelengths, of any range."""
         return len(self.nm) > 2 and bool(self.prefix)
@@ -89,17 +87,16 @@ class Run(NamedTuple):
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of equal width, of which the first one has the wavelengths in cells ``first`` to ``last`` − 1."""
+    """Rows of equal width, of which the first one has the wavelengths."""
 
     rows: tuple[Row, ...]
-    first: int
-    last: int
+    run: Run
     layout: str
 
     @property
     def others(self) -> list[int]:
         """Indices of the columns that are not wavelengths."""
-        return [*range(self.first), *range(self.last, len(self.rows[0]))]
+        return [*range(self.run.first), *range(self.run.last, len(self.rows[0]))]
 
 
 def read(document: Document) -> Measurements:
@@ -132,8 +129,7 @@ def _read_samples(rows: Sequence[Row], location: SourceLocation) -> Measurements
         here = location.at(nm.line, name.text)
         samples = found.setdefault(name.text, [])
         samples.append((parse_number(nm.text, here, "wavelength"), parse_number(value.text, here, "value")))
-    columns_of = ((name, np.array(sorted(samples)).T) for name, samples in found.items())
-    spectra = (Spectrum(name, nm, values) for name, (nm, values) in columns_of)
+    spectra = (Spectrum(name, *np.array(sorted(samples)).T) for name, samples in found.items())
     return Measurements(tuple(spectra), notes=("layout: a row per sample",))
 
 
@@ -163,7 +159,9 @@ def _delimiter(document: Document) -> str:
             rows = list(itertools.islice(_split(document, delimiter), SAMPLE_ROWS))
         except csv.Error:
             return 0
-        return max((sum(wavelength(cell.text) is not None for cell in row) for row in rows if len(row) > 1), default=0)
+        return max(
+            (sum(split_label(cell.text)[1] is not None for cell in row) for row in rows if len(row) > 1), default=0
+        )
 
     return max((*DELIMITERS, BLANKS), key=numbers)
 
@@ -191,18 +189,16 @@ def read_grid(rows: Sequence[Row], location: SourceLocation, comments: str = "")
     """Read the spectra of a grid of cells."""
     table = _find_table(rows, location)
     header, *body = table.rows
-    stated = (wavelength(cell.text) for cell in header[table.first : table.last])
-    nm = [each for each in stated if each is not None]  # all of them
     name = _name_column(table)
     spectra = []
     for number, row in enumerate(body, 1):
         label = f"sample {number}" if name is None else row[name].text
-        cells = row[table.first : table.last]
+        cells = row[table.run.first : table.run.last]
         try:
             values = [parse_float(cell.text) for cell in cells]
         except ValueError:  # the first of them is named, by its own line
             values = [parse_number(cell.text, location.at(cell.line, label), "value") for cell in cells]
-        spectra.append(Spectrum(label, nm, values, None if name is None else row[name].line))
+        spectra.append(Spectrum(label, table.run.nm, values, None if name is None else row[name].line))
     unused = not_used_note(header[index].text for index in table.others if index != name)
     refusal = _refusal(table, rows, location, comments)
     return Measurements(tuple(spectra), notes=(table.layout, *unused), refusal=refusal)
@@ -211,17 +207,16 @@ def read_grid(rows: Sequence[Row], location: SourceLocation, comments: str = "")
 def _find_table(rows: Sequence[Row], location: SourceLocation) -> Table:
     """Find the table in a grid of cells. Raise `AtlasError`."""
     table = (
-        _in_row(rows, location, lambda run: run.is_visible)
+        _in_row(rows, location, Run.is_visible)
         or _in_column(rows, location)
-        or _in_row(rows, location, lambda run: run.is_labelled)  # entries are refused: they are not all visible light
+        or _in_row(rows, location, Run.is_labelled)  # entries are refused: they are not all visible light
         or _of_numbers(rows)
     )
     if table is None or len(rows) < 2 or len(table.rows) < 2:
         raise location.at(rows[0][0].line if rows else 1).error(NO_TABLE, LAYOUT, code="not-an-atlas")
     header = table.rows[0]
-    numbers = [cell.text for cell in header[table.first : table.last]]
-    unlabelled = not table.others and all(map(is_number, numbers))
-    if unlabelled or (not table.layout and all(parse_float(without_unit(each)) < SHORTEST for each in numbers)):
+    unlabelled = not table.others and all(is_number(cell.text) for cell in header)
+    if unlabelled or (not table.layout and max(table.run.nm) < SHORTEST):
         raise location.at(header[0].line).error("the header row is missing", LAYOUT)
     return table
 
@@ -230,7 +225,7 @@ def _in_row(rows: Sequence[Row], location: SourceLocation, wanted: Callable[[Run
     """Find a row of wavelengths with rows of the same width below it."""
     for index, row in enumerate(rows[:MAX_PREAMBLE]):
         for run in filter(wanted, _runs(row)):
-            return Table(_of_one_width(rows[index:], location), run.first, run.last, "layout: a row per spectrum")
+            return Table(_of_one_width(rows[index:], location), run, "layout: a row per spectrum")
     return None
 
 
@@ -242,10 +237,10 @@ def _in_column(rows: Sequence[Row], location: SourceLocation) -> Table | None:
         block = list(group)
         for column in range(min(width, 3) if width > 1 else 0):
             for run in _runs([row[column] for row in block]):
-                if run.is_visible:
+                if run.is_visible():
                     below = _of_one_width(rows[start:], location)
                     turned = zip(*((row[column], *row[:column], *row[column + 1 :]) for row in below), strict=True)
-                    return Table(tuple(turned), run.first, run.last, "layout: a column per spectrum")
+                    return Table(tuple(turned), run, "layout: a column per spectrum")
         start += len(block)
         if start >= MAX_PREAMBLE:
             break
@@ -257,8 +252,9 @@ def _of_numbers(rows: Sequence[Row]) -> Table | None:
     if len(rows) < 2 or len(rows[0]) < 2 or any(len(row) != len(rows[0]) for row in rows):
         return None
     for table in (tuple(rows), tuple(zip(*rows, strict=True))):
-        if all(is_number(without_unit(cell.text)) for cell in table[0][1:]):
-            return Table(table, 1, len(table[0]), "")
+        numbers = [without_unit(cell.text) for cell in table[0][1:]]
+        if all(map(is_number, numbers)):
+            return Table(table, Run(1, len(table[0]), "", list(map(parse_float, numbers))), "")
     return None
 
 
@@ -273,7 +269,7 @@ def _of_one_width(rows: Sequence[Row], location: SourceLocation) -> tuple[Row, .
 
 def _runs(cells: Sequence[Cell]) -> Iterator[Run]:
     """Yield runs of neighbouring wavelengths whose labels begin in the same way."""
-    labels = [_split_label(cell.text) for cell in cells]
+    labels = [split_label(cell.text) for cell in cells]
     prefixes = (None if nm is None else prefix for prefix, nm in labels)
     last = 0
     for prefix, group in itertools.groupby(prefixes):
@@ -300,23 +296,18 @@ def _refusal(table: Table, rows: Sequence[Row], location: SourceLocation, commen
     location = location.at(header[0].line)
     first = min(cell.line for cell in header)
     preamble = (cell.text for row in rows if row[0].line < first for cell in row)
-    label = header[table.first].text
-    if _split_label(label)[0] in TRANSMITTANCE_PREFIXES:
+    if table.run.prefix in TRANSMITTANCE_PREFIXES:
+        label = header[table.run.first].text
         return wrong_quantity(f"the label '{label}' states transmittance, not reflectance", location)
     return find_quantity(" ".join((comments, *preamble, *(cell.text for cell in header))), location)
 
 
-def wavelength(text: str) -> float | None:
-    """Return the wavelength in nm that a cell states, None if it states none.
+def split_label(text: str) -> tuple[str, float | None]:
+    """Return what a label begins with, and its wavelength in nm; None if it states no wavelength.
 
-    >>> [wavelength(text) for text in ("400", "nm400", "R_400", "400.5 nm", "SPECTRAL_NM400", "LAB_L", "patch 400")]
-    [400.0, 400.0, 400.0, 400.5, 400.0, None, None]
+    >>> [split_label(text) for text in ("400", "R_400", "400.5 nm", "SPECTRAL_NM400", "LAB_L", "patch 400")]
+    [('', 400.0), ('r', 400.0), ('', 400.5), ('spectralnm', 400.0), ('', None), ('', None)]
     """
-    return _split_label(text)[1]
-
-
-def _split_label(text: str) -> tuple[str, float | None]:
-    """Return what a label begins with, and its wavelength in nm; None if it states no wavelength."""
     number = without_unit(text)
     if is_number(number):
         return "", parse_float(number)
