@@ -111,10 +111,10 @@ def check_plot(path: str) -> str:
     return path
 
 
-def check_range(wavelengths: Array | None, own: Array) -> None:
-    """Check that wavelengths (N,), if any, lie in the range of a cube's or table's; the library continues spectra."""
+def check_range(wavelengths: Array, own: Array) -> None:
+    """Check that wavelengths (N,) lie in the range of a cube's or table's; the library continues spectra."""
     first, last = own[[0, -1]]
-    outside = [] if wavelengths is None else [each for each in wavelengths if not first <= each <= last]
+    outside = [each for each in wavelengths if not first <= each <= last]
     if outside:
         micrometres = f"give nm: {outside[0]:g} µm are {1000 * outside[0]:g} nm"
         hint = micrometres if outside[0] < 10 else "stay in this range; 'uplift build --range' sets that of a cube"

@@ -7,7 +7,7 @@ import inspect
 import math
 import re
 from collections.abc import Callable, Collection
-from functools import reduce
+from functools import partial, reduce
 from importlib import import_module
 from typing import Any
 
@@ -147,28 +147,20 @@ def stacked(*decorators: Decorator) -> Decorator:
     return lambda function: reduce(lambda inner, each: each(inner), reversed(decorators), function)
 
 
-def repeatable(option: str, name: str, help: str, default: str = "", **settings: Any) -> Decorator:
+def repeatable(
+    option: str, name: str, help: str, default: str = "", *, examples: str = "", **settings: Any
+) -> Decorator:
     """An option that may be given several times, as the tuple ``name``."""
-    text = f"{help}; repeatable." + (f" [default: {default}]" if default else "")
+    text = f"{help}{examples}; repeatable." + (f" [default: {default}]" if default else "")
     return click.option(option, name, multiple=True, help=text, **settings)
 
 
-def tolerance(help: str, name: str = "tolerance", **settings: Any) -> Decorator:
-    """``--tolerance``, a ΔE00."""
-    return click.option("--tolerance", name, metavar="ΔE00", type=NUMBER, help=help, **settings)
-
-
-def atlas(help: str, default: str = "") -> Decorator:
-    """``--atlas`` as ``files``."""
-    return repeatable("--atlas", "files", help, default, metavar="FILE", shell_complete=complete_atlas)
-
-
-def light(help: str, default: str) -> Decorator:
-    """``--light`` as ``lights``; why defaults differ is in `uplift help lights`."""
-    help = f"{help}, such as led, 3200K or FL11"
-    return repeatable("--light", "lights", help, default, metavar="NAME", shell_complete=complete_light)
-
-
+atlas = partial(repeatable, "--atlas", "files", metavar="FILE", shell_complete=complete_atlas)
+LAMPS = ", such as led, 3200K or FL11"
+light = partial(repeatable, "--light", "lights", examples=LAMPS, metavar="NAME", shell_complete=complete_light)
+"""Why its defaults differ is in `uplift help lights`."""
+tolerance = partial(click.option, "--tolerance", metavar="ΔE00", type=NUMBER)
+output = partial(click.option, "-o", "--output", metavar="FILE", type=click.Path())
 OF_PACKAGE = ", or ACEScg for the packaged ACEScg cube{}. [default: the packaged sRGB cube]"
 """Help of ``--cube`` where a packaged cube will do."""
 
@@ -189,10 +181,11 @@ def choice(
     )
 
 
-def encoding(subject: str = "colours") -> Decorator:
-    """``--encoding``."""
-    text = "auto: whole numbers have the transfer function of the cube's space, floats are linear."
-    return choice("--encoding", "auto", "linear", "encoded", help=f"Encoding of {subject}. {text}")
+encoding = choice(
+    "--encoding",
+    *("auto", "linear", "encoded"),
+    help="Encoding of images. auto: whole numbers have the transfer function of the cube's space, floats are linear.",
+)
 
 
 def input_space(subject: str, default: str = "as the file states", name: str = "input_space") -> Decorator:
@@ -223,9 +216,7 @@ def out_of_gamut(default: str, why: str, subject: str = "colours", name: str = "
 
 def pixels() -> Decorator:
     """``--encoding``, ``--input-space`` and ``--out-of-gamut`` of images, as `uplift.io.texture` names them."""
-    return stacked(
-        encoding("the images"), input_space("the images", name="space"), out_of_gamut(*PIXELS, "pixels", "out_of_gamut")
-    )
+    return stacked(encoding, input_space("the images", name="space"), out_of_gamut(*PIXELS, "pixels", "out_of_gamut"))
 
 
 def output_format(*choices: str) -> Decorator:
@@ -310,11 +301,6 @@ atlas_folders = repeatable("--atlas-dir", "folders", "Folder to search for atlas
 force = click.option("--force", is_flag=True, help="Replace existing files.")
 quiet = click.option("-q", "--quiet", is_flag=True, help="Print only warnings and errors.")
 verbose = click.option("-v", "--verbose", is_flag=True, help="Print a line for every round and improvement step.")
-
-
-def output(help: str, metavar: str = "FILE", **settings: Any) -> Decorator:
-    """``--output``."""
-    return click.option("-o", "--output", metavar=metavar, help=help, **{"type": click.Path()} | settings)
 
 
 def space(camera: str = "") -> Decorator:

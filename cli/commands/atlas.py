@@ -27,7 +27,7 @@ SOURCE = ("name", "digest", "format", "measured", "notes")
 @options.scale
 @options.sensor
 @options.output_format("table", "json", "csv")
-@options.output("Write all entries to FILE instead of a list.")
+@options.output(help="Write all entries to FILE instead of a list.")
 @options.force
 def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, force: bool, **camera: Any) -> None:
     """List the entries of atlas files, and how the files were understood.

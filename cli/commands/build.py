@@ -43,7 +43,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 @click.command("build", cls=options.Command, everyday=("files", "output", "dim", "space", "coefficients", "force"))
 @options.atlas("Measured spectra")
 @options.scale
-@options.output("Cube to write. [default: named after atlas and dim, in the current folder]")
+@options.output(help="Cube to write. [default: named after atlas and dim, in the current folder]")
 @click.option(
     "--dim",
     default=32,
@@ -52,7 +52,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     help="Lattice nodes along each axis. 'auto' chooses the smallest dim, and its axis, that resolves every entry.",
 )
 @options.tolerance(
-    "Largest difference to the entries that the lattice of --dim auto may have.", "auto_tolerance", default=0.5
+    "auto_tolerance", default=0.5, help="Largest difference to the entries that the lattice of --dim auto may have."
 )
 @click.option("--model", default="moments", help="Spectrum model: moments or sigmoid.")
 @options.coefficients
@@ -108,7 +108,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     default="least-change",
     help="Solver: least-change, dogleg, levenberg-marquardt or gauss-newton. Only nearly box-shaped spectra differ.",
 )
-@options.encoding("--scene images")
+@options.encoding
 @options.input_space("--scene images")
 @click.option("--plan", "plan_path", metavar="PLAN", help="Build the cube of a plan by 'uplift plan'.")
 @options.out_of_gamut(*options.PIXELS, "pixels of --scene images")

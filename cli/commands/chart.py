@@ -24,7 +24,7 @@ FILES = ("chart.csv", "chart.png", "chart.html")
 
 
 @click.command("chart")
-@options.output("Folder to write to.", metavar="DIR", default="chart")
+@options.output(help="Folder to write to.", metavar="DIR", default="chart")
 @options.repeatable("--method", "patterns", "Methods by name, with '*' as a wildcard", metavar="PATTERN")
 @options.atlas("Measured spectra", DEFAULT_ATLASES)
 @click.option("--quick", is_flag=True, help="Few methods and repeats: about a minute instead of half an hour.")
@@ -35,7 +35,7 @@ FILES = ("chart.csv", "chart.png", "chart.html")
     help="Recommend a cube for common situations, or for limits, by the packaged chart or --from.",
 )
 @click.option("--time-ns", type=options.NUMBER, help="With --recommend: largest CPU time per RGB, in ns.")
-@options.tolerance("With --recommend: largest mean ΔE00.", "delta_e")
+@options.tolerance("delta_e", help="With --recommend: largest mean ΔE00.")
 @click.option(
     "--light", help="With --recommend: illuminant of the ΔE00; D65 is the round trip. [default: mean of five]"
 )

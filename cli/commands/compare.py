@@ -25,7 +25,7 @@ SPECTRA = ("surfaces.csv", "lights.csv")
 @click.command("compare")
 @options.atlas("Surfaces", DEFAULT_ATLASES)
 @options.light("Illuminant", "A, B, C, and FL2, FL7, FL11")
-@options.tolerance("Print the cheapest representation with 97.5 % of errors below this value.")
+@options.tolerance(help="Print the cheapest representation with 97.5 % of errors below this value.")
 @click.option(
     "--filters", is_flag=True, help="Also search the best low-pass filters for point sampling, which takes minutes."
 )
@@ -37,7 +37,7 @@ SPECTRA = ("surfaces.csv", "lights.csv")
     help="Write surfaces and lights as a representation or filter stores them to --output, and compare nothing: PS16, "
     "PF16, RS32, TM9, SG3, or PS16:KIND:EXTENT:PARAMETERS with a filter, such as PS16:gaussian:7:0.5.",
 )
-@options.output("Folder for tables and plots.", metavar="DIR")
+@options.output(help="Folder for tables and plots.", metavar="DIR")
 @options.output_format("table", "json", "csv")
 @options.force
 def command(

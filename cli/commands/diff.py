@@ -18,12 +18,12 @@ from ..output.progress import progress_bar
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
 @options.light("Illuminant", "D65 A FL2 FL11 LED-B3")
 @options.tolerance(
-    "Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by more, if one cube alone lacks a colour, "
-    "or if entries were added or removed."
+    help="Largest ΔE00 that is accepted: the exit code is 1 if a colour differs by more, if one cube alone lacks a "
+    "colour, or if entries were added or removed."
 )
 @click.option("--worst", type=options.Whole(0), default=5, help="Number of worst colours of each set.")
 @options.pixels()
-@options.output("HTML page with pictures of where the cubes differ.", type=options.PAGE)
+@options.output(help="HTML page with pictures of where the cubes differ.", type=options.PAGE)
 @options.output_format("table", "json")
 @options.force
 def command(

@@ -39,7 +39,7 @@ APPLIES = {
 
 @click.command("export")
 @options.cube_argument
-@options.output("File to write. [default: CUBE's name in the current folder]")
+@options.output(help="File to write. [default: CUBE's name in the current folder]")
 @click.option(
     "--format",
     "style",

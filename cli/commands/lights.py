@@ -57,7 +57,7 @@ def command() -> None:
 
 @command.command("build")
 @options.atlas("Spectral powers of lamps")
-@options.output("Table to write. [default: ATLAS-emission.uplift]")
+@options.output(help="Table to write. [default: ATLAS-emission.uplift]")
 @options.space()
 @options.observer()
 @options.force
@@ -122,7 +122,7 @@ def info(table_path: str, style: str, plot_path: str | None, html: str | None, f
 
 @command.command("export")
 @table_argument
-@options.output("Program to write, as .h or .glsl.", required=True)
+@options.output(help="Program to write, as .h or .glsl.", required=True)
 @options.table
 @options.force
 def export(table_path: str, output: str, table: str | None, force: bool) -> None:
@@ -155,7 +155,7 @@ def export(table_path: str, output: str, table: str | None, force: bool) -> None
 @table_option
 @options.output_wavelengths
 @options.depth
-@options.encoding("the images")
+@options.encoding
 @options.input_space("the images", name="space")
 def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) -> None:
     """Convert images of lights, such as environment maps, to spectral power and write OpenEXR textures.
@@ -173,7 +173,8 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
 
     table = None if table_path is None else os.path.abspath(find_table(table_path))
     own = load_emission(table_path).wavelengths  # a table that cannot be read is reported before images are
-    check_range(wavelengths, own)
+    if wavelengths is not None:
+        check_range(wavelengths, own)
     convert((table,), Spectrum(as_tuple(wavelengths)), emission=True, **settings)
 
 
@@ -216,9 +217,9 @@ def query(
     check_outputs((plot_path,), inputs=(table_path, colours["input_path"]), force=force)
     source = find_colours(**colours)
     table = load_emission(table_path)
-    check_range(wavelengths, table.wavelengths)
-    blocks = [np.array([source.xyz])] if source.xyz else map(table.xyz, source.blocks(sensor(table.space)))
     at = table.wavelengths if wavelengths is None else wavelengths
+    check_range(at, table.wavelengths)
+    blocks = [np.array([source.xyz])] if source.xyz else map(table.xyz, source.blocks(sensor(table.space)))
     results: Iterable[dict[str, Any]] = _answers(table, blocks, at, outside)
     if plot_path is not None:
         from uplift.viz.plots import plot_lights

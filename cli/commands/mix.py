@@ -91,8 +91,8 @@ if TYPE_CHECKING:
 @options.plot("Plot the ramp from the first ingredient to the last")
 @click.option("--steps", type=options.Whole(2, 1000), default=9, help="Number of swatches on the ramp.")
 @click.option("--over", metavar="IMAGE", help="Image to paint over (EXR, PNG, JPEG, TIFF).")
-@options.output("With --over: image to write, as .exr.")
-@options.encoding("the image of --over")
+@options.output(help="With --over: image to write, as .exr.")
+@options.encoding
 @options.input_space("the colours and of the image of --over", default="that of the cube")
 @options.force
 def command(
@@ -174,7 +174,8 @@ def command(
     check_outputs((plot_path, output), inputs=(cube_path, over, *files), force=force)
     cube = load(cube_path)
     sensor, space = cube.data.sensor, None if input_space is None else find_input_space(input_space)
-    check_range(wavelengths, cube.wavelengths)
+    if wavelengths is not None:
+        check_range(wavelengths, cube.wavelengths)
     further = np.array([]) if theories or over is not None else as_wavelengths(wavelengths, cube.wavelengths)
     grid = np.concatenate([sensor.wavelengths, further])  # for colours, followed by those of the output
     resolver = SpectrumResolver(cube, read_atlas(*files) if files else Atlas(), grid, space)

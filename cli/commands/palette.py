@@ -28,7 +28,7 @@ LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of th
 
 @click.command("palette")
 @click.argument("spec", metavar="SPEC.toml", type=click.Path())
-@options.output("Write the designed materials as an atlas; CSV if FILE ends in .csv.")
+@options.output(help="Write the designed materials as an atlas; CSV if FILE ends in .csv.")
 @options.plot("Plot the matrix of colours")
 @options.plot("Plot the spectra of lights and materials", "--plot-spectra", "spectra_path")
 @options.page("Write a page that shows the materials under any mixture of the lights.")

@@ -10,7 +10,7 @@ from ..startup import enable_jit_cache
 
 @click.command("plan")
 @click.argument("scene", metavar="SCENE.toml", type=click.Path())
-@options.output("Plan to write. [default: SCENE.plan.json in the folder of the scene]")
+@options.output(help="Plan to write. [default: SCENE.plan.json in the folder of the scene]")
 @click.option("--quick", is_flag=True, help="Fewer candidates, and fewer pixels.")
 @options.output_format("table", "json")
 @options.force

@@ -72,7 +72,8 @@ class Answers:
         self.source = find_colours(**colours)
         self.single = self.source.path is None
         self.cube = load(cube_path)
-        check_range(wavelengths, self.cube.wavelengths)
+        if wavelengths is not None:
+            check_range(wavelengths, self.cube.wavelengths)
         self.wavelengths, self.mode, self.method, self.fill_missing = wavelengths, mode, method, fill_missing
         data = self.cube.data
         atlases = [source["name"] for source in data.provenance.get("atlases", ())]

@@ -33,7 +33,7 @@ DIM = 32
 @options.atlas("Measured spectra; a cube is built from them and shown as well")
 @options.pixels()
 @options.output(
-    "File to write: a figure if it ends in .png, .svg or .pdf, a page if in .html, the image itself if in .exr.",
+    help="File to write: a figure if it ends in .png, .svg or .pdf, a page if in .html, the image itself if in .exr.",
     default="relit.png",
 )
 @options.output_format("table", "json")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 @options.atlas("Measured spectra that replace the atlases of the cube")
 @options.atlas_folders
 @options.light("Illuminant to evaluate", "D65 A FL2 FL7 FL11 LED-B3")
-@options.output("File to write. [default: CUBE's name with .html, in the current folder]")
+@options.output(help="File to write. [default: CUBE's name with .html, in the current folder]")
 @options.output_format("html", "json")
 @click.option(
     "--worst", type=options.Whole(0), default=24, help="Number of entries with plotted spectra, largest errors first."

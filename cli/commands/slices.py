@@ -10,7 +10,7 @@ from ..output.console import say
 
 @click.command("slices")
 @options.cube_argument
-@options.output("Slices to write, as .exr. [default: CUBE's name with .exr, in the current folder]")
+@options.output(help="Slices to write, as .exr. [default: CUBE's name with .exr, in the current folder]")
 @click.option("--plot", "sheet", metavar="FILE", type=click.Path(), help="Contact sheet to write, as .exr or .png.")
 @options.force
 def command(cube: str, output: str | None, sheet: str | None, force: bool) -> None:

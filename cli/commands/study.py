@@ -61,7 +61,7 @@ def _print_table(rows: Sequence[Row]) -> None:
 @command.command("moments")
 @options.atlas("Atlas", DEFAULT_ATLASES)
 @click.option("--max-moments", metavar="N", type=options.WHOLE, default=15, help="Largest number of moments, up to 32.")
-@options.output("Folder for plots.", metavar="DIR")
+@options.output(help="Folder for plots.", metavar="DIR")
 @options.output_format("table", "json", "csv")
 @options.force
 def moments(files: tuple[str, ...], max_moments: int, output: str | None, style: str, force: bool) -> None:
@@ -143,7 +143,7 @@ def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, s
 @command.command("stability")
 @click.option("--quick", is_flag=True, help="Small lattices and few values: some seconds per model.")
 @options.atlas("Atlas in addition to the synthetic ones", MACBETH)
-@options.output("Folder for plots.", metavar="DIR")
+@options.output(help="Folder for plots.", metavar="DIR")
 @options.output_format("table", "json", "csv")
 @options.force
 def stability(quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool) -> None:
@@ -192,7 +192,7 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
     "Published method whose queries are perturbed too, such as otsu2018 or mallett2019",
     metavar="NAME",
 )
-@options.output("Folder for plots.", metavar="DIR")
+@options.output(help="Folder for plots.", metavar="DIR")
 @options.output_format("table", "json")
 @options.force
 def sensitivity(

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     "wavelengths", cls=options.Command, everyday=("count", "tolerance", "files", "lights", "style", "plot_path")
 )
 @click.option("--count", metavar="N", type=options.WHOLE, help="Number of wavelengths, 1 to 40.")
-@options.tolerance("Choose the fewest wavelengths with an error below this ΔE00.")
+@options.tolerance(help="Choose the fewest wavelengths with an error below this ΔE00.")
 @options.wavelengths("; only their weights and powers are fitted.")
 @click.option(
     "--measure",

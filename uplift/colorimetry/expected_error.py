@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -27,20 +26,6 @@ MAX_ROWS = 1000
 """Entries that the distances between neighbours are learnt from."""
 
 
-class Radii(NamedTuple):
-    """Radii that errors stay within, in roots of the expected squares. Normal errors would have 1 and 2."""
-
-    standard: float
-    """Radius of the standard error: 68 % of materials."""
-    bound: float
-    """Radius of the error bound: 95 % of materials."""
-
-    @property
-    def scale(self) -> float:
-        """Factor of the normal distribution that fits both radii."""
-        return float(np.sqrt((self.standard**2 + (self.bound / COVERAGE[1][1]) ** 2) / 2))
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class ExpectedError:
     """Expected squares of errors around left-out entries, and the radii that errors stay within."""
@@ -53,8 +38,14 @@ class ExpectedError:
     """(K,) Squares or products that remain at the entries themselves."""
     left_out: Array
     """(E, K) Expected squares or products of each entry when left out, from the other entries."""
-    radii: Radii
-    """Radii in roots of the expected squares."""
+    radii: tuple[float, float]
+    """Radii in roots of the expected squares that 68 % and 95 % of materials stay within; normal errors: 1 and 2."""
+
+    @property
+    def scale(self) -> float:
+        """Factor of the normal distribution that fits both radii."""
+        standard, bound = self.radii
+        return float(np.sqrt((standard**2 + (bound / COVERAGE[1][1]) ** 2) / 2))
 
     def combine(self, sums: Array, nearest: Array) -> Array:
         """Squares (n, K) less `floor` from weighted sums (n, K + 1) of `columns`, and the largest weights (n,)."""
@@ -98,9 +89,9 @@ def expected_error(
     expected = sums[:, :-1] + PRIOR_COUNT * columns[:, :-1].mean(axis=0)
     expected *= (variance / (sums[:, -1] + PRIOR_COUNT))[:, None]
     roots = np.sqrt(expected[:, -1] + floor)
-    radii = Radii(*learn_radii(left_out / np.maximum(roots, TINY), COVERAGE))
+    standard, bound = learn_radii(left_out / np.maximum(roots, TINY), COVERAGE)
     columns = np.delete(columns, -2, axis=1)
-    return ExpectedError(locations, columns, products_floor, expected[:, :-1] + products_floor, radii)
+    return ExpectedError(locations, columns, products_floor, expected[:, :-1] + products_floor, (standard, bound))
 
 
 def mahalanobis(covariance: Array, difference: Array) -> Array:

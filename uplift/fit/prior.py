@@ -103,7 +103,7 @@ class Prior:
         sums, nearest = kernel_sums(rgb_to_lab(self.sensor, rgb), self.errors.locations, columns, LENGTH, none)
         # Expected square v(x) Σ k e² / Σ k + f, and the learnt radius of 68 % in its root
         squares = self.errors.combine(sums[:, :used], nearest)[:, 0] + self.errors.floor
-        return np.asarray(self.errors.radii.standard * np.sqrt(squares))
+        return np.asarray(self.errors.radii[0] * np.sqrt(squares))
 
     def with_entries(self, entries: FittedEntries, looks: int) -> "Prior":
         """Krige entries and then looks, which are certain, with the same kernel; the standard errors stay."""

@@ -92,7 +92,7 @@ class LabErrors:
         expected = self.expected(rgb_to_lab(self.data.sensor, np.clip(rgb, 0, 1)))
         hits = self.data.outside_boxes.find(rgb)
         expected[hits.rows] *= hits.lattice_weight[:, None] ** 2  # the share of the answer that no entry gives
-        return (self.expected.radii.scale**2 * (expected + self.expected.floor)).reshape(-1, 3, 3)
+        return (self.expected.scale**2 * (expected + self.expected.floor)).reshape(-1, 3, 3)
 
 
 def lab_errors(data: CubeData, light: Light) -> LabErrors:
@@ -106,7 +106,7 @@ def lab_errors(data: CubeData, light: Light) -> LabErrors:
     left_out_products, kept_products = ((each[:, :, None] * each[:, None, :]).reshape(-1, 9) for each in differences)
     expected = expected_error(data.entry_lab, missed, kept, (left_out_products, kept_products))
     # d² = eᵀ Σ⁻¹ e of each entry, by the covariance Σ that the other entries let expect
-    own = expected.radii.scale**2 * expected.left_out.reshape(-1, 3, 3)
+    own = expected.scale**2 * expected.left_out.reshape(-1, 3, 3)
     distances = mahalanobis(own[:, 1:, 1:], differences[0][:, 1:])
     (radius,) = learn_radii(distances, [(LIKELY, NORMAL_RADIUS)], components=2)
     return LabErrors(data, expected, radius)

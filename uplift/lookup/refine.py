@@ -5,8 +5,6 @@ Spectra are columns here, so that all arithmetic runs along contiguous memory. I
 large numbers.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
@@ -61,25 +59,18 @@ def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Arr
     return multipliers.T
 
 
-class Pull(NamedTuple):
-    """The directions in which mixtures move, and the colours that they have, scaled to W Kᵀ = I."""
+def pull(sensor: Sensor) -> tuple[Array, Array, Array]:
+    """Return the directions in which mixtures move to their colours, with W Kᵀ = I.
 
-    sensor: Array
-    """W, (3, N): from reflectances to scaled RGB."""
-    shapes: Array
-    """K, (3, N): the curves of the sensor without the power of the light, so that W = K diag(power)."""
-    scale: Array
-    """(3, 3), from linear to scaled RGB."""
-
-
-def pull(sensor: Sensor) -> Pull:
-    """Return the directions in which mixtures move to their colours."""
+    W (3, N) maps reflectances to scaled RGB, K (3, N) are the curves of the sensor without the power of the light, so
+    that W = K diag(power), and the scale (3, 3) is that from linear to scaled RGB.
+    """
     if sensor.sensitivities is None:
         shapes = sensor.cmfs @ sensor.xyz_to_rgb.T
     else:
         shapes = sensor.sensitivities / (sensor.sensitivities.T @ sensor.power)
     scale = np.linalg.inv(np.linalg.cholesky(sensor.matrix @ shapes))
-    return Pull(scale @ sensor.matrix, scale @ shapes.T, scale)
+    return scale @ sensor.matrix, scale @ shapes.T, scale
 
 
 def with_colours(data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, wavelengths: Array) -> Values:
@@ -88,22 +79,23 @@ def with_colours(data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, 
     ``spectra`` (n, N) are reflectances in [0, 1] at any wavelengths (N,) in nm, ``at_sensor`` (n, M) the same at those
     of the sensor. They need not be of the model. Those that have their colour stay to the last bit.
     """
-    model, pulled, moved = data.model, pull(data.sensor), spectra.copy()
-    shapes = np.array([np.interp(wavelengths, data.sensor.wavelengths, shape) for shape in pulled.shapes])
+    model, (weights, shapes, scale), moved = data.model, pull(data.sensor), spectra.copy()
+    shapes_at = np.array([np.interp(wavelengths, data.sensor.wavelengths, shape) for shape in shapes])
     pending = np.flatnonzero(np.abs(data.sensor.rgb(at_sensor) - rgb).max(axis=1) > TOLERANCE)
     for first in range(0, pending.size, BLOCK_COLUMNS):
         rows = pending[first : first + BLOCK_COLUMNS]
-        goal = pulled.scale @ within_solid(data, rgb[rows]).T
+        goal = scale @ within_solid(data, rgb[rows]).T
         # Near 0 and 1 the linear part is large: the farther it moves, the farther it starts from there.
-        off = np.abs(goal - pulled.sensor @ at_sensor[rows].T).max(axis=0)
+        off = np.abs(goal - weights @ at_sensor[rows].T).max(axis=0)
         least = np.minimum(np.minimum(LEAST + SLOPE * off, STEEP * off), MOST)
-        change = _pull(model, pulled, model.from_reflectance(np.clip(at_sensor[rows].T, least, 1 - least)), goal)
+        linear = model.from_reflectance(np.clip(at_sensor[rows].T, least, 1 - least))
+        change = _pull(model, weights, shapes, linear, goal)
         start = model.from_reflectance(np.clip(spectra[rows].T, least, 1 - least))
-        moved[rows] = model.to_reflectance(start + shapes.T @ change).T
+        moved[rows] = model.to_reflectance(start + shapes_at.T @ change).T
     return moved
 
 
-def _pull(model: Model, pulled: Pull, linear: Array, goal: Array) -> Array:
+def _pull(model: Model, weights: Array, shapes: Array, linear: Array, goal: Array) -> Array:
     """Find y (3, n) with W S(x + Kᵀ y) = goal (3, n), from linear parts x (N, n).
 
     As S increases, this is the minimum of a convex function Φ, whose gradient is the negative residual, and Newton's
@@ -111,21 +103,21 @@ def _pull(model: Model, pulled: Pull, linear: Array, goal: Array) -> Array:
     unless it goes too far: to where Φ rises more than half as steeply as it fell, or where it is much flatter.
     It changes no x by more than `REACH` (1 + |x|).
     """
-    products = np.array([pulled.sensor[a] * pulled.shapes[b] for a in range(3) for b in range(a + 1)])
+    products = np.array([weights[a] * shapes[b] for a in range(3) for b in range(a + 1)])
     found, length = np.zeros_like(goal), np.ones(goal.shape[1])
-    gram, residual = products @ model.derivative(linear), goal - pulled.sensor @ model.to_reflectance(linear)
+    gram, residual = products @ model.derivative(linear), goal - weights @ model.to_reflectance(linear)
     for _ in range(MAX_PULLS):
         pending = np.flatnonzero(np.abs(residual).max(axis=0) > PULLED)
         if not pending.size:
             break
         off, (g00, g10, g11, g20, g21, g22) = residual[:, pending], gram[:, pending]
         step = np.array(solve_damped([[g00], [g10, g11], [g20, g21, g22]], 0, off))
-        at = linear[:, pending] + pulled.shapes.T @ found[:, pending]
-        reach = (np.abs(pulled.shapes.T @ step) / (1 + np.abs(at))).max(axis=0)
+        at = linear[:, pending] + shapes.T @ found[:, pending]
+        reach = (np.abs(shapes.T @ step) / (1 + np.abs(at))).max(axis=0)
         part = length[pending] / np.maximum(1, length[pending] * reach / REACH)
         step = part * step
-        trial = linear[:, pending] + pulled.shapes.T @ (found[:, pending] + step)
-        trial_off = goal[:, pending] - pulled.sensor @ model.to_reflectance(trial)
+        trial = linear[:, pending] + shapes.T @ (found[:, pending] + step)
+        trial_off = goal[:, pending] - weights @ model.to_reflectance(trial)
         trial_gram = products @ model.derivative(trial)
         good = (trial_off * step).sum(axis=0) >= -0.5 * (off * step).sum(axis=0)
         good &= trial_gram[TRACE].sum(axis=0) >= MIN_CURVATURE * (g00 + g11 + g22)

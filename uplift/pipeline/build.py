@@ -51,23 +51,23 @@ if TYPE_CHECKING:
     from uplift.fit.stock_solvers import Solver
     from uplift.pipeline.look import LooksLike
 
+    class SceneLike(Protocol):
+        """Colours that restrict a build to the nodes that they require."""
+
+        def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
+            """Return the mask (dim³,) of the required nodes, and report events of stage ``"images"``."""
+            ...
+
+        def describe(self) -> list[dict[str, Any]]:
+            """Describe the sources of the colours for the provenance of the cube, in JSON values."""
+            ...
+
+
 GROWTH: dict[str, Callable[..., growth.Growth]] = {
     "outward": growth_outward.grow_outward,
     "coarse-to-fine": growth_coarse.grow_coarse_to_fine,
     "neighbours": growth_thesis.grow_from_neighbours,
 }
-
-
-class SceneLike(Protocol):
-    """Colours that restrict a build to the nodes that they require."""
-
-    def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
-        """Return the mask (dim³,) of the required nodes, and report events of stage ``"images"``."""
-        ...
-
-    def describe(self) -> list[dict[str, Any]]:
-        """Describe the sources of the colours for the provenance of the cube, in JSON values."""
-        ...
 
 
 def build(
@@ -223,9 +223,8 @@ def build(
 def problem_of(options: Options, observer: str | Camera, solver: str | Solver) -> tuple[Options, Problem]:
     """Return the problem of a build, and options with the names of the space and of a camera, not aliases or files."""
     # r = W g, on the wavelengths of the build (docs/mathematics.md, 1)
-    camera = observer if isinstance(observer, Camera) else options.observer
     wavelengths = options.shortest, options.longest, options.step
-    sensor = observers.sensor(options.space, options.illuminant, camera, wavelengths)
+    sensor = observers.sensor(options.space, options.illuminant, observer, wavelengths)
     names = (*options.lights, ERROR_ILLUMINANT)
     *lights, error_light = (observers.light(name, sensor.observer, *sensor.range) for name in names)
     problem = Problem(sensor, options.spectrum_model(), tuple(lights), error_light, options.threshold)
@@ -342,7 +341,8 @@ def build_stages(
     # What the kriging learnt, if there is an atlas, and the errors, if it is large enough
     learnt = {} if prior.kriging is None else prior.kriging.kernel._asdict()
     if prior.errors is not None:
-        learnt["error_bound"] = prior.errors.radii.bound / prior.errors.radii.standard
+        standard, bound = prior.errors.radii
+        learnt["error_bound"] = bound / standard
     provenance = {
         "uplift": VERSION,
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},

@@ -110,7 +110,7 @@ def uncertainty(cube: Cube, colours: PixelSample, lights: Sequence[Light]) -> Un
     kernel = Kernel(prior.get("length", DEFAULT.length), prior.get("noise", DEFAULT.noise))
     errors = [light_errors(data, light) for light in lights]
     squares = np.stack([each(colours.rgb)[:, 0] ** 2 for each in errors], axis=1)
-    floors = np.concatenate([each.expected.radii.standard**2 * each.expected.floor for each in errors])
+    floors = np.concatenate([each.expected.radii[0] ** 2 * each.expected.floor for each in errors])
     rest = np.minimum(floors, squares)
     covariance = posterior(kernel, data.entry_lab, rgb_to_lab(data.sensor, colours.rgb))
     variance = np.maximum(np.diag(covariance), TINY)

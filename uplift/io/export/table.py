@@ -159,12 +159,12 @@ def _moving(data: CubeData) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
 
     ``FACETS`` are the normals of the object-colour solid, and half its width along each, around a grey of 1/2.
     """
-    pulled, sensor = pull(data.sensor), data.sensor
+    (weights, shapes, scale), sensor = pull(data.sensor), data.sensor
     half = len(data.solid.normals) // 2  # the others are opposite ones
     width = (data.solid.offsets[:half] + data.solid.offsets[half:]) / 2
     sections = {
-        "PULL": np.concatenate([pulled.sensor, pulled.shapes]).T,
-        "SCALES": pulled.scale,
+        "PULL": np.concatenate([weights, shapes]).T,
+        "SCALES": scale,
         "LUMINANCE": sensor.rgb_to_xyz[1],
         "FACETS": np.column_stack([data.solid.normals[:half], width]),
     }
