@@ -78,11 +78,12 @@ def fit_sigmoids(spectra: Array) -> Array:
     def residuals(coefficients: Array, rows: Indices) -> tuple[Array, None]:
         return (evaluate(model, coefficients, observer.grid()) - table[rows]) @ measurement.T, None
 
-    def jacobian(coefficients: Array) -> Array:
-        return measurement @ (model.derivative(coefficients @ basis.T)[:, :, None] * basis)
+    def normal_equations(coefficients: Array, residuals: Array) -> tuple[Array, Array]:
+        jacobian = measurement @ (model.derivative(coefficients @ basis.T)[:, :, None] * basis)
+        return jacobian.mT @ jacobian, (jacobian.mT @ residuals[..., None])[..., 0]
 
-    start = np.zeros((len(table), model.count))
-    return iterate_rows(Marquardt(), residuals, start, lambda _: {"jacobian": jacobian}, MAX_STEPS)
+    start, options = np.zeros((len(table), model.count)), {"normal_equations": normal_equations}
+    return iterate_rows(Marquardt(), residuals, start, lambda _: options, MAX_STEPS)
 
 
 def principal_components(count: int, lights: Array, surfaces: Array) -> Array:
