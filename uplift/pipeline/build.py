@@ -236,7 +236,7 @@ def problem_of(options: Options, observer: str | Camera, solver: str | Solver) -
         elif isinstance(solver, str) and solver != CUSTOM:
             method = stock_solvers.stock_solver(solver, problem.tolerance)
         else:
-            raise OptionError(f"solver must be a name or a least-squares solver of optimistix, got {format_value(solver)}")
+            raise OptionError(f"solver must be a name or a solver of optimistix, got {format_value(solver)}")
         problem = replace(problem, method=method)
     named: dict[str, Any] = {"space" if sensor.sensitivities is None else "observer": sensor.space}
     return replace(options, **named), problem
