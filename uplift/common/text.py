@@ -91,23 +91,15 @@ def parse_json(text: str) -> Any:
     return value
 
 
-def check_values(value: object) -> None:
+def check_values(value: object, depth: int = 0) -> None:
     """Raise `ValueError` if parsed values nest too deeply for recursive code or have lone surrogates."""
-    # Level by level: recursion would end in the error that this prevents.
-    level = [value]
-    for _ in range(MAX_DEPTH + 1):
-        children: list[Any] = []
-        for each in level:
-            if isinstance(each, dict):
-                children += [*each.keys(), *each.values()]
-            elif isinstance(each, list):
-                children += each
-            elif isinstance(each, str):
-                each.encode()  # raises ValueError for lone surrogates
-        if not children:
-            return
-        level = children
-    raise ValueError(TOO_DEEP)
+    if isinstance(value, str):
+        value.encode()  # raises ValueError for lone surrogates
+    elif isinstance(value, dict | list):
+        if depth == MAX_DEPTH:
+            raise ValueError(TOO_DEEP)
+        for each in (*value, *value.values()) if isinstance(value, dict) else value:
+            check_values(each, depth + 1)
 
 
 def _finite(text: str) -> float:
