@@ -8,28 +8,32 @@ import json
 import os
 import subprocess
 import tempfile
-from dataclasses import dataclass
-from functools import cache, partial
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from benchmarks import ROOT, record
 from uplift.colorimetry import Sensor, observer
 from uplift.common.arrays import Array
 from uplift.common.processes import call_in_child
-from uplift.lab.timing import TimingStats, time_calls, timing_stats
+from uplift.lab.chart.mitsuba3 import XYZ_TO_RGB
+from uplift.lab.timing import TimingStats, children_cpu, time_calls, timing_stats
 from uplift.lattice import Lattice, axis_nodes
 from uplift.models import Moments, Sigmoid, evaluate, reflectance
+from uplift.models.sigmoid import evaluate_unscaled
 
 THRESHOLD = 1e-4
 """Largest |linear RGB| between a fitted spectrum and its colour: the threshold of cubes."""
 DIM = 16
-OUR_DIMS = (16, 32)
+SENSOR, LATTICE = observer.sensor(), Lattice(axis_nodes("srgb", DIM))
+"""CIE 1931 observer, D65, linear sRGB; nodes of Ceres, spaced as sRGB."""
 OUR_MODELS = (("sigmoid", 3), ("moments", 3), ("moments", 5), ("moments", 9), ("moments", 17))
+OUR_BUILDS = (*product((16, 32), OUR_MODELS), (64, ("sigmoid", 3)), (64, ("moments", 9)))
+"""Dim, model and coefficients."""
 RUNS, LIMIT = 3, 3600
 """Runs, and seconds after which a tool counts as hung."""
 
@@ -53,48 +57,44 @@ class Peer:
 
 def main() -> None:
     """Time each tool in a process without the compiled code or settings of the others, and store."""
-    tools = (ceres, ours)  # what may be missing comes first
-    ceres_rows, our_rows = (call_in_child(tool, RUNS, seconds=LIMIT) for tool in tools)
-    record("peers", runs=RUNS, threshold=THRESHOLD, peers=[*our_rows, *ceres_rows])
+    tools = (ceres, rgb2spec, ours)  # what may be missing comes first
+    solvers, tables, builds = (call_in_child(tool, RUNS, seconds=LIMIT) for tool in tools)
+    record("peers", runs=RUNS, threshold=THRESHOLD, peers=[*builds, *solvers, *tables])
 
 
-@cache
-def sensor() -> Sensor:
-    """Return the sensor of the task: CIE 1931 observer, D65, linear sRGB."""
-    return observer.sensor()
-
-
-@cache
-def lattice() -> Lattice:
-    """Return the lattice of the other tools, with nodes spaced as sRGB."""
-    return Lattice(axis_nodes("srgb", DIM))
-
-
-def check_answers(rgb: ArrayLike, target: ArrayLike, *, least: float) -> dict[str, float]:
+def check_answers(rgb: Array, target: Array, *, least: float) -> dict[str, float]:
     """Compare linear RGB (n, 3) with ``target`` (n, 3): the share within `THRESHOLD`, and the largest residual.
 
     Raises `RuntimeError` if fewer than the share ``least`` come within `THRESHOLD`: some tools leave a few nodes
     unfitted, with more a time means nothing.
     """
-    residual = np.abs(np.asarray(rgb) - np.asarray(target)).max(axis=1)
-    residual = np.where(np.isfinite(residual), residual, np.inf)
+    residual = np.nan_to_num(np.abs(rgb - target).max(axis=1), nan=np.inf, posinf=np.inf)
     share = float((residual <= THRESHOLD).mean())
     if share < least:
         raise RuntimeError(f"wrong answer, not timed: {share:.1%} of the points are within {THRESHOLD:g}")
     return {"share": share, "worst": float(residual.max())}
 
 
+def _install(needs: str, *commands: list[str | Path]) -> None:
+    """Run the commands that compile a tool. Raises `RuntimeError` with what it needs if one of them fails."""
+    try:
+        for command in commands:
+            subprocess.run(command, capture_output=True, check=True)
+    except (OSError, subprocess.CalledProcessError) as error:
+        raise RuntimeError(needs) from error
+
+
 def ours(runs: int) -> list[Peer]:
-    """Time builds of every model at every dim, with smooth spectra as the prior."""
+    """Time `OUR_BUILDS`, with smooth spectra as the prior."""
     import uplift
 
     rows = []
-    for dim, (name, count) in product(OUR_DIMS, OUR_MODELS):
+    for dim, (name, count) in OUR_BUILDS:
         build = partial(uplift.build, dim=dim, model=name, coefficients=count, prior="smooth")
         cube = build()  # compiles
         cpu = time_calls(build, runs)[1].scaled(1e6 / dim**3)
-        spectra = reflectance(cube.data.model, cube.data.points.coefficients, sensor().wavelengths)
-        answer = check_answers(sensor().rgb(spectra), cube.data.lattice.points, least=1.0)
+        spectra = reflectance(cube.data.model, cube.data.points.coefficients, SENSOR.wavelengths)
+        answer = check_answers(SENSOR.rgb(spectra), cube.data.lattice.points, least=1.0)
         rows.append(Peer("uplift", name, count, dim**3, cpu, **answer, notes=f"{dim}³, compiled before"))
     return rows
 
@@ -113,26 +113,16 @@ def ceres(runs: int) -> list[Peer]:
 
     It grows from the middle of the lattice, every node from its fitted neighbours.
     """
-    program = _build_ceres()
-    return [_ceres_row(program, *job, runs) for job in CERES_JOBS]
-
-
-def _build_ceres() -> Path:
-    """Build the program. Raises `RuntimeError` without cmake, a compiler or Ceres."""
-    try:
-        for words in (["-S", CERES_SOURCE, "-B", CERES_BUILT], ["--build", CERES_BUILT]):
-            subprocess.run(["cmake", *words], capture_output=True, check=True)
-    except (OSError, subprocess.CalledProcessError) as error:
-        raise RuntimeError(CERES_NEEDS) from error
-    return CERES_BUILT / "fit"
+    _install(CERES_NEEDS, ["cmake", "-S", CERES_SOURCE, "-B", CERES_BUILT], ["cmake", "--build", CERES_BUILT])
+    return [_ceres_row(CERES_BUILT / "fit", *job, runs) for job in CERES_JOBS]
 
 
 def _ceres_row(program: Path, name: str, count: int, unknowns: str, least: float, runs: int) -> Peer:
-    model, points = Sigmoid() if name == "sigmoid" else Moments(count), lattice().points
+    model, points = Sigmoid() if name == "sigmoid" else Moments(count), LATTICE.points
     done = [_run_ceres(program, unknowns, count) for _ in range(runs)]
     solution, facts = done[-1]
     multipliers = model.from_storage(solution) if unknowns == "moments" else solution
-    answer = check_answers(sensor().rgb(evaluate(model, multipliers, sensor().wavelengths)), points, least=least)
+    answer = check_answers(SENSOR.rgb(evaluate(model, multipliers, SENSOR.wavelengths)), points, least=least)
     cpu = timing_stats([each["cpu"] for _, each in done]).scaled(1e6 / len(points))
     starts = facts["solves"] / len(points)
     notes = f"{DIM}³, {UNKNOWNS[unknowns]}numeric differences, C++; grown from the middle, {starts:.1f} starts a point"
@@ -141,8 +131,8 @@ def _ceres_row(program: Path, name: str, count: int, unknowns: str, least: float
 
 def _run_ceres(program: Path, unknowns: str, count: int) -> tuple[Array, dict[str, Any]]:
     """Return the solutions (n, count), and the statistics printed by the program."""
-    numbers = np.concatenate([sensor().wavelengths, sensor().matrix.ravel(), lattice().nodes])
-    text = f"{len(sensor().wavelengths)} {DIM}\n" + "\n".join(map(repr, numbers.tolist())) + "\n"
+    numbers = np.concatenate([SENSOR.wavelengths, SENSOR.matrix.ravel(), LATTICE.nodes])
+    text = f"{len(SENSOR.wavelengths)} {DIM}\n" + "\n".join(map(repr, numbers.tolist())) + "\n"
     with tempfile.TemporaryDirectory() as folder:
         scene, solution = Path(folder, "scene.txt"), Path(folder, "found")
         scene.write_text(text)
@@ -151,3 +141,59 @@ def _run_ceres(program: Path, unknowns: str, count: int) -> tuple[Array, dict[st
         quiet = os.environ | {"GLOG_minloglevel": "3"}
         done = subprocess.run(command, env=quiet, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
         return np.fromfile(solution).reshape(-1, count), json.loads(done.stdout)
+
+
+RGB2SPEC, RGB2SPEC_DIM = ROOT / "out" / "rgb2spec", 64
+RGB2SPEC_NEEDS = "get the source of rgb2spec by `make peers`, and install a C++ compiler: g++"
+RGB2SPEC_VERSIONS = (
+    ("e162107a2dfd7efe4384618ecd14e97d4a035685", "Gauss-Newton, double precision", 0.9),
+    ("30a97d414f7cdb1c2c553daf3b4a83c333e6365e", "Levenberg-Marquardt, single precision", 0.99),
+)
+"""Commit, method, and the minimum share of points that must be fitted."""
+RGB2SPEC_FLAGS = ("-O3 -DNDEBUG", "-O3 -DNDEBUG -march=native -ffast-math")
+"""Those of its CMakeLists.txt for a release, and the fastest: -Ofast, -funroll-loops and -flto gain nothing more."""
+RGB2SPEC_COMPILES = ("-std=c++11", "-include", "algorithm", "-pthread")
+"""Its standard, a header that the older version relies on others to include, and the threads of the newer one."""
+
+
+def rgb2spec(runs: int) -> list[Peer]:
+    """Time the program that fits the tables of Jakob & Hanika 2019, with its own flags and with the fastest."""
+    rows = []
+    for (commit, method, least), flags in product(RGB2SPEC_VERSIONS, RGB2SPEC_FLAGS):
+        program, source = RGB2SPEC / "rgb2spec_opt", RGB2SPEC / commit / "rgb2spec_opt.cpp"
+        _install(RGB2SPEC_NEEDS, ["c++", *flags.split(), *RGB2SPEC_COMPILES, source, "-o", program])
+        with tempfile.NamedTemporaryFile() as table:
+            command = [program, str(RGB2SPEC_DIM), table.name]
+            fit = partial(subprocess.run, command, stdout=subprocess.DEVNULL, check=True)
+            seconds = [children_cpu(fit) for _ in range(runs)]
+            found, target = table_colours(Path(table.name))
+        answer = check_answers(found, target, least=least)
+        cpu = timing_stats(seconds).scaled(1e6 / len(target))
+        notes = f"3 tables of {RGB2SPEC_DIM}³, {method}, C++, {flags}"
+        rows.append(Peer(f"rgb2spec {commit[:7]}", "sigmoid", 3, len(target), cpu, **answer, notes=notes))
+    return rows
+
+
+def table_sensor() -> Sensor:
+    """Return the sensor of rgb2spec: tables at 5 nm, linear between, by Simpson's 3/8 rule, and a rounded matrix."""
+    wide = observer.sensor(wavelengths=(360, 830, 5))
+    wavelengths = np.linspace(360, 830, 3 * (len(wide.wavelengths) - 1) + 1)
+    weights = np.full(len(wavelengths), 3.0)
+    weights[::3], weights[[0, -1]] = 2, 1
+    tables = [np.interp(wavelengths, wide.wavelengths, each) for each in (*wide.cmfs.T, wide.power)]
+    cmfs, power = np.stack(tables[:3], axis=-1), tables[3] * weights
+    return replace(wide, wavelengths=wavelengths, cmfs=cmfs, power=power, xyz_to_rgb=XYZ_TO_RGB)
+
+
+def table_colours(path: Path) -> tuple[Array, Array]:
+    """Return the linear RGB (n, 3) of the spectra in a table of rgb2spec, and those of its points."""
+    data = path.read_bytes()  # "SPEC", u32 dim, f32 scale[dim], f32 data[3][dim][dim][dim][3]
+    dim = int.from_bytes(data[4:8], "little")
+    level, even = np.frombuffer(data, "<f4", dim, 8).astype(float), np.linspace(0, 1, dim)
+    planes = np.frombuffer(data, "<f4", 9 * dim**3, 8 + 4 * dim).astype(float).reshape(-1, dim * dim, 3)
+    sensor = table_sensor()
+    found = [sensor.rgb(evaluate_unscaled(plane, sensor.wavelengths)) for plane in planes]
+    # In table l component l is the level; components l + 2 and l + 1 (modulo 3) are even fractions of it.
+    largest, last, middle = np.meshgrid(level, even, even, indexing="ij")
+    target = np.stack([largest, middle * largest, last * largest], axis=-1)
+    return np.concatenate(found), np.concatenate([np.roll(target, each, axis=-1).reshape(-1, 3) for each in range(3)])

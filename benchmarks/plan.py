@@ -1,7 +1,6 @@
 """Sparse cubes for real images, and plans for these and the sample kitchen, for docs/plan.md and its picture."""
 
 import json
-import resource
 import shlex
 import shutil
 import subprocess
@@ -21,7 +20,7 @@ from uplift.colorimetry.lights import SCENE_LIGHTS
 from uplift.colorimetry.observer import light
 from uplift.io.scene_colours import MAX_LIST, MAX_PIXELS, Images
 from uplift.lab.panels import Panel, Point, write_panels
-from uplift.lab.timing import TimingStats, time_calls
+from uplift.lab.timing import TimingStats, children_cpu, time_calls
 from uplift.lookup import Cube
 from uplift.samples import copy_samples
 from uplift.scene.plan.candidates import SearchGrid
@@ -97,9 +96,7 @@ def main() -> None:
 def run(folder: Path, case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
     """Plan a scene; return the figures of the page, and the plan."""
     (folder / "scene.toml").write_text(case.scene(), encoding="utf-8")
-    begin = cpu()
-    call(folder, f"plan scene.toml --force {'--quick' if case.quick else ''}")
-    seconds = cpu() - begin
+    seconds = children_cpu(lambda: call(folder, f"plan scene.toml --force {'--quick' if case.quick else ''}"))
     plan = json.loads((folder / "scene.plan.json").read_text(encoding="utf-8"))
     size = None
     if plan["build"]:
@@ -119,12 +116,6 @@ def run(folder: Path, case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
         **plan["search"],
         "seconds": seconds,
     }, plan
-
-
-def cpu() -> float:
-    """Return the CPU seconds of all child processes so far."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
 
 
 def call(folder: Path, line: str) -> None:

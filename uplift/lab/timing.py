@@ -66,6 +66,13 @@ def time_calls(function: Callable[[], object], runs: int) -> tuple[TimingStats, 
     return timing_stats(wall), timing_stats(cpu)
 
 
+def children_cpu(function: Callable[[], object]) -> float:
+    """Measure the CPU seconds of the processes that a call starts and waits for."""
+    before = sum(os.times()[2:4])  # user and system time of child processes
+    function()
+    return sum(os.times()[2:4]) - before
+
+
 def time_laps(function: Callable[[], object], lap: float, runs: int) -> TimingStats:
     """Measure the CPU seconds of a call after one that warms up, by up to ``runs`` runs of at least ``lap`` seconds."""
     function()
