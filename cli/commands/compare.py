@@ -119,9 +119,8 @@ def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[str, ...], o
 def _measure(
     files: tuple[str, ...], lights: tuple[str, ...], *, filters: bool, quick: bool
 ) -> tuple[Comparison, tuple[TunedFilter, ...]]:
-    from uplift.lab.comparison.compare import compare, make_scene, tune_filters
+    from uplift.lab.comparison.compare import COARSE_STRIDE, FINE_STRIDE, compare, make_scene, tune_filters
     from uplift.lab.comparison.fitted import scene_representations
-    from uplift.scene.representations.filters import COARSE_STRIDE, FINE_STRIDE
 
     scene = make_scene(read_atlases(files), lights)
     scene = scene.thinned() if quick else scene

@@ -17,9 +17,11 @@ from uplift.atlas import Atlas, on_grid, read_atlas, write_atlas
 from uplift.colorimetry.delta_e import delta_e_2000, lab
 from uplift.common.errors import AtlasError, OptionError, UnknownNameError, UpliftError
 from uplift.lab.comparison.compare import (
+    COARSE_STRIDE,
     NONE,
     Comparison,
     RepresentationResult,
+    candidates,
     cheapest,
     compare,
     compute_statistics,
@@ -35,7 +37,7 @@ from uplift.lab.timing import TimingStats
 from uplift.lights.lamps import read_lamps
 from uplift.scene.representations import find_representation
 from uplift.scene.representations.composite import enhanced_riemann, sun_composite
-from uplift.scene.representations.filters import COARSE_STRIDE, candidates, filtered_point_samples
+from uplift.scene.representations.filters import filtered_point_samples
 from uplift.scene.representations.models import trigonometric_moments
 from uplift.scene.representations.samples import linear, point_samples, riemann_sums, wavelengths, xyz_weights
 

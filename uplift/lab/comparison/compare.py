@@ -259,6 +259,8 @@ def records(comparison: Comparison) -> list[dict[str, Any]]:
 COUNTS = (4, 8, 16)
 """Numbers of samples after a filter in the thesis."""
 NONE = "none"
+FINE_STRIDE, COARSE_STRIDE = 1, 5
+"""A search tries every first or every fifth choice of each parameter."""
 
 
 @dataclass(frozen=True)
@@ -287,9 +289,15 @@ class TunedFilter:
         return ", ".join([f"extent {self.low_pass.extent}", *(f"{key} {value:g}" for key, value in named)])
 
 
+def candidates(kind: str, stride: int = FINE_STRIDE) -> list[Filter]:
+    """Filters of a kind for a grid search over every ``stride``-th choice of each parameter."""
+    choices = [values[::stride] for values in filters.KINDS[kind].choices.values()]
+    return [Filter(kind, extent, values) for extent in filters.EXTENTS[::stride] for values in product(*choices)]
+
+
 def tune_filters(
     scene: Scene,
-    stride: int = filters.FINE_STRIDE,
+    stride: int = FINE_STRIDE,
     kinds: Sequence[str] = tuple(filters.KINDS),
     counts: Sequence[int] = COUNTS,
     progress: ProgressCallback = ignore_progress,
@@ -301,7 +309,7 @@ def tune_filters(
         results.append(TunedFilter(NONE, count, light_set.name, None, errors))
     tasks = list(product(kinds, counts))
     for done, (kind, count) in enumerate(tasks, 1):
-        tried = list(filters.candidates(kind, stride))
+        tried = candidates(kind, stride)
         encoders = [filters.resampling_matrix(low_pass, count).T for low_pass in tried]
         for light_set in scene.sets:
             best = tried[int(_mean_errors(light_set, count, encoders).argmin())]

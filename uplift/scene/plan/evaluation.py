@@ -129,8 +129,7 @@ class EvaluationSet:
             for name, rows in self.groups.items():
                 errors, weights = delta_e[rows], self.weights[rows]
                 quantile = np.quantile(errors, self.quantile, weights=weights, method="inverted_cdf")
-                mean, largest = float(errors @ weights), float(errors.max())
-                parts.append(GroupError(name, light, mean, float(quantile), largest))
+                parts.append(GroupError(name, light, float(errors @ weights), float(quantile), float(errors.max())))
         return ErrorSummary(tuple(parts))
 
     def matrices(self) -> Array:

@@ -153,8 +153,7 @@ def _expand(file: SpecFile, key: str, names: tuple[Path, ...]) -> tuple[Path, ..
         paths = sorted(glob.glob(name, root_dir=folder)) if is_pattern else [name]
         if not paths or not all(os.path.isfile(folder / each) for each in paths):
             text = f"no file named {format_value(name)}"
-            hint = "paths start in the folder of the scene file"
-            file.fail((key, number), text, code="file-not-found", hint=hint)
+            file.fail((key, number), text, code="file-not-found", hint="paths start in the folder of this file")
         found += (folder / each for each in paths)
     return tuple(found)
 

@@ -117,8 +117,7 @@ def plan(scene: SceneFile, grid: SearchGrid | None = None, progress: ProgressCal
     known = (space.tests.reference.standard_error(textures.rgb, light) for light in scene.lights)
     spectra = None
     if chosen.pixel.form == INDEX and chosen.rendering is not None and few is not None:
-        wavelengths = chosen.rendering.wavelengths
-        spectra = few, space.cube(few, space.reference).reflectance(few, wavelengths)
+        spectra = few, space.cube(few, space.reference).reflectance(few, chosen.rendering.wavelengths)
     return Plan(
         scene=scene,
         measured=tuple(measured),
@@ -151,11 +150,9 @@ def no_candidate(scene: SceneFile, measured: Sequence[Candidate]) -> PlanFileErr
     """The error if no candidate is within the tolerance, or within the limits as well."""
     enough = sufficient(measured, scene.tolerance, scene.minimise, {})
     if enough:
-        cost = enough[0].cost
+        cost, allowance = enough[0].cost, enough[0].cost._replace(**scene.limits)
         over = [key for key, limit in scene.limits.items() if getattr(cost, key) > limit]
-        needs, allowed = (
-            " and ".join(cost_text(each, key) for key in over) for each in (cost, cost._replace(**scene.limits))
-        )
+        needs, allowed = (" and ".join(cost_text(each, key) for key in over) for each in (cost, allowance))
         problem = f"the cheapest within {scene.tolerance:g} needs {needs}; limits allow {allowed}"
         hint = f"raise limits.{over[0]} or the tolerance"
     else:

@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas import Atlas, read_atlas, resample
-from uplift.colorimetry.sensor import in_unit_cube
+from uplift.atlas import Atlas, read_atlas
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback
@@ -27,6 +26,7 @@ from uplift.lookup import Cube
 from uplift.models import Sigmoid
 from uplift.models.model import Model
 from uplift.pipeline.build import Learnt, build_stages, learn, problem_of
+from uplift.pipeline.entries import split_by_gamut
 from uplift.pipeline.options import Options
 from uplift.scene.plan.candidates import INDEX, PIXELS, RGB, Candidate, Cost, Pixel, SearchGrid
 from uplift.scene.plan.evaluation import SAMPLE_OPERATIONS, ErrorSummary, EvaluationSet, Rendering, renderings
@@ -48,19 +48,17 @@ LEAST_BYTES, POINT_NUMBER = 4, 4
 class CandidateSpace:
     """A scene with its files read, and the candidates for it, measured with the pixels of the first sample.
 
-    ``materials`` (E, 3) are linear RGB of the atlas entries within the RGB space, ``reflectances`` (E, N) theirs.
-    Raises `AtlasError`, `TextureError`, `PlanFileError`.
+    ``materials`` are the atlas entries within the RGB space. Raises `AtlasError`, `TextureError`, `PlanFileError`.
     """
 
     def __init__(self, scene: SceneFile, grid: SearchGrid, progress: ProgressCallback) -> None:
         self.scene, self.grid, self.progress, self.sensor = scene, grid, progress, scene.sensor()
         self.atlas = read_atlas(*scene.atlases) if scene.atlases else None
-        reflectances = resample(self.atlas or Atlas(), self.sensor.wavelengths).values
-        rgb = self.sensor.rgb(reflectances)
-        inside = in_unit_cube(rgb)
+        # `uplift build --plan` repeats the warnings, also those of trial builds.
+        with warnings.catch_warnings(action="ignore", category=UpliftWarning):
+            self.materials, _ = split_by_gamut(self.atlas or Atlas(), self.sensor)
         images, sizes = Images(scene.textures, scene.encoding), (grid.predicting, grid.confirming)
         self.colours = sample_colours(images, self.sensor, sizes, progress)
-        self.reflectances, self.materials = reflectances[inside], np.clip(rgb[inside], 0, 1)
         self.learnt: dict[tuple[Model, Model], Learnt] = {}
         self.floor, self.ceiling = (share * scene.tolerance for share in (FLOOR, CEILING))
         # Entries hold under the scene's lights and the illuminant of the RGB space.
@@ -80,10 +78,8 @@ class CandidateSpace:
         self.tests, self.matrices = tests, tests.matrices()
         self.base = self._xyz(self.reference)
         arrays = contents(tests.reference.data)[0]
-        rows = {name: array for name, array in arrays.items() if name in POINTS}
-        self.row_bytes = sum(array[0].nbytes for name, array in rows.items() if name != "coefficients")
-        self.other_bytes = sum(array.nbytes for name, array in arrays.items() if name not in rows)
-        self.considered = 0
+        self.row_bytes = sum(arrays[name][0].nbytes for name in POINTS if name in arrays and name != "coefficients")
+        self.other_bytes = sum(array.nbytes for name, array in arrays.items() if name not in POINTS)
 
     def cube(self, rgb: Array, options: Options) -> Cube:
         """Build a sparse cube for linear RGB (n, 3)."""
@@ -94,17 +90,16 @@ class CandidateSpace:
                 self.learnt[models] = learn(problem, entry_model, *rest)
             return self.learnt[models]
 
-        # `uplift build --plan` repeats the warnings of trial builds.
         with warnings.catch_warnings(action="ignore", category=UpliftWarning):
             options, problem = problem_of(options, options.observer, options.solver)
             return build_stages(self.atlas, options, problem, scene=ColourSet(rgb), learn=shared)
 
     def evaluation_set(self, sample: PixelSample) -> EvaluationSet:
         """Pixels with the spectra of a reference cube for them, and the materials as measured."""
-        rgb = np.concatenate([sample.rgb, self.materials])
+        rgb = np.concatenate([sample.rgb, self.materials.rgb])
         reference = self.cube(rgb, self.reference)
-        spectra = np.concatenate([reference.reflectance(sample.rgb), self.reflectances])
-        pixels, count = len(sample.rgb), len(self.materials)
+        spectra = np.concatenate([reference.reflectance(sample.rgb), self.materials.reflectances])
+        pixels, count = len(sample.rgb), len(self.materials.rgb)
         weights = np.concatenate([sample.share, np.full(count, 1 / max(count, 1))])
         groups = {"textures": slice(0, pixels)} | ({"materials": slice(pixels, pixels + count)} if count else {})
         nm, observer_name = self.sensor.wavelengths, self.sensor.observer

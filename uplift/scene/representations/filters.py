@@ -12,7 +12,6 @@ runs from −1 to 1 across it, −2 to 2 for Mitchell, at any extent. Lanczos is
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import product
 
 import numpy as np
 
@@ -27,8 +26,6 @@ FILTER_SPACINGS = 4
 """Width of that filter in spacings of its 16 points, which is the usual width of cubic filters."""
 EXTENTS = range(3, 22, 2)
 """Extents tried in the thesis."""
-FINE_STRIDE, COARSE_STRIDE = 1, 5
-"""A search tries every first or every fifth choice of each parameter."""
 
 
 @dataclass(frozen=True)
@@ -69,12 +66,6 @@ def resampling_matrix(low_pass: Filter, count: int) -> Array:
     offsets = rate.denominator * np.arange(count)[:, None] - rate.numerator * np.arange(size) + len(taps) // 2
     inside = (offsets >= 0) & (offsets < len(taps))
     return np.where(inside, rate.numerator * taps[np.where(inside, offsets, 0)], 0)
-
-
-def candidates(kind: str, stride: int = FINE_STRIDE) -> list[Filter]:
-    """Filters of a kind for a grid search over every ``stride``-th choice of each parameter."""
-    choices = [values[::stride] for values in KINDS[kind].choices.values()]
-    return [Filter(kind, extent, values) for extent in EXTENTS[::stride] for values in product(*choices)]
 
 
 def _mitchell(x: Array, b: float, c: float) -> Array:

@@ -135,8 +135,8 @@ def hero_wavelengths(paths: int) -> Representation:
         return np.asarray(np.clip(drawn, observer.START, observer.END).reshape(pixels, -1))
 
     def encode(spectra: Array) -> Array:
-        nm = samples.wavelengths()
-        return np.stack([np.interp(at, nm, row) for at, row in zip(draw(len(spectra)), spectra, strict=True)])
+        pairs = zip(draw(len(spectra)), spectra, strict=True)
+        return np.stack([np.interp(at, samples.wavelengths(), row) for at, row in pairs])
 
     def xyz(light: Array) -> Array:
         drawn = draw(len(light))

@@ -1,13 +1,12 @@
 """Spectral representations as rows of functions, those by samples, and the dense spectra that all of them encode."""
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from operator import mul
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from uplift.colorimetry import observer
 from uplift.common.arrays import Array
@@ -35,9 +34,8 @@ def xyz_weights() -> Array:
     return weights
 
 
-def hat_functions(points: ArrayLike) -> Array:
+def hat_functions(points: Sequence[float] | Array) -> Array:
     """Basis (n, 401) of linear interpolation between ascending ``points`` (n,) nm."""
-    points = np.asarray(points, dtype=float)
     return np.stack([np.interp(wavelengths(), points, row) for row in np.eye(len(points))])
 
 
@@ -85,8 +83,7 @@ class Representation:
     def stored(self, powers: Array, reflectances: Array) -> tuple[Array, Array]:
         """Return lights and surfaces (n, 401) as their codes stand for them. Raises `OptionError` if they do not."""
         if self.decode_light is None:
-            problem = f"{self.name} does not determine a spectrum"
-            raise OptionError(problem, hint="use PS, PF, RS, TM or SG")
+            raise OptionError(f"{self.name} does not determine a spectrum", hint="use PS, PF, RS, TM or SG")
         surface = self.encode_surface(reflectances)
         return self.decode_light(self.encode_light(powers)), (self.decode_surface or self.decode_light)(surface)
 
@@ -97,10 +94,7 @@ def linear(name: str, family: str, encoder: Array, weights: Array, decoder: Arra
     ``spectra @ encoder`` (401, n) is the code, and ``code @ weights`` (n, 3) the XYZ of a light. ``code @ decoder``
     (n, 401) is a spectrum with this XYZ, if a sample stands for one.
     """
-
-    def encode(spectra: Array) -> Array:
-        return blocked_matmul(spectra, encoder)
-
+    encode = functools.partial(blocked_matmul, matrix=encoder)
     decode = None if decoder is None else lambda code: code @ decoder
     return Representation(name, family, encode, encode, lambda light: light @ weights, decode_light=decode)
 

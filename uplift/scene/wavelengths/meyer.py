@@ -130,9 +130,8 @@ def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: Array) -> Sam
     Raises `OptionError` for an order out of range, or without a rule.
     """
     if not all(1 <= order <= MAX_ORDER for order in orders):
-        raise OptionError(
-            f"orders must be in [1, {MAX_ORDER}], got {orders}", hint="the paper tabulates orders 1 to 10"
-        )
+        problem = f"orders must be in [1, {MAX_ORDER}], got {orders}"
+        raise OptionError(problem, hint="the paper tabulates orders 1 to 10")
     functions = channel_functions(space, setup.wavelengths, setup.cmfs)
     rules = [gauss_rule(POINTS, masses, order) for masses, order in zip(functions, orders, strict=True)]
     return balanced(combine_rules(setup, space, rules))
