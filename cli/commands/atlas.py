@@ -88,7 +88,6 @@ def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, 
 
 
 def _print_shipped(style: str) -> None:
-    """Print the shipped atlases as text, JSON or CSV."""
     from uplift.atlas import shipped_atlases
 
     atlases = shipped_atlases()

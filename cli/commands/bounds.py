@@ -110,7 +110,6 @@ def _objects(answers: Answers, results: Sequence[QueryResult], found: Sequence[B
 
 
 def _print_csv(blocks: Iterable[Block]) -> None:
-    """Print a row per colour and light."""
     lab_range = [f"{name}_{end}" for end in ("min", "max") for name in ("L*", "a*", "b*")]
     columns = ["r", "g", "b", "light", "L*", "a*", "b*", "standard_error", "error_bound"]
     rows = (
@@ -133,7 +132,6 @@ def _print_csv(blocks: Iterable[Block]) -> None:
 
 
 def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
-    """Print a line per colour and light; a single colour has its fields above."""
     from uplift.lookup.light_errors import LIKELY
 
     for number, (results, found) in enumerate(blocks):

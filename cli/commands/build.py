@@ -235,7 +235,6 @@ def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], settings: d
 
 
 def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
-    """Print nodes, entries, accuracy, size and time on one line."""
     from uplift.lattice import Status
 
     data, counts = cube.data, cube.data.points.counts()

@@ -107,7 +107,6 @@ def _check(
 
 
 def _print_table(records: Sequence[dict[str, Any]]) -> None:
-    """Print a row per cube, and what has changed in their atlases."""
     from rich.text import Text
 
     from uplift.report.regression import LIMITS

@@ -133,7 +133,6 @@ def _measure(
 
 
 def _print_advice(comparison: Comparison, tolerance: float) -> None:
-    """Print the cheapest sufficient representation for each set of lights."""
     from uplift.lab.comparison.compare import cheapest
     from uplift.viz.format import format_error, format_time
 
@@ -152,7 +151,6 @@ def _print_advice(comparison: Comparison, tolerance: float) -> None:
 
 
 def _print_table(comparison: Comparison, tuned: tuple[TunedFilter, ...], *, every: bool) -> None:
-    """Print a ranked table for each set of lights, and the best filter of each kind."""
     from uplift.lab.comparison.compare import HEADINGS, pareto
     from uplift.viz.format import format_time
 

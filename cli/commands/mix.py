@@ -248,7 +248,6 @@ def command(
 
 
 def _print_theories(cube: Cube, names: tuple[str, ...], parts: Array, spectra: Array, method: str, style: str) -> None:
-    """Mix the colours of spectra by every model of `uplift.design.mixing.theories`, and print the results."""
     import numpy as np
 
     from uplift.colorimetry.gamut import map_to_gamut

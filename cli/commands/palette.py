@@ -122,7 +122,6 @@ def _read_picture(
 
 
 def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
-    """Print a cell per material and light: colours by goal, spectra and factor model, and their differences."""
     from rich.text import Text
 
     from uplift.colorimetry.srgb import hex_codes

@@ -265,7 +265,6 @@ def result_object(answers: Answers, result: QueryResult) -> dict[str, Any]:
 
 
 def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
-    """Return the fields of a single colour by name."""
     from uplift.colorimetry.delta_e import delta_e_rgb
 
     cube = answers.cube
@@ -298,7 +297,6 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
 
 
 def _print_csv(answers: Answers, results: Iterable[QueryResult]) -> None:
-    """Print a row per colour: r, g, b, round-trip ΔE00, errors, entry, reflectance at each wavelength."""
     cube, lights = answers.cube, [light.name for light in answers.lights]
     known = lights if cube.data.points.standard_error is not None else []
     columns = [*"rgb", "delta_e_2000", "standard_error", "error_bound"]
@@ -318,7 +316,6 @@ def _print_csv(answers: Answers, results: Iterable[QueryResult]) -> None:
 
 
 def _print_lines(answers: Answers, results: Iterable[QueryResult]) -> None:
-    """Print the cube, a heading, and a line per colour; the entry, of any length, comes last."""
     cube = answers.cube
     for number, result in enumerate(results):
         errors = {f"± {light}": f"{error:.2f}" for light, error, _ in _errors(cube, result)}

@@ -80,7 +80,6 @@ def command(
 
 
 def _summary(assessment: Assessment) -> str:
-    """Return the main numbers on one line."""
     from uplift.viz.format import pluralise
 
     parts = [f"{pluralise(assessment.failures['over_threshold'], 'node')} over the threshold"]

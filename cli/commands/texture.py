@@ -219,7 +219,6 @@ def as_tuple(wavelengths: Array | None) -> tuple[float, ...] | None:
 
 
 def _collect(results: Generator[Conversion | Failure], total: int, *, quiet: bool) -> list[Conversion | Failure]:
-    """Collect results as images finish, with a progress bar over the images."""
     collected = []
     try:
         with contextlib.closing(results), progress_bar("images", quiet=quiet) as progress:

@@ -114,7 +114,6 @@ def command(
 
 
 def _print(choice: Choice, camera: Sensor, materials: tuple[str, ...], style: str) -> None:
-    """Print wavelengths, weights, powers, and errors by light."""
     from uplift.scene.wavelengths.sampling import statistics
 
     sampling = choice.sampling

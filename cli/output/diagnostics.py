@@ -69,7 +69,6 @@ class CommandFailure(click.ClickException):
 
 
 def _as_uplift_error(cause: BaseException) -> UpliftError:
-    """Return the error of the library for any exception."""
     if isinstance(cause, UpliftError):
         return cause
     if isinstance(cause, KeyboardInterrupt):

@@ -45,7 +45,6 @@ def cutaway(count: int, size: int = SIZE) -> Weights:
 
 
 def _add_samples(weights: Weights, x: Array, y: Array) -> None:
-    """Add the samples at columns ``x`` and rows ``y``."""
     count = weights.shape[2]
     first = min(1, count - 1)  # the skin, if there is more than one material
     if first:

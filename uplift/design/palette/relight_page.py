@@ -113,7 +113,6 @@ def page(view: Relighting) -> str:
 
 
 def _numbers(view: Relighting) -> dict[str, Any]:
-    """Return the values that the scripts compute with."""
     return {
         "start": view.start_light,
         "lights": view.lights,

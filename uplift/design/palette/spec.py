@@ -271,8 +271,6 @@ _Goal = Annotated[
 
 
 class _PaletteTable(SpecModel):
-    """The keys of a spec."""
-
     lights: Annotated[dict[_Name, _Light], Field(min_length=1)]
     materials: Annotated[dict[_Name, _Material], Field(min_length=1)]
     colours: dict[str, dict[str, _Goal]] = Field(default_factory=dict)

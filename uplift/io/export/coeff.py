@@ -103,7 +103,6 @@ def write_coeff(data: CubeData, path: StrPath, *, layout: str = "coeff", res: in
 
 
 def _binary(sensor: Sensor, scale: Array, table: NDArray[np.float32]) -> bytes:
-    """Return the bytes of the layout ``coeff``."""
     at = (sensor.wavelengths - START) / (END - START)
     forward = (at, sensor.matrix, sensor.rgb_to_xyz, sensor.xyz(np.ones(3)))
     sizes = (struct.pack("<I", len(each)) for each in (scale, at))
@@ -112,7 +111,6 @@ def _binary(sensor: Sensor, scale: Array, table: NDArray[np.float32]) -> bytes:
 
 
 def _source(layout: str, name: str, scale: Array, table: NDArray[np.float32]) -> str:
-    """Return the source of a layout in C++."""
     numbers = np.pad(table, [(0, 0)] * 4 + [(0, 1)]) if layout == "luisa" else table
     words = {"name": name, "res": str(len(scale)), "scale": _rows(scale), "data": _rows(numbers)}
     return Template(read_source(f"{layout}.cpp")).substitute(words)

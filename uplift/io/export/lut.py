@@ -119,7 +119,6 @@ def cube_text(table: Values, title: str, size: int) -> str:
 
 
 def _error(cube: Cube, transform: Any, screen: Sensor) -> LutError:
-    """Compare the table, as OpenColorIO applies it, with the cube."""
     import PyOpenColorIO as ocio  # noqa: N813
 
     codes = np.random.default_rng(SEED).random((SAMPLES, 3))

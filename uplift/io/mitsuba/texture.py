@@ -96,7 +96,6 @@ def _texture_class(variant: str) -> type:
                 self.numbers = mi.Texture2f(mi.TensorXf(numbers), filter_mode=filtered)
 
         def eval(self, si: Any, active: Any = True) -> Any:
-            """Return reflectance at the wavelengths of the surface interaction."""
             place = self._texel(self.to_uv @ si.uv)
             if self.placement.filter == "stochastic":
                 place += self._offset(si)
@@ -141,20 +140,16 @@ def _texture_class(variant: str) -> type:
             return type(wavelengths)(*(self.numbers.eval(mi.Point3f(each / depth, uv.x, uv.y))[0] for each in samples))
 
         def mean(self) -> Any:
-            """Return the mean reflectance."""
             return mi.Float(self.texels.mean)
 
         def is_spatially_varying(self) -> bool:
-            """Return True."""
             return True
 
         def resolution(self) -> Any:
-            """Return width and height in texels."""
             height, width = self.texels.numbers.shape[:2]
             return mi.ScalarVector2i(width, height)
 
         def to_string(self) -> str:
-            """Return a summary."""
             return self.texels.describe(self.placement.wrap)
 
     return UpliftTexture
@@ -169,7 +164,6 @@ def make_texture(props: Any, texels: Texels, placement: Placement) -> Any:
 
 @cache
 def _environment_class(variant: str) -> type:
-    """Define the class for a variant, as each variant has its own base class."""
     import drjit as dr
     import mitsuba as mi
 
@@ -193,11 +187,9 @@ def _environment_class(variant: str) -> type:
             self.sampler.set_scene(scene)
 
         def eval(self, si: Any, active: Any = True) -> Any:
-            """Return the radiance that comes from where the ray goes."""
             return self._radiance(-si.wi, si.wavelengths, active)
 
         def eval_direction(self, it: Any, ds: Any, active: Any = True) -> Any:
-            """Return the radiance from a sampled direction."""
             return self._radiance(ds.d, it.wavelengths, active)
 
         def sample_direction(self, it: Any, sample: Any, active: Any = True) -> Any:
@@ -208,7 +200,6 @@ def _environment_class(variant: str) -> type:
             return ds, dr.select(ds.pdf > 0, radiance / ds.pdf, 0)
 
         def pdf_direction(self, it: Any, ds: Any, active: Any = True) -> Any:
-            """Return the density of a direction."""
             return self.sampler.pdf_direction(it, ds, active)
 
         def sample_ray(self, time: Any, sample1: Any, sample2: Any, sample3: Any, active: Any = True) -> Any:
@@ -230,7 +221,6 @@ def _environment_class(variant: str) -> type:
             return self.sampler.bbox()
 
         def to_string(self) -> str:
-            """Return a summary."""
             return self.texture.to_string().replace("UpliftTexture", "UpliftEnvironment")
 
         def _radiance(self, direction: Any, wavelengths: Any, active: Any) -> Any:

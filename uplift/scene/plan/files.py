@@ -187,8 +187,6 @@ class _Source(SpecModel):
 
 
 class _Scene(SpecModel, extra="ignore"):
-    """Source files of a plan."""
-
     encoding: Annotated[str, resolves(check_encoding)]
     textures: Annotated[list[_Source], Field(min_length=1, max_length=MAX_FILES)]
     atlases: Annotated[list[_Source], Field(max_length=MAX_FILES)]
