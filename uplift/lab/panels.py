@@ -27,7 +27,6 @@ class Point:
 
     ``row``: its row in the tooltips of a page.
     ``label``: its name, written next to it if it is on the front or ``named``.
-    ``cost``, ``error``: its position.
     ``colour``, ``marker``: ``#rrggbb``, and the name of a marker of matplotlib.
     ``hollow``: whether it is not filled.
     ``group``: markers of one group are joined by a line, in order.
@@ -46,11 +45,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Panel:
-    """Points over a kind of cost.
-
-    ``title``, ``axis``: title, and label of the axis of cost.
-    ``format``: text of a cost.
-    """
+    """Points over a kind of cost, of which ``axis`` is the label, and ``format`` the text of a value."""
 
     title: str
     axis: str

@@ -58,9 +58,7 @@ class Effort:
     """Time spent on a method.
 
     ``seconds_per_error``: CPU time for the answers of one error; slow methods process fewer colours.
-    ``runs``: largest number of repetitions of a timing.
     ``lap``: shortest duration of a repetition in seconds.
-    ``batches``: numbers of colours per call, ascending.
     ``longest``: CPU seconds of a call; slower ones take fewer colours than the batch has.
     ``builds``: number of builds of each cube; the last one is timed.
     ``limit``: wall seconds after which a method in a child process counts as hung.
@@ -86,8 +84,6 @@ class Task:
     ``rgb`` (n, 3): random colours, and those along the edges and the grey diagonal of the RGB cube.
     ``kept``: entries that cubes with an atlas are built from.
     ``own``, ``unseen`` (k, N) and (m, N): measured spectra of the kept entries and of the others, within sRGB.
-    ``effort``: time spent on a method.
-    ``facts``: description for the reader.
     """
 
     sensor: Sensor
@@ -148,8 +144,6 @@ class NotInstalledError(Exception):
 class PreparedMethod:
     """A method ready for use.
 
-    ``uplift``: the method.
-    ``bytes``: size of its tables.
     ``build_s``: CPU seconds to compute its tables, once; 0 if there are none to compute, None if they come from
         elsewhere.
     ``load_s``: CPU seconds to read and prepare them in a process. The first call, which may compile, is charged
@@ -170,9 +164,7 @@ class Description:
     ``label``: label of its marker, by default the title.
     ``family``, ``source``: name in the legend, and publication.
     ``mode``: mode of lookup of a cube, which determines the shape of the marker.
-    ``dtype``: data type of colours and reflectances.
     ``build``, ``call``: command and call that give a user of this package the same; empty for other methods.
-    ``note``: remark for the reader.
     """
 
     method: str

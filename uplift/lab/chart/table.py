@@ -48,8 +48,6 @@ class State(StrEnum):
 class MethodResult(Description):
     """Result of a method. The fields are the columns of the CSV file.
 
-    ``state``: whether the method was measured.
-    ``why``: the reason if it was not.
     ``numbers``: ``bytes``; CPU seconds ``build_s``, ``load_s`` and ``setup_s``, their sum; ``ns_N`` per RGB with N
         colours per call, see `uplift.lab.chart.measure.call_times`; ``time_ns``, that of the recommendation. Errors
         ``round_trip`` (judged at 1 nm), ``coarse_round_trip`` (with the tables of cubes), of every light, ``lights``
@@ -68,11 +66,7 @@ TEXTS = tuple(field.name for field in fields(MethodResult) if field.name != "num
 
 @dataclass(frozen=True)
 class Chart:
-    """Results of all methods.
-
-    ``facts``: machine, versions and test set; see `FACTS`.
-    ``results``: the results.
-    """
+    """Results of all methods, and ``facts`` about machine, versions and test set; see `FACTS`."""
 
     facts: Mapping[str, str]
     results: tuple[MethodResult, ...]
@@ -151,9 +145,7 @@ MIN_ERROR = 1e-4
 class Criterion:
     """An error over a time: what a panel compares.
 
-    ``title``: title, without the number of colours.
     ``error``: name of the error in `MethodResult.numbers`, without ``_mean``; the mean is drawn.
-    ``unit``: its unit.
     ``batch``: number of colours per call.
     ``whole``: whether time is that of all colours of the batch and of the set-up, instead of that per RGB.
     """
@@ -212,7 +204,7 @@ def criteria(batch: int) -> tuple[Criterion, ...]:
 
 @dataclass(frozen=True)
 class Requirement:
-    """Limits for time and error; at least one is required.
+    """Limits for time and error; at least one is required. Raises `OptionError`, `UnknownNameError`.
 
     ``time_ns``: largest CPU time per RGB, in ns.
     ``delta_e``: largest mean ΔE00.
@@ -220,8 +212,6 @@ class Requirement:
     ``own``: whether the ΔE00 is of materials of the atlas itself, not of unseen ones.
     ``plain``: whether the cube must have no atlas.
     ``smallest``: whether the smallest cube within the limits is chosen, instead of the fastest.
-
-    Raises `OptionError`, `UnknownNameError`.
     """
 
     time_ns: float | None = None

@@ -113,8 +113,6 @@ def compute_statistics(errors: ArrayLike) -> Statistics:
 class RepresentationResult:
     """Error and cost of a representation under a set of lights.
 
-    ``name``, ``family``: name and family of the representation.
-    ``lights``: name of the set of lights.
     ``statistics``: ΔE00 between its products and the dense ones.
     ``floats``, ``light_floats``: mean storage of a surface and of a light.
     ``ns``: CPU time of all threads per product, of many products per call.
@@ -131,12 +129,7 @@ class RepresentationResult:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Results of several representations.
-
-    ``facts``: machine, versions and size of the comparison.
-    ``sets``: titles of the sets of lights by name.
-    ``results``: ranked by mean error within each set.
-    """
+    """Results by mean error within each set of lights, titles of the ``sets`` by name, and ``facts`` of the machine."""
 
     facts: Mapping[str, str]
     sets: Mapping[str, str]
@@ -154,10 +147,7 @@ def compare(
     quick: bool = False,
     progress: ProgressCallback = ignore_progress,
 ) -> Comparison:
-    """Measure representations under every set of lights of a scene, with few repetitions if ``quick``.
-
-    Raises `UpliftError`.
-    """
+    """Measure representations under all lights of a scene, with few repetitions if ``quick``. Raises `UpliftError`."""
     sets, results = {light_set.name: light_set.title for light_set in scene.sets}, []
     for done, representation in enumerate(representations, 1):
         for light_set in scene.sets:
@@ -226,9 +216,7 @@ def cheapest(comparison: Comparison, lights: str, target: float) -> Representati
     """Choose the representation that stores least among those accurate enough under a set of lights.
 
     Of equally small ones the smaller light, then the smaller error decides. Times are not considered: among
-    representations of equal size they depend on other work of the machine.
-
-    Raises `OptionError`.
+    representations of equal size they depend on other work of the machine. Raises `OptionError`.
     """
     check_target(target)
     return min(
@@ -265,14 +253,7 @@ FINE_STRIDE, COARSE_STRIDE = 1, 5
 
 @dataclass(frozen=True)
 class TunedFilter:
-    """The best filter of a kind.
-
-    ``kind``: kind of the filter, ``none`` for unfiltered samples.
-    ``count``: number of samples.
-    ``lights``: name of the set of lights.
-    ``low_pass``: the filter.
-    ``statistics``: its errors.
-    """
+    """The best filter of a kind, ``none`` for unfiltered samples, and its errors under a set of lights."""
 
     kind: str
     count: int

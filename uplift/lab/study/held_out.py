@@ -132,9 +132,7 @@ def local_linear(data: CubeData, known: Array, rgb: Array) -> Array:
     """Predict reflectances (n, N) of linear RGB (n, 3) by a local-linear regression on known ones (E, N).
 
     Bandwidth and ridge have the least mean leave-one-out ΔE00 of the known materials under the lights of a build.
-    Predictions are moved to their colours.
-
-    Cleveland & Devlin 1988, "Locally weighted regression", JASA 83(403).
+    Predictions are moved to their colours. Cleveland & Devlin 1988, "Locally weighted regression", JASA 83(403).
     """
     lights = [observer.light(name, data.sensor.observer, *data.sensor.range) for name in SCENE_LIGHTS]
     colours = np.clip(data.sensor.rgb(known), 0, 1)

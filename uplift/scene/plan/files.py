@@ -213,11 +213,7 @@ class _PlanTable(SpecModel, extra="ignore"):
 
 
 def read_plan(path: StrPath) -> PlanFile:
-    """Read a plan file.
-
-    Raises `PlanFileError` if it is not a valid plan, or a texture or an atlas is missing, has changed, or lies outside
-    the folder of the file.
-    """
+    """Read a plan. Raises `PlanFileError`, also if a texture or an atlas is missing, has changed, or lies elsewhere."""
     file = read_json(path, PlanFileError)
     table = file.validate(_PlanTable, hint=HINT)
     if table.build is None:

@@ -105,7 +105,6 @@ def fourier_coefficients(count: int) -> Representation:
     coefficients are those of eq. 4.7 over the 5 nm table, with the mean of both ends where they meet. A product,
     computed point by point as in the text, keeps as many coefficients as its factors have: it has twice the highest
     frequency, and at 2C points in the period none of it is aliased to a lower one (the "Shannon theorem" of the text).
-
     Raises `OptionError` unless the number is odd and positive.
     """
     if count < 1 or count % 2 == 0:

@@ -124,11 +124,7 @@ def combine_rules(setup: RenderSetup, space: Array, rules: Sequence[QuadratureRu
 
 
 def meyer_orders(setup: RenderSetup, orders: Sequence[int], space: Array) -> Sampling:
-    """Quadrature of a given order, 1 to `MAX_ORDER`, for each channel of a space; whites balanced.
-
-    Figure 6 of the paper compares AC1C2, the cones and XYZ in this way.
-    Raises `OptionError` for an order out of range, or without a rule.
-    """
+    """Quadrature of a given order for each channel of a space; whites balanced. Raises `OptionError` without a rule."""
     if not all(1 <= order <= MAX_ORDER for order in orders):
         problem = f"orders must be in [1, {MAX_ORDER}], got {orders}"
         raise OptionError(problem, hint="the paper tabulates orders 1 to 10")
