@@ -135,7 +135,6 @@ def _list_entries(atlas: Atlas, sensor: Sensor) -> tuple[list[dict[str, Any]], A
 def _print_table(
     atlas: Atlas, sensor: Sensor, rows: Sequence[dict[str, Any]], codes: Array, smallest: str | None
 ) -> None:
-    """Print the entries, their warnings, the sources, and the numbers of entries out of gamut and skipped."""
     coloured = has_colours()
     texts = [""] * coloured + ["name", "nm"]
     table = make_table(texts, "RGB", title=f"linear {sensor.space} under {sensor.illuminant}")

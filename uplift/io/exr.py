@@ -31,10 +31,7 @@ COMMENTS = (
 
 
 def attributes(data: CubeData) -> dict[str, Any]:
-    """Return header attributes that identify the cube. OpenEXR stores floats in 32 bits.
-
-    ``uplift.cube`` is the digest of the cube's content, ``uplift.model`` its model as JSON.
-    """
+    """Return attributes of the header: ``uplift.cube`` is the digest of the content, ``uplift.model`` the model."""
     return {
         "chromaticities": chromaticities(data.sensor),
         "uplift.cube": digest(data),
@@ -87,9 +84,7 @@ def write_slices(data: CubeData, path: str | os.PathLike[str], *, force: bool = 
     Pixel x is the red index. Row y is the green index dim − 1 − y, so that green rises upwards. The channels are 32-bit
     floats: ``R``, ``G``, ``B`` and ``lattice.*`` (lattice RGB), ``target.*``, ``distance``, ``deltaE2000`` (target to
     lattice RGB under the build illuminant), ``status``, ``entry`` and ``round`` (−1 for none; ``round`` only with debug
-    information), ``standardError`` (of cubes with an atlas) and ``coefficient.00`` onwards.
-
-    Raises `OutputError` for other suffixes than ``.exr``, and as `uplift.common.files.atomic_write`.
+    information), ``standardError`` (of cubes with an atlas) and ``coefficient.00`` onwards. Raises `OutputError`.
     """
     if Path(path).suffix.lower() != ".exr":
         raise OutputError(

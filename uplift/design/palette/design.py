@@ -1,7 +1,4 @@
-"""Design of the open spectra of a palette by one linear least-squares problem, its colours, and the goals it misses.
-
-S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, section 3.3.
-"""
+"""Design of the open spectra of a palette by linear least squares (section 3.3), its colours, and goals it misses."""
 
 import dataclasses
 import math

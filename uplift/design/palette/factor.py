@@ -1,8 +1,4 @@
-"""Spectral factor model: m coefficients per spectrum, whose products are the coefficients of products of spectra.
-
-S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, section 2. Measurements are in
-docs/palette.md.
-"""
+"""Factor model (section 2): m coefficients per spectrum, whose products are those of products of spectra."""
 
 import itertools
 from dataclasses import dataclass

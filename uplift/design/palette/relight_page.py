@@ -1,7 +1,4 @@
-"""Relighting page: one HTML file that mixes the lights of a palette on a picture of its materials in real time.
-
-S. Bergner, T. Möller, M. S. Drew, *A Spectral Engine for Visualization*, 2004, sections 2.2.2 and 5.1.
-"""
+"""Page that mixes the lights of a palette on a picture of its materials in real time (sections 2.2.2 and 5.1)."""
 
 import base64
 import zlib

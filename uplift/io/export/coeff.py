@@ -13,8 +13,6 @@ and S(t) = ½ + t / (2√(1 + t²)). Programs hold the same numbers in three lay
 Three coefficients per spectrum determine a colour. The table therefore reproduces the cube's colours, but not the
 spectra of its atlas. Colours are those of the readers' tables, 360–830 nm at 5 nm.
 
-References
-----------
 W. Jakob and J. Hanika, "A Low-Dimensional Function Space for Efficient Spectral Upsampling", CGF 38(2), 2019, and its
 reference implementation ``rgb2spec``.
 """
@@ -74,14 +72,8 @@ def write_coeff(data: CubeData, path: StrPath, *, layout: str = "coeff", res: in
 
     The layout is one of `LAYOUTS`; pbrt and LuisaRender are compiled for 64 points. Readers interpret RGB in the cube's
     space under its illuminant; Mitsuba and LuisaRender assume sRGB under D65. Returns the largest difference of a
-    component of linear RGB from the cube's answers, of `COLOURS` random colours that rgb2spec interpolates.
-
-    Raises
-    ------
-    ColourError
-        The cube of a camera.
-    OptionError
-        A size outside its range, or a space or illuminant for which the program has no table.
+    component of linear RGB from the cube's answers, of `COLOURS` random colours that rgb2spec interpolates. Raises
+    `ColourError` for the cube of a camera, `OptionError` for a space or an illuminant without a table in the program.
     """
     data.sensor.require_xyz()
     if not MIN_RES <= res <= MAX_RES:

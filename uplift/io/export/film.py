@@ -11,8 +11,6 @@ A chromaticity has reflectances from black to the brightest that is possible; th
 gamut of the cube, light at its edge is mixed with light of a narrow band, and beyond such bands there is light of the
 band alone.
 
-References
-----------
 spektrafilm, `spectral_upsampling.py`: the layout of the table, and how RGB become a chromaticity and a factor.
 Li et al. 2017, "Comprehensive color solutions: CAM16, CAT16, and CAM16-UCS": the adaptation of RGB to the light, as in
 spektrafilm.

@@ -11,8 +11,6 @@ as those of sRGB are. A shader evaluates their spectra: its file is next to the 
 ``.png`` image of all 256³ codes or a ``.cube`` table of fewer. The image is a Hald image of level 16: pixels row by
 row, with red varying fastest, then green, then blue.
 
-References
-----------
 Cube LUT Specification 1.0, Adobe 2013; Common LUT Format 3.0, AMPAS S-2014-006.
 Peters, Merzbach, Hanika & Dachsbacher 2019, "Spectral rendering with the bounded MESE and sRGB data", MAM 2019.
 """

@@ -106,7 +106,6 @@ def _warn_in_scalar_variants(name: str) -> None:
 
 
 def _source(props: Any, names: tuple[str, ...]) -> str:
-    """Return the only one of the properties that is given."""
     sources = [name for name in names if name in props]
     if len(sources) != 1:
         raise OptionError(

@@ -42,10 +42,7 @@ EVEN = 1e-3
 
 @dataclass(frozen=True)
 class Samples:
-    """Reflectances, or powers of lights, at ``count`` equidistant wavelengths from ``start`` to ``end`` nm.
-
-    Between them spectra are straight lines, outside they are constant.
-    """
+    """Reflectances, or powers, at ``count`` even wavelengths from ``start`` to ``end`` nm, constant outside."""
 
     start: float
     end: float
@@ -97,9 +94,9 @@ def model_texels(model: Model, multipliers: NDArray[Any]) -> Texels:
 
 
 def light_texels(table: EmissionTable, rgb: Array) -> Texels:
-    """Uplift linear RGB (h, w, 3) of lights to power at the wavelengths of the table.
+    """Uplift linear RGB (h, w, 3) of lights to power; colours that no light has are moved towards white.
 
-    Colours that no light has are moved towards white. Raises `ColourError` for values that are not finite.
+    Raises `ColourError` for values that are not finite.
     """
     at = table.wavelengths
     power = table.spectrum(rgb, outside="clip", dtype=np.float32, threads=THREADS)

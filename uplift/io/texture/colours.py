@@ -1,7 +1,4 @@
-"""Colours of an image: channels that hold them, division by alpha, and conversion to linear RGB in [0, 1].
-
-Colours that had to change are counted.
-"""
+"""Colours of an image: their channels, division by alpha, conversion to linear RGB in [0, 1] with counts of changes."""
 
 import os
 from collections.abc import Callable
@@ -64,10 +61,7 @@ class ColourChannels:
         return without_rounding(divided)
 
     def opacity(self, values: Values) -> NDArray[np.float32] | None:
-        """Return what to multiply converted colours by, (…, 1) in [0, 1]; None if they were not divided.
-
-        Where alpha is NaN, the opacity is 0.
-        """
+        """Return the factor (…, 1) in [0, 1] of converted colours, 0 for NaN; None if they were not divided."""
         if self.alpha is None:
             return None
         alpha = values[..., [self.alpha]]

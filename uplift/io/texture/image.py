@@ -167,11 +167,8 @@ class Image:
 def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
     """Open an image file. A `TextureError` or `ColourError` in the block without a path gets this one.
 
-    Raises
-    ------
-    TextureError
-        The file is missing, damaged, of another format, has several values per pixel, too many channels or
-        attributes, names that are not text, or blocks of rows that do not fit into memory.
+    Raises `TextureError` if the file is missing, damaged, of another format, has several values per pixel, too many
+    channels or attributes, names that are not text, or blocks of rows that do not fit into memory.
     """
     import OpenImageIO
 

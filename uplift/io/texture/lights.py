@@ -44,10 +44,7 @@ UNITS = "W.m^-2.sr^-1"
 
 @dataclass(frozen=True, eq=False)
 class LightUplifter(Converter):
-    """A converter of the colours of lights to power at ``wavelengths`` (N,) nm, made by `prepare_lights`.
-
-    Colours that no light has are moved towards white at the same luminance.
-    """
+    """A converter of the colours of lights to power at ``wavelengths`` (N,) nm, made by `prepare_lights`."""
 
     table: EmissionTable
     wavelengths: Array

@@ -19,10 +19,7 @@ from uplift.lookup.node_table import prepare_products
 
 @dataclass(frozen=True, eq=False)
 class Relighter(Converter):
-    """A converter to colours under L lights, made by `prepare_relighter`; white is the white of each light.
-
-    ``sample`` maps linear RGB (…, 3) to linear RGB of the sensor (…, 3 L).
-    """
+    """A converter to colours under L lights, by ``sample`` from linear RGB (…, 3) to (…, 3 L) of the sensor."""
 
     sample: Sampler
 

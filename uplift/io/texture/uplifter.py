@@ -1,7 +1,4 @@
-"""Converters, which `uplift.io.texture.convert` applies to an image, and the numbers that a pixel of a texture holds.
-
-A pixel holds a reflectance spectrum, moments, or multipliers.
-"""
+"""Converters, which `uplift.io.texture.convert` applies to an image, and the numbers of a pixel of a texture."""
 
 import contextlib
 import json

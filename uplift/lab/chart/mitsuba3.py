@@ -4,8 +4,6 @@ Domain: linear sRGB in [0, 1]. Range: reflectance in [0, 1] at any wavelengths. 
 is part of Mitsuba. From Python its lookup takes one colour per call. A bitmap texture looks up those of all its texels
 when it is loaded, and its evaluation is vectorised.
 
-References
-----------
 Jakob & Hanika 2019, "A low-dimensional function space for efficient spectral upsampling", Computer Graphics Forum
 38(2).
 """

@@ -4,8 +4,6 @@ Domain: linear sRGB in [0, 1] under D65; Smits was made for an equal-energy whit
 Range: reflectance in [0, 1], of Smits up to 1.015, of Meng not limited to 1. Spectra in steps of up to 10 nm are
 interpolated linearly. All use the tables and programs of colour-science.
 
-References
-----------
 Smits 1999, "An RGB-to-spectrum conversion for reflectances", Journal of Graphics Tools 4(4).
 Meng, Simon, Hanika & Dachsbacher 2015, "Physically meaningful rendering using tristimulus colours", CGF 34(4).
 Otsu, Yamamoto & Hachisuka 2018, "Reproducing spectral reflectances from tristimulus colours", CGF 37(6).

@@ -255,10 +255,7 @@ SITUATIONS = {
 
 
 def recommend_cube(chart: Chart, requirement: Requirement) -> MethodResult:
-    """Choose the fastest or smallest cube that is accurate enough or, without such a limit, the most accurate in time.
-
-    Raises `OptionError`.
-    """
+    """Choose the fastest or smallest cube within the limits, or the most accurate in time. Raises `OptionError`."""
     name, longest, largest = requirement.error, requirement.time_ns, requirement.delta_e
     cubes = [result for result in chart.measured if result.build and name in result.numbers]
     cubes = [cube for cube in cubes if not (requirement.plain and "--atlas" in cube.build)]

@@ -146,13 +146,12 @@ class CandidateSpace:
 
     def _with_cubes(self) -> Iterator[Candidate]:
         """Candidates that need a cube and whose bounds are below the ceiling."""
-        tests = self.tests
-        base = _quantiles(tests.error(self.base))
+        base = _quantiles(self.tests.error(self.base))
         lattices, models = self._lattices(), self._models()
         points = {lattice: self._points(lattice) for lattice in lattices}
         for (model, by_model), (lattice, by_lattice) in product(models.items(), lattices.items()):
             choice = replace(model, dim=lattice.dim, axis=lattice.axis)
-            of_cube = _quantiles(tests.error(self.base + by_model + by_lattice))
+            of_cube = _quantiles(self.tests.error(self.base + by_model + by_lattice))
             for rendering in self.renderings:
                 # Errors of independent choices add in squares; both include that of the reference.
                 squares = of_cube**2 + _quantiles(rendering.error) ** 2 - base**2

@@ -100,8 +100,7 @@ def check_path(scene: SceneFile, path: Path) -> None:
 def to_json(plan: Plan, path: Path) -> dict[str, Any]:
     """The choice of a plan, its wavelengths and command lines, and the Pareto front, as JSON values.
 
-    ``path`` is the file to write them to: paths of textures and atlases are relative to its folder. Raises
-    `OutputError` if they are outside.
+    Paths of textures and atlases are relative to the folder of ``path``, the file. Raises `OutputError` for others.
     """
     scene, chosen = plan.scene, plan.chosen
     check_path(scene, path)

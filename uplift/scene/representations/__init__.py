@@ -1,7 +1,5 @@
-"""Spectral representations for renderers, each a subclass of `Representation`, and their registry.
+"""Spectral representations for renderers, each a `Representation`, and their registry.
 
-References
-----------
 Kment 2011, "Spectral data representation techniques for realistic image synthesis", thesis, Vienna. Abbreviations,
 sections and equations in this package refer to it.
 """

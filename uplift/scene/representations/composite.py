@@ -1,7 +1,5 @@
 """Composite models: a smooth part in few coefficients, and spikes.
 
-References
-----------
 Sun, Drew & Fracchia 1999, "Representing spectral functions by a composite model of smooth and spiky components for
 efficient full-spectrum photorealism". Deville, Merzouk, Cazier & Paul 1994, "Spectral data modeling for a lighting
 application". Kment 2011, sections 4.3, 5.4 and 5.5.
@@ -25,10 +23,7 @@ SUN_THRESHOLD, ENHANCED_THRESHOLD = 0.3, 0.2
 
 
 class CompositeCode(NamedTuple):
-    """Code of the smooth part, and heights (n, P) of spikes at ``positions`` (P,), indices of the 5 nm table.
-
-    A height is 0 where a spectrum has no spike.
-    """
+    """Code of the smooth part, and heights (n, P) of spikes, or 0, at ``positions`` (P,) of the 5 nm table."""
 
     smooth: Array
     positions: Indices

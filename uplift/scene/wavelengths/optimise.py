@@ -104,10 +104,7 @@ def local_fit(problem: FitProblem, start: Sampling, *, fix_wavelengths: bool = F
 
 
 def optimise(setup: RenderSetup, count: int) -> Sampling:
-    """Fit ``count`` wavelengths, their weights and powers, all at least 0, for the least mean ΔE00.
-
-    The fit starts from evenly spaced, prefiltered wavelengths, and is deterministic.
-    """
+    """Fit ``count`` wavelengths, their weights and powers, all at least 0, for the least mean ΔE00."""
     problem = FitProblem(_thinned(setup))
     starts = (prefiltered(problem.setup, midpoints(count, *span)) for span in START_RANGES)
     fits = [_with_nearby_powers(problem.setup, ordered(local_fit(problem, start))) for start in starts]
