@@ -92,13 +92,7 @@ class Entry:
 
     @property
     def step(self) -> float | None:
-        """Sampling step in nm.
-
-        Returns
-        -------
-        float or None
-            None if the sampling is irregular.
-        """
+        """Sampling step in nm; None if the sampling is irregular."""
         steps = np.diff(self.wavelengths)
         return round(float(steps.mean()), 6) if np.ptp(steps) <= 1e-6 else None
 
@@ -263,17 +257,12 @@ class Atlas:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the entries.
-
-        Returns
-        -------
-        tuple of str
-        """
+        """Names of the entries."""
         return tuple(entry.name for entry in self.entries)
 
 
 def merge(parts: Iterable[Atlas]) -> Atlas:
-    """Merge atlases into one, in order.
+    """Merge atlases, whose entries must have different names, into one, in order.
 
     Parameters
     ----------
@@ -283,11 +272,6 @@ def merge(parts: Iterable[Atlas]) -> Atlas:
     Returns
     -------
     Atlas
-
-    Raises
-    ------
-    AtlasError
-        Two entries share a name.
     """
     parts = tuple(parts)
     return Atlas(

@@ -104,10 +104,8 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
 
     Parameters
     ----------
-    atlas : Atlas
-        E entries.
-    wavelengths : array_like, shape (N,)
-        Wavelengths in nm.
+    atlas, wavelengths
+        As in `on_grid`.
 
     Returns
     -------

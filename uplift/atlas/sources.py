@@ -189,12 +189,7 @@ class ShippedAtlas:
 
     @property
     def entries(self) -> int:
-        """Number of entries, as ``content`` states it.
-
-        Returns
-        -------
-        int
-        """
+        """Number of entries, as ``content`` states it."""
         return int(self.content.split()[0])
 
 

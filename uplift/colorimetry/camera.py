@@ -57,10 +57,7 @@ class Camera:
         object.__setattr__(self, "sensitivities", sensitivities / (sensitivities.max() or 1.0))
 
     def at(self, wavelengths: ArrayLike) -> Array:
-        """Interpolate the sensitivities linearly; outside the measured range they are 0.
-
-        Shapes: ``wavelengths`` (M,) → (M, 3).
-        """
+        """Interpolate the sensitivities (M, 3) linearly at wavelengths (M,) in nm; outside their range they are 0."""
         at = np.asarray(wavelengths, dtype=float)
         channels = (np.interp(at, self.wavelengths, channel, left=0, right=0) for channel in self.sensitivities.T)
         return np.stack(list(channels), axis=1)

@@ -132,9 +132,8 @@ def delta_e_2000(lab_1: ArrayLike, lab_2: ArrayLike) -> Array:
 def delta_e_2000_weights(lab: ArrayLike) -> Array:
     """Compute the linear map from small changes of L*a*b* to weighted differences of lightness, chroma and hue.
 
-    The norm of the differences is CIEDE2000, but for its corrections of neutral and of blue colours.
-
-    Shapes: ``lab`` (…, 3) → (…, 3, 3). Sharma, Wu & Dalal 2005, eq. 15–17, 19 and 20, with G and T of a neutral colour.
+    The norm of the differences is CIEDE2000, but for its corrections of neutral and of blue colours (Sharma, Wu & Dalal
+    2005, eq. 15–17, 19 and 20, with G and T of a neutral colour). Shapes: ``lab`` (…, 3) → (…, 3, 3).
     """
     light, a, b = np.moveaxis(np.asarray(lab, dtype=float), -1, 0)
     chroma, hue = np.hypot(a, b), np.arctan2(b, a)

@@ -33,10 +33,7 @@ GREY = DominantWavelength(None, False, 0.0)
 
 
 def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
-    """Find the dominant wavelength and the purity of a colour relative to the white of a sensor.
-
-    Shapes: ``xyz`` (3,).
-    """
+    """Find the dominant wavelength and the purity of a colour (3,) relative to the white of a sensor."""
     colour = np.asarray(xyz, dtype=float)
     if not colour.sum() > 0:
         return GREY

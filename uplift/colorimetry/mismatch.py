@@ -137,10 +137,7 @@ class MismatchVolumes:
         return np.asarray(np.einsum("fij,kfj->kfi", np.linalg.inv(directions[faces]), support) @ self.scale.T)
 
     def excess(self, xyz: Array) -> Array:
-        """Compute by how much colours exceed the body in the direction in which they do so most.
-
-        Shapes: ``xyz`` (n, 3) → (n,).
-        """
+        """Compute by how much (n,) XYZ (n, 3) exceed the body in the direction in which they do so most."""
         return np.asarray(np.einsum("kdi,di->kd", xyz[:, None] - self.xyz, self.normals).max(axis=1))
 
 
@@ -301,10 +298,7 @@ def mesh_volume(points: Array, faces: Indices) -> Array:
 
 
 def outline(points: Array, faces: Indices, angles: int = ANGLES) -> Array:
-    """Compute the outline of a triangle mesh that is projected to a plane.
-
-    Shapes: ``points`` (D, 2), ``faces`` (F, 3) → (angles, 2).
-    """
+    """Compute the outline (angles, 2) of a triangle mesh, of ``faces`` (F, 3), with points (D, 2) in a plane."""
     centre = points.mean(axis=0)
     values, axes = np.linalg.eigh(np.cov(points.T))
     lengths = np.sqrt(np.maximum(values, MIN_ROUNDNESS * values.max() + np.finfo(float).tiny))

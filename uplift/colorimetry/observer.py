@@ -54,10 +54,6 @@ def sensor(
     wavelengths : tuple of float, default (380, 780, 5)
         First and last wavelength and step in nm, as `Sensor.range`.
 
-    Returns
-    -------
-    Sensor
-
     Raises
     ------
     UnknownNameError
@@ -160,21 +156,10 @@ def light(
 
     Parameters
     ----------
-    illuminant : str
-        Illuminant.
-    observer : str
-        Colour-matching functions.
+    illuminant, observer : str
+        Illuminant and colour-matching functions.
     start, end, step : float
         Range and step in nm, as `Sensor.range`.
-
-    Returns
-    -------
-    Light
-
-    Raises
-    ------
-    UnknownNameError
-        A name is unknown.
     """
     power = samples("illuminant", illuminant, start, end, step)
     weights = samples("observer", observer, start, end, step) * power[:, None]
@@ -196,9 +181,7 @@ def illuminant_spd(illuminant: str, start: float = START, end: float = END, step
 def smallest_space(
     reflectances: ArrayLike, illuminant: str = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
 ) -> str | None:
-    """Find the smallest of the common RGB spaces that holds all colours of reflectances.
-
-    Shapes: ``reflectances`` (…, N).
+    """Find the smallest of the common RGB spaces that holds all colours of reflectances (…, N).
 
     >>> import numpy as np
     >>> smallest_space(np.full(81, 0.5))

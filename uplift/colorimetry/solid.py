@@ -36,10 +36,7 @@ class Solid:
         return np.asarray(self.signed_distance(rgb) <= SLACK)
 
     def ray_fraction(self, origin: Array, target: Array) -> Array:
-        """Compute the fraction (n,) of each segment from ``origin``, inside, to ``target`` that lies inside the solid.
-
-        Shapes: ``origin``, ``target`` (n, 3).
-        """
+        """Compute the fraction (n,) that is inside the solid of segments from an origin (n, 3) inside to a target."""
         fractions = [np.zeros(0)]
         for first in range(0, len(target), BLOCK):
             start, end = origin[first : first + BLOCK], target[first : first + BLOCK]
@@ -51,11 +48,9 @@ class Solid:
 
 
 def toward_grey(limits: Solid, grey: Array, target: Array, margin: float) -> Array:
-    """Move colours that lie outside the solid, or less than a margin inside, onto their line to a grey.
+    """Move colours (n, 3) that lie outside the solid, or less than a margin inside, onto their line to a grey (n, 3).
 
     Colours deeper inside are unchanged, bit for bit, and the result is continuous.
-
-    Shapes: ``grey`` (n, 3), ``target`` (n, 3) → (n, 3).
     """
     result = target.copy()
     near = np.flatnonzero(limits.signed_distance(target) > -2 * margin)
@@ -84,12 +79,10 @@ def solid(matrix: Array) -> Solid:
 
 
 def solid_volume(matrix: Array) -> float:
-    """Compute the volume of the object-colour solid of three responses.
+    """Compute the volume of the object-colour solid of three responses (3, N).
 
     The zonotope consists of a parallelepiped for each triple of segments; each pair of segments takes part in those of
     all third ones.
-
-    Shapes: ``matrix`` (3, N).
     """
     first, second = np.triu_indices(matrix.shape[1], k=1)
     normals = np.cross(matrix.T[first], matrix.T[second])
