@@ -83,15 +83,14 @@ def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, Measu
     # t = W m of measured reflectances m
     rgb = sensor.rgb(measured)
     inside = in_unit_cube(rgb)
-    count = len(atlas.entries)
     hint = ""
     if not inside.all():
         space = smallest_space(resample(atlas, grid()).values, sensor.illuminant, sensor.observer)
         hint = f"none of {', '.join(COMMON_SPACES)} holds all entries"
         if space is not None:
             hint = f'build with --space "{space}" to have all entries in the lattice'
-    if (count or atlas.skipped) and not inside.any():
-        problem = f"no entry of the atlas is within {sensor.space}: {count} outside, {len(atlas.skipped)} skipped"
+    if (atlas.entries or atlas.skipped) and not inside.any():
+        problem = f"no entry of the atlas is within {sensor.space}: {len(atlas)} outside, {len(atlas.skipped)} skipped"
         raise AtlasError(problem, code="atlas-out-of-gamut", hint=hint)
     names = np.array(atlas.names, dtype=object)
     for row in np.flatnonzero(~inside):
@@ -114,8 +113,7 @@ def fit_constraints(problem: Problem, entry_model: Model, entries: MeasuredEntri
 
 def warn_of_close(names: Sequence[str], half_width: Array, crowded: Sequence[int] = ()) -> None:
     """Warn of entries of the same colour, and of ``crowded`` ones, whose nearest node a closer entry owns."""
-    duplicates = np.flatnonzero(half_width == 0).tolist()
-    if duplicates:
+    if duplicates := np.flatnonzero(half_width == 0).tolist():
         problem = "left out: an earlier entry has the same colour, which has only one answer"
         warn(f"{_listed(names, duplicates)} {problem}", code="entry-duplicate")
     if near := [row for row in crowded if half_width[row]]:
