@@ -47,8 +47,8 @@ def test_a_plan_is_printed_written_and_built(run, here):
 def test_a_plan_outside_the_folder_of_its_scene_is_refused_before_the_search(run, here, monkeypatch):
     monkeypatch.setattr("uplift.scene.plan.plan", None)
     (here / "empty").mkdir()
-    result = run("plan", "kitchen.toml", "-o", "empty/a.plan.json", code=2)
-    assert "must lie in the folder of wood.exr, or above it; write for example kitchen.plan.json" in result.stderr
+    error = run("plan", "kitchen.toml", "-o", "empty/a.plan.json", code=2).stderr
+    assert "must lie in the folder of wood.exr, or above it; write for example kitchen.plan.json" in error
 
 
 @pytest.mark.parametrize("pixel", PIXELS, ids=lambda pixel: f"{pixel.form}-{pixel.depth}{pixel.mode}")

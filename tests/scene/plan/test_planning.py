@@ -182,12 +182,11 @@ def test_a_plan_is_written_where_it_can_be_read(planned, kitchen, tmp_path):
     found = planned[0]
     above = to_json(found, kitchen.parent.parent / "a.plan.json")["scene"]
     assert [each["path"] for each in above["textures"]] == [f"{kitchen.parent.name}/wood.exr"]
-    default = kitchen.with_name("kitchen.plan.json")
-    check_path(found.scene, default)
+    check_path(found.scene, kitchen.with_name("b.plan.json"))
     for write in (lambda path: check_path(found.scene, path), lambda path: to_json(found, path)):
         with raises(OutputError, "output") as caught:
             write(tmp_path / "a.plan.json")
-        assert str(default) in caught.value.hint
+        assert str(kitchen.with_name("kitchen.plan.json")) in caught.value.hint
 
 
 @pytest.mark.parametrize(
