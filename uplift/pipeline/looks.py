@@ -174,7 +174,8 @@ def _warn_of_missed(look: Look, lights: Sequence[Mapping[str, Any]]) -> None:
         return
     impossible = any(light["possible"] > MET for light in lights)
     problem = "no reflectance meets it" if impossible else "the coefficients of its spectrum do not reach it"
-    code, hint = ("look-impossible", "") if impossible else ("look-not-reached", "use more entry_coefficients")
+    code = "look-impossible" if impossible else "look-not-reached"
+    hint = "" if impossible else "use more entry_coefficients"
     shown = []
     for light in missed:
         answer, target = hex_codes(np.array([light["answer"], light["wish"]]))
