@@ -15,7 +15,7 @@ from uplift.colorimetry.delta_e import delta_e_spectra, lab, lab_jacobian
 from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Mask
 from uplift.fit.problem import Problem
-from uplift.fit.solver import BatchSolver, Options, iterate_rows, solve_in_numpy
+from uplift.fit.solver import BatchSolver, Options, Stepped, iterate_rows, solve_in_numpy
 from uplift.models.model import Model
 
 LIGHTS_WEIGHT, SMOOTHNESS = 0.03, 1e-3
@@ -144,16 +144,12 @@ class Marquardt(BatchSolver):
     rtol: float = PRECISION
     atol: float = 0.0
 
-    def init(
-        self, fn: Any, y: Any, args: Any, options: Options, f_struct: Any, aux_struct: Any, tags: Any
-    ) -> MarquardtState:
+    def init(self, fn: Any, y: Any, args: Any, options: Options, *rest: Any) -> MarquardtState:
         """Evaluate the residuals at ``y`` (n, C)."""
         count = len(y)
         return MarquardtState(fn(y, args)[0], np.zeros(count), np.full(count, 2.0), np.zeros(count, dtype=bool))
 
-    def step(
-        self, fn: Any, y: Any, args: Any, options: Options, state: MarquardtState, tags: Any
-    ) -> tuple[Any, MarquardtState, Any]:
+    def step(self, fn: Any, y: Any, args: Any, options: Options, state: MarquardtState, *rest: Any) -> Stepped:
         """Take one step in every fit that has not ended; no sum of squares increases."""
         gram, slope = options["normal_equations"](y, state.residual)
         diagonal = gram.diagonal(axis1=-2, axis2=-1).max(axis=-1)

@@ -47,15 +47,7 @@ class Problem:
 
     def solve(self, target: Array, start: Array, max_passes: int, prior: Array | None = None) -> Solution:
         """Find multipliers (n, C) of linear RGB (n, 3); see `uplift.fit.solver.solve`."""
-        return solve(
-            self.forward,
-            start,
-            target,
-            tolerance=self.tolerance,
-            max_passes=max_passes,
-            prior=prior,
-            method=self.method,
-        )
+        return solve(self.forward, start, target, self.tolerance, max_passes, prior, self.method)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -38,6 +38,8 @@ Options = dict[str, Any]
 """Options of a solver's ``init``: arrays with a row for each problem."""
 NO_TAGS: frozenset[object] = frozenset()
 """Nothing is known of the matrices of the problem."""
+Stepped = tuple[Any, Any, Any]
+"""What a step of a solver returns: ``y``, its state, and what the function returned beside the residuals."""
 
 
 class BatchSolver(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
@@ -49,9 +51,7 @@ class BatchSolver(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
     def done(self, state: Any) -> Any:
         """Whether (n,) each problem is solved, or given up."""
 
-    def terminate(
-        self, fn: Any, y: Any, args: Any, options: Options, state: Any, tags: Any
-    ) -> tuple[Any, optimistix.RESULTS]:
+    def terminate(self, fn: Any, y: Any, args: Any, options: Options, state: Any, *rest: Any) -> tuple[Any, Any]:
         """Whether all problems are done."""
         return self.done(state).all(), optimistix.RESULTS.successful
 
@@ -105,17 +105,13 @@ class LeastChange(BatchSolver):
     atol: Any
     rtol: float = 0.0
 
-    def init(
-        self, fn: Any, y: Any, args: Any, options: Options, f_struct: Any, aux_struct: Any, tags: Any
-    ) -> LeastChangeState:
+    def init(self, fn: Any, y: Any, args: Any, options: Options, *rest: Any) -> LeastChangeState:
         """Evaluate the residuals at multipliers ``y`` (n, C)."""
         given = self.options(y, y) | options
         displacement = blocked_matmul(y - given["prior"], self.forward.inverse_root.T)
         return LeastChangeState(fn(y, args)[0], displacement, given["damping"], given["anchor_weight"])
 
-    def step(
-        self, fn: Any, y: Any, args: Any, options: Options, state: LeastChangeState, tags: Any
-    ) -> tuple[Any, LeastChangeState, Any]:
+    def step(self, fn: Any, y: Any, args: Any, options: Options, state: LeastChangeState, *rest: Any) -> Stepped:
         """Take one step in every problem whose distance exceeds the tolerance; no squared residual increases."""
         where = y.__array_namespace__().where
         # Δx = A⁺ (t − r + A d) − d, and p changes by R Δx.
@@ -171,7 +167,6 @@ def solve(
     forward: ForwardMap,
     start: Array,
     target: Array,
-    *,
     tolerance: float,
     max_passes: int,
     prior: Array | None = None,

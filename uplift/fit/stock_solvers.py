@@ -18,7 +18,7 @@ import numpy as np
 import optimistix
 
 from uplift.common.arrays import Array
-from uplift.fit.solver import BatchSolver, Options
+from uplift.fit.solver import NO_TAGS, BatchSolver, Options, Stepped
 from uplift.models.minimum_norm import ForwardMap
 
 CLOSENESS = 1e-5
@@ -31,8 +31,7 @@ MAX_STEPS = 64
 MAX_PASSES = 4
 """Times that an unsolved problem is solved again, with its last answer as prior."""
 
-SOLVER_TYPES = (optimistix.AbstractLeastSquaresSolver, optimistix.AbstractMinimiser)
-Solver: TypeAlias = "optimistix.AbstractLeastSquaresSolver | optimistix.AbstractMinimiser"
+Solver: TypeAlias = optimistix.AbstractLeastSquaresSolver | optimistix.AbstractMinimiser
 STOCK = {
     "dogleg": optimistix.Dogleg,
     "levenberg-marquardt": optimistix.LevenbergMarquardt,
@@ -86,28 +85,24 @@ class EachRow(BatchSolver):
     rtol: float = 0.0
     atol: float = 0.0
 
-    def init(
-        self, fn: Any, y: Any, args: Any, options: Options, f_struct: Any, aux_struct: Any, tags: Any
-    ) -> EachRowState:
+    def init(self, fn: Any, y: Any, args: Any, options: Options, *rest: Any) -> EachRowState:
         """Start the solver in every row, at multipliers ``y`` (n, C)."""
 
         def begin(x: Any, row: Any) -> Any:
             problem = self._problem(fn)
-            return self.solver.init(problem, x, row, {}, *jax.eval_shape(problem, x, row), tags)
+            return self.solver.init(problem, x, row, {}, *jax.eval_shape(problem, x, row), NO_TAGS)
 
         x, rows = self._rows(y, args, options)
         inner = equinox.filter_vmap(begin)(x, rows)
         return EachRowState(inner, fn(y, args)[0], jnp.zeros(len(y), dtype=bool))
 
-    def step(
-        self, fn: Any, y: Any, args: Any, options: Options, state: EachRowState, tags: Any
-    ) -> tuple[Any, EachRowState, Any]:
+    def step(self, fn: Any, y: Any, args: Any, options: Options, state: EachRowState, *rest: Any) -> Stepped:
         """Take a step in every row that has not terminated."""
 
         def advance(x: Any, row: Any, inner: Any, done: Any) -> Any:
             problem = self._problem(fn)
-            after, new, _ = self.solver.step(problem, x, row, {}, inner, tags)
-            ended, result = self.solver.terminate(problem, after, row, {}, new, tags)
+            after, new, _ = self.solver.step(problem, x, row, {}, inner, NO_TAGS)
+            ended, result = self.solver.terminate(problem, after, row, {}, new, NO_TAGS)
             arrays, static = equinox.partition((after, new), equinox.is_array)
             before, _ = equinox.partition((x, inner), equinox.is_array)
             kept = jax.tree.map(lambda old, now: jnp.where(done, old, now), before, arrays)

@@ -231,7 +231,7 @@ def problem_of(options: Options, observer: str | Camera, solver: str | Solver) -
     if solver != SOLVERS[0]:
         from uplift.fit import stock_solvers
 
-        if isinstance(solver, stock_solvers.SOLVER_TYPES):
+        if isinstance(solver, stock_solvers.Solver):
             method = stock_solvers.RowByRow(solver)
         elif isinstance(solver, str) and solver != CUSTOM:
             method = stock_solvers.stock_solver(solver, problem.tolerance)
