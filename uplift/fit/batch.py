@@ -41,25 +41,20 @@ def map_batches(function: Callable[..., Any], constants: Any, *arrays: Any) -> A
     require_memory_of_xla()
     devices, parts = len(jax.devices()), []
     width, chunk = CPU_ROWS if jax.default_backend() == "cpu" else ACCELERATOR_ROWS
+    total = len(jax.tree.leaves(arrays)[0])
     with jax.enable_x64(True):
         run = _program(function, chunk, devices)
-        for rows in blocks(len(jax.tree.leaves(arrays)[0]), devices * width):
+        for rows in blocks(total, devices * width):
             # Chunks beyond the counts are not computed.
-            count = rows.stop - rows.start
-            counts = np.clip(count - width * np.arange(devices), 0, width)
+            counts = np.clip(rows.stop - rows.start - width * np.arange(devices), 0, width)
             given = jax.tree.map(lambda array, rows=rows: _padded(array[rows], devices * width), arrays)
-            parts.append((count, run(constants, counts, given)))
-        parts = [jax.tree.map(lambda array, count=count: np.asarray(array)[:count], part) for count, part in parts]
-    return parts[0] if len(parts) == 1 else jax.tree.map(lambda *joined: np.concatenate(joined), *parts)
+            parts.append(run(constants, counts, given))
+        return jax.tree.map(lambda *joined: np.concatenate(joined)[:total], *parts)
 
 
 def _padded(array: Array, count: int) -> Array:
     """Repeat the last row, so that there are ``count``."""
-    if len(array) == count:
-        return array
-    padded = np.empty((count, *array.shape[1:]), array.dtype)
-    padded[: len(array)], padded[len(array) :] = array, array[-1]
-    return padded
+    return array if len(array) == count else array.take(np.arange(count), axis=0, mode="clip")
 
 
 @cache
@@ -85,13 +80,9 @@ def _program(function: Callable[..., Any], chunk: int, devices: int) -> Callable
 
     if devices == 1:
         return jax.jit(run)
-    run = jax.shard_map(run, mesh=_mesh(), in_specs=(EVERYWHERE, ROWS, ROWS), out_specs=ROWS, check_vma=False)
-    shardings = [NamedSharding(_mesh(), spec) for spec in (EVERYWHERE, ROWS, ROWS)]
-    return jax.jit(run, in_shardings=tuple(shardings))
-
-
-def _mesh() -> Mesh:
-    return Mesh(np.array(jax.devices()), ("rows",))
+    mesh, given = Mesh(np.array(jax.devices()), ("rows",)), (EVERYWHERE, ROWS, ROWS)
+    run = jax.shard_map(run, mesh=mesh, in_specs=given, out_specs=ROWS, check_vma=False)
+    return jax.jit(run, in_shardings=tuple(NamedSharding(mesh, spec) for spec in given))
 
 
 def to_storage(model: Model, multipliers: Array) -> Array:

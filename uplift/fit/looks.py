@@ -14,7 +14,7 @@ import numpy as np
 from uplift.colorimetry.delta_e import delta_e_2000, delta_e_2000_weights, lab, lab_jacobian
 from uplift.colorimetry.sensor import Light, Sensor
 from uplift.common.arrays import Array
-from uplift.fit.bounded_least_squares import BoundedProblem, solve_bounded
+from uplift.fit.bounded_least_squares import solve_bounded
 from uplift.fit.entries import FittedEntries, fit_entries, join_entries
 from uplift.fit.problem import Problem
 from uplift.fit.solver import LeastChange
@@ -96,11 +96,8 @@ def _linear_design(sensor: Sensor, goal: LookGoal, expected: Array, near: Array,
         derivative = weights @ lab_jacobian(xyz, light.white) @ light.xyz
         rows.append(derivative)
         values.append(weights @ (requested - current) + derivative @ (near - expected))
-    change = solve_bounded(
-        BoundedProblem(
-            np.concatenate([*rows, shape]), np.concatenate([*values, np.zeros(len(shape))]), -expected, 1 - expected
-        )
-    )
+    matrix, goals = np.concatenate([*rows, shape]), np.concatenate([*values, np.zeros(len(shape))])
+    change = solve_bounded(matrix, goals, -expected, 1 - expected)
     return np.clip(expected + change, 0, 1)
 
 

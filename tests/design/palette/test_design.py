@@ -13,10 +13,9 @@ from uplift.colorimetry.srgb import hex_codes
 from uplift.common.errors import OutputError, PaletteError
 from uplift.design.palette import design, illuminant, matrix, read_palette, unmet_goals, write_designed
 from uplift.design.palette.colours import screen_matrix
-from uplift.design.palette.equations import SPACING, equations, unknowns
+from uplift.design.palette.equations import SPACING, equations, solve, unknowns
 from uplift.design.palette.palette import ColourGoal, Palette, SpectrumSpec
 from uplift.design.palette.plots import plot_matrix
-from uplift.fit.bounded_least_squares import solve_bounded
 
 BLACK = np.zeros(3)
 
@@ -41,7 +40,7 @@ def test_spectra_and_free_colours_stay_within_their_bounds(found, metamers, mode
 def test_bounded_solutions_satisfy_the_optimality_conditions(sensor, model, seed):
     """Karush–Kuhn–Tucker: zero gradient between the bounds, outward descent at them."""
     problem = equations(at_random(sensor, np.random.default_rng(seed)), model)
-    x = solve_bounded(problem)
+    x = solve(problem)
     assert ((x >= problem.low) & (x <= problem.high)).all()
     slope = problem.matrix.T @ (problem.matrix @ x - problem.values)
     slack = 1e-7 * np.abs(problem.matrix.T @ problem.values).max()

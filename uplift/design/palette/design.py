@@ -14,10 +14,9 @@ from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import PaletteError, UpliftWarning
 from uplift.design.palette.colours import screen_matrix
-from uplift.design.palette.equations import equations, unknowns
+from uplift.design.palette.equations import equations, solve, unknowns
 from uplift.design.palette.factor import FactorModel
 from uplift.design.palette.palette import ColourGoal, MinDifference, Palette, SpectrumSpec
-from uplift.fit.bounded_least_squares import solve_bounded
 
 VISIBLE = 0.5  # ΔE00 above which a goal is missed: about half of a difference that is visible side by side
 MAX_REMAINING = 0.8  # fraction of the ΔE00 that a useful relaxation may leave
@@ -61,7 +60,7 @@ def design(palette: Palette, model: FactorModel) -> Design:
                 f"light or material of a goal must be given, got {goal}, both to be designed",
                 hint="give one of them, or remove the goal",
             )
-    where, x = unknowns(palette), solve_bounded(equations(palette, model))
+    where, x = unknowns(palette), solve(equations(palette, model))
 
     def spectra(kind: str, specs: tuple[SpectrumSpec, ...]) -> Array:
         return np.array([x[where[kind, spec.name]] if spec.samples is None else spec.samples for spec in specs])

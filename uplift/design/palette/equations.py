@@ -1,4 +1,4 @@
-"""Stacked equations of a palette, M x ≈ y, where x holds free colours and spectra.
+"""Stacked equations of a palette, M x ≈ y, where x holds free colours and spectra, and their solution.
 
 Colours are weighted by 1/√3 and smoothness by 1/(√rows ‖(−1, 2, −1)‖), so that weights of 1 are comparable.
 Differences are scaled as for samples 10 nm apart, and none extends beyond the ends, unlike in the paper (sections
@@ -11,11 +11,12 @@ from itertools import product
 
 import numpy as np
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Indices
+from uplift.common.machine import single_threaded_blas
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.factor import FactorModel
 from uplift.design.palette.palette import Palette, SpectrumSpec
-from uplift.fit.bounded_least_squares import BoundedProblem
+from uplift.fit.bounded_least_squares import solve_bounded
 
 SPACING = 10.0  # sample distance in nm that the weights of the paper refer to
 
@@ -30,6 +31,16 @@ class Rows:
     values: Array
 
 
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """Matrix (rows, n), values (rows,), and bounds low, high (n,) of x."""
+
+    matrix: Array
+    values: Array
+    low: Array
+    high: Array
+
+
 def unknowns(palette: Palette) -> Unknowns:
     """Return the positions of all unknowns: first free colours, then designed spectra (eq. 24)."""
     samples = len(palette.sensor.wavelengths)
@@ -40,7 +51,7 @@ def unknowns(palette: Palette) -> Unknowns:
     return {key: slice(int(a), int(b)) for key, a, b in zip(sizes, ends[:-1], ends[1:], strict=True)}
 
 
-def equations(palette: Palette, model: FactorModel) -> BoundedProblem:
+def equations(palette: Palette, model: FactorModel) -> Equations:
     """Stack all criteria of non-zero weight (eq. 22), with the bounds of the unknowns."""
     where = unknowns(palette)
     rows = [*_colours(palette, model, where), *_smoothness(palette, where), *_model_error(palette, model, where)]
@@ -57,7 +68,36 @@ def equations(palette: Palette, model: FactorModel) -> BoundedProblem:
     specs |= {("material", spec.name): spec for spec in palette.materials}
     for key, position in where.items():
         low[position], high[position] = palette.free[key[1]] if key[0] == "free" else (specs[key].low, specs[key].high)
-    return BoundedProblem(matrix, values, low, high)
+    return Equations(matrix, values, low, high)
+
+
+def solve(given: Equations) -> Array:
+    """Minimise ‖M x − y‖ within the bounds, x (n,).
+
+    Without bounds the pseudo-inverse gives the minimum of least norm. Independent blocks are solved one by one.
+    """
+    x = np.zeros(given.matrix.shape[1])
+    for rows, columns in _independent_blocks(given.matrix):
+        matrix, values = given.matrix[np.ix_(rows, columns)], given.values[rows]
+        low, high = given.low[columns], given.high[columns]
+        if len(values) and np.isfinite([low, high]).any():
+            x[columns] = solve_bounded(matrix, values, low, high)
+        else:
+            with single_threaded_blas():
+                x[columns] = np.linalg.lstsq(matrix, values, rcond=None)[0]
+    return np.clip(x, given.low, given.high)
+
+
+def _independent_blocks(matrix: Array) -> Iterator[tuple[Indices, Indices]]:
+    """Rows and columns of each block of M that shares no entry with the others."""
+    from scipy.sparse import block_array, csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    entries = csr_array(matrix != 0)
+    rows = matrix.shape[0]
+    count, labels = connected_components(block_array([[None, entries], [entries.T, None]]), directed=False)
+    for label in range(count):
+        yield np.flatnonzero(labels[:rows] == label), np.flatnonzero(labels[rows:] == label)
 
 
 def _colours(palette: Palette, model: FactorModel, where: Unknowns) -> Iterator[Rows]:
