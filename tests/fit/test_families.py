@@ -9,7 +9,8 @@ from tests.conftest import ATLASES
 from tools import ship_library
 from uplift.atlas import read_atlas, resample
 from uplift.colorimetry import observer
-from uplift.fit.families import FILE, LENGTH, NUGGET, FamilySamples, families_with, krige_families, learn_relevance
+from uplift.fit.families import FILE, LENGTH, NUGGET, Family, families_with, krige_families, learn_relevance
+from uplift.fit.kriging import Points
 
 RNG = np.random.default_rng(5)
 LIGHTS = [observer.light(name) for name in ("A", "FL11")]
@@ -43,9 +44,9 @@ def test_families_are_found_by_their_spectra(sensor, atlas, families):
     assert families_with(measured[:0]) == ()
 
 
-def samples(count, spread=5.0, related=0.0, counts=1.0):
+def samples(count):
     locations = RNG.uniform([20, -30, -30], [90, 30, 30], (count, 3))
-    return FamilySamples(locations, RNG.normal(size=(count, 4)), np.full(count, counts), spread, related)
+    return Points(locations, RNG.normal(size=(count, 4)), RNG.integers(1, 4, count), np.arange(count))
 
 
 def matern(first, second):
@@ -53,17 +54,17 @@ def matern(first, second):
     return (1 + scaled) * np.exp(-scaled)
 
 
-def conditional_mean(families, lab):
+def conditional_mean(families, points, lab):
     """Mean of shared deviation plus the related share of each family's own, given all samples."""
-    where = np.concatenate([family.locations for family in families])
-    what = np.concatenate([family.deviations for family in families])
+    where = np.concatenate([each.locations for each in points])
+    what = np.concatenate([each.deviations for each in points])
     covariance = matern(where, where)
     cross = matern(lab, where)
     first = 0
-    for family in families:
-        own = slice(first, first + len(family.locations))
-        covariance[own, own] += family.spread * matern(family.locations, family.locations)
-        covariance[own, own] += np.diag(NUGGET / family.counts)
+    for family, each in zip(families, points, strict=True):
+        own = slice(first, first + len(each.locations))
+        covariance[own, own] += family.spread * matern(each.locations, each.locations)
+        covariance[own, own] += np.diag(NUGGET / each.counts)
         cross[:, own] *= 1 + family.related * family.spread
         first = own.stop
     return cross @ np.linalg.solve(covariance, what)
@@ -71,12 +72,11 @@ def conditional_mean(families, lab):
 
 @pytest.mark.parametrize("sizes", [(12, 30), (1, 7, 0), (25,)])
 def test_it_is_the_conditional_mean(sizes):
-    families = [
-        samples(size, spread, related) for size, spread, related in zip(sizes, (5, 1, 2), (0, 0.5, 1), strict=False)
-    ]
+    points = [samples(size) for size in sizes]
+    families = [Family("", None, *pair) for pair in ((5, 0), (1, 0.5), (2, 1))][: len(sizes)]
     lab = RNG.uniform([0, -60, -60], [100, 60, 60], (50, 3))
-    kriging = krige_families(families)
-    np.testing.assert_allclose(kriging(lab, np.ones(len(sizes))), conditional_mean(families, lab), atol=1e-9)
+    kriging = krige_families(families, points)
+    np.testing.assert_allclose(kriging(lab, np.ones(len(sizes))), conditional_mean(families, points, lab), atol=1e-9)
     relevance = RNG.uniform(0, 2, len(sizes))
     expected = np.einsum("f,fnk->nk", relevance, kriging.contributions(lab))
     np.testing.assert_allclose(kriging(lab, relevance), expected, atol=1e-12)

@@ -19,8 +19,8 @@ from uplift.colorimetry.sensor import Light, in_unit_cube
 from uplift.common.arrays import Array, blocks, distances, largest
 from uplift.fit.batch import to_storage
 from uplift.fit.entries import FittedEntries, objective
-from uplift.fit.families import FILE, Family, FamilySamples, krige_families, learn_relevance
-from uplift.fit.kriging import average_close
+from uplift.fit.families import FILE, Family, krige_families, learn_relevance
+from uplift.fit.kriging import Points, average_close
 from uplift.fit.problem import Problem, nodes_of
 from uplift.fit.solver import solve
 from uplift.lattice import Lattice, weighted_sum
@@ -122,7 +122,7 @@ def learn_base(
     model, sensor = problem.model, problem.sensor
     if not families or plain.nodes is None or not isinstance(model, Moments):
         return plain, (1.0,) * len(families)
-    kriging = krige_families([_samples(plain, problem, family, entries) for family in families])
+    kriging = krige_families(families, [_samples(plain, problem, family.measured, entries) for family in families])
 
     relevance = np.ones(len(families))
     if entries is not None:
@@ -149,12 +149,12 @@ def learn_base(
     return replace(plain, nodes=nodes), tuple(relevance.tolist())
 
 
-def _samples(plain: Base, problem: Problem, family: Family, entries: FittedEntries | None) -> FamilySamples:
-    """Deviations of the spectra of a family from smooth ones, brightened; spectra of atlas entries are left out."""
+def _samples(plain: Base, problem: Problem, measured: Array, entries: FittedEntries | None) -> Points:
+    """Deviations of the spectra (E, N) from smooth ones, brightened, without those of atlas entries."""
     sensor = problem.sensor
-    rgb = sensor.rgb(family.measured)
+    rgb = sensor.rgb(measured)
     rows = np.flatnonzero(in_unit_cube(rgb))
-    rgb, measured = np.clip(rgb[rows], 0, 1), family.measured[rows]
+    rgb, measured = np.clip(rgb[rows], 0, 1), measured[rows]
     locations = rgb_to_lab(sensor, rgb)
     if entries is not None:
         close = distances(locations, rgb_to_lab(sensor, entries.rgb)) <= SAME_COLOUR
@@ -163,7 +163,7 @@ def _samples(plain: Base, problem: Problem, family: Family, entries: FittedEntri
         rgb, measured, locations = rgb[new], measured[new], locations[new]
     expected = reflectance(plain.model, plain.coefficients(rgb), sensor.wavelengths)
     deviations = (measured - expected) / plain.brightness(rgb)
-    return FamilySamples(*average_close(locations, deviations)[:3], family.spread, family.related)
+    return average_close(locations, deviations)
 
 
 def match_spectra(model: Moments, wavelengths: Array, reflectances: Array, lights: Sequence[Light]) -> Array:

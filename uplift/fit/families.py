@@ -14,7 +14,6 @@ Rasmussen & Williams 2006, "Gaussian processes for machine learning", eq. 2.25 a
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
-from typing import NamedTuple
 
 import numpy as np
 
@@ -23,7 +22,7 @@ from uplift.colorimetry.sensor import Light
 from uplift.common.arrays import Array, Indices, blocks, distances
 from uplift.common.errors import unknown_name
 from uplift.fit.entries import LIGHTS_WEIGHT
-from uplift.fit.kriging import Kernel
+from uplift.fit.kriging import Kernel, Points
 
 FILE = "library.npz"
 """Package data, written by tools/ship_library.py."""
@@ -86,16 +85,6 @@ def families_with(measured: Array) -> tuple[str, ...]:
     return tuple(name for name, distance in nearest.items() if distance <= limit)
 
 
-class FamilySamples(NamedTuple):
-    """Deviations (E, N) of a family at L*a*b* (E, 3), each the mean of ``counts`` (E,) spectra; see `Family`."""
-
-    locations: Array
-    deviations: Array
-    counts: Array
-    spread: float
-    related: float
-
-
 @dataclass(frozen=True, eq=False)
 class FamilyKriging:
     """Expected deviation of a material, as the sum of a contribution of each of ``count`` families.
@@ -118,13 +107,10 @@ class FamilyKriging:
         return _kernel_sum(lab, self.locations, self.weights * relevance[self.family][:, None])
 
 
-def krige_families(families: Sequence[FamilySamples]) -> FamilyKriging:
-    """Fit the kriging of the deviations of families of any size, also empty."""
-    sizes = [len(family.locations) for family in families]
-    number = np.repeat(np.arange(len(families)), sizes)
-    locations, deviations, counts = (
-        np.concatenate([getattr(family, name) for family in families]) for name in ("locations", "deviations", "counts")
-    )
+def krige_families(families: Sequence[Family], samples: Sequence[Points]) -> FamilyKriging:
+    """Fit the kriging of families to their deviations at L*a*b*, of any number, also 0."""
+    number = np.repeat(np.arange(len(families)), [len(points.counts) for points in samples])
+    locations, deviations, counts, _ = (np.concatenate(columns) for columns in zip(*samples, strict=True))
     spread = np.array([family.spread for family in families])
     related = np.array([family.related for family in families])
     # Covariance of samples i, j: (1 + spread_f) k_ij within a family, k_ij between families, noise on the diagonal.
