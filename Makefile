@@ -10,7 +10,7 @@ PIP := $(BIN)/pip install -qq --disable-pip-version-check
 AXE := $(OUT)/axe/axe_playwright_python/axe.min.js
 RGB2SPEC := $(OUT)/rgb2spec
 
-.PHONY: golden golden-before build lint test bare basic site notebooks demo measure peers library nightly munsell docs atlases cubes lock clean pictures axe examples
+.PHONY: build lint test bare basic site notebooks demo measure peers library nightly munsell docs atlases cubes lock clean pictures axe examples
 
 build: $(INSTALLED)
 	mkdir -p $(OUT)
@@ -41,13 +41,6 @@ bare: $(INSTALLED)
 # The tests with numpy's code for processors without AVX-512.
 basic: $(INSTALLED)
 	NPY_DISABLE_CPU_FEATURES='X86_V4 AVX512_ICL AVX512_SPR' $(MAKE) test
-
-# What commands answer and write, bit by bit: `make golden-before` on the code before a change, `make golden` after it.
-golden: $(INSTALLED)
-	$(BIN)/python -m tools.golden $(NAMES)
-
-golden-before: $(INSTALLED)
-	$(BIN)/python -m tools.golden record
 
 # Render the pages from the stored measurements in docs/data; nothing is measured.
 docs: $(INSTALLED)
