@@ -7,10 +7,9 @@ import pytest
 
 import uplift
 from tests.examples import ELSEWHERE, build_wheel, examples, run_lines, source_files, unpack
-from uplift.common.version import DISTRIBUTION
 
 FOLDERS = {"uplift": "uplift", "cli": "uplift_cli", "atlases": "uplift_atlases"}
-INFO = f"{DISTRIBUTION.replace('-', '_')}-{uplift.__version__}.dist-info"
+INFO = f"spectral_uplift-{uplift.__version__}.dist-info"
 FEW = (
     "uplift samples",
     "uplift relight wood.png -o wood.html",

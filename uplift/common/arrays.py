@@ -1,6 +1,5 @@
 """Types of arrays and paths in signatures; blocks of rows, and distances between points."""
 
-import os
 from collections.abc import Iterator
 from functools import reduce
 from typing import Any
@@ -8,13 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from uplift.common.errors import StrPath as StrPath  # defined without numpy, which takes long to import
+
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 Values = NDArray[Any]
 """Array of float64 or float32."""
-StrPath = str | os.PathLike[str]
 
 
 def blocks(count: int, size: int) -> Iterator[slice]:

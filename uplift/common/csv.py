@@ -13,7 +13,6 @@ from typing import Any
 
 _FORMULA = re.compile(r"'*[=+\-@\t\r\n＝＋－＠]")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
-_NEUTRALISED = re.compile(r"'+[=+\-@\t\r\n＝＋－＠]")
 
 
 def write_csv(file: Any, rows: Iterable[Iterable[object]], *, quote_text: bool = False) -> None:
@@ -56,7 +55,7 @@ def parse_csv(data: bytes) -> list[dict[str, str]]:
 
 def plain_cell(cell: str) -> str:
     """Return a cell without the apostrophe that `write_csv` puts before a formula."""
-    return cell[1:] if cell.startswith("'") and _NEUTRALISED.match(cell) else cell
+    return cell[1:] if cell.startswith("'") and _FORMULA.match(cell) else cell
 
 
 def _safe_cell(cell: object) -> Any:

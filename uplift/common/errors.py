@@ -1,15 +1,13 @@
 """Exception hierarchy: every error and warning carries a stable code, a location, the problem and a hint."""
 
-from __future__ import annotations
-
 import contextlib
+import os
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from uplift.common.text import printable
 
-if TYPE_CHECKING:
-    from uplift.common.arrays import StrPath
+StrPath = str | os.PathLike[str]
 
 
 class Diagnostic(Exception):  # noqa: N818

@@ -4,8 +4,6 @@ A writer fills a temporary file in the same folder, flushes it to disk and renam
 one to finish wins.
 """
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import os
@@ -13,12 +11,8 @@ import stat
 import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from uplift.common.errors import OutputError, UpliftError
-
-if TYPE_CHECKING:
-    from uplift.common.arrays import StrPath  # which imports numpy
+from uplift.common.errors import OutputError, StrPath, UpliftError
 
 DAY = 86_400.0
 """Seconds without a change after which a temporary file belongs to a writer that was killed."""
