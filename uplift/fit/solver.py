@@ -39,7 +39,7 @@ Options = dict[str, Any]
 NO_TAGS: frozenset[object] = frozenset()
 """Nothing is known of the matrices of the problem."""
 Stepped = tuple[Any, Any, Any]
-"""What a step of a solver returns: ``y``, its state, and what the function returned beside the residuals."""
+"""What a step of a solver returns: ``y``, its state, and what the function returned with the residuals."""
 
 
 class BatchSolver(optimistix.AbstractLeastSquaresSolver):  # type: ignore[misc]
