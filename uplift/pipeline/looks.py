@@ -22,15 +22,13 @@ from uplift.fit.problem import Problem
 from uplift.fit.solver import solve_in_numpy
 from uplift.models import evaluate
 from uplift.models.model import Model
-from uplift.pipeline.entries import Constraints, MeasuredEntries
+from uplift.pipeline.entries import STACK_LEVEL, Constraints, MeasuredEntries
 from uplift.pipeline.look import Look, LooksLike, about, as_looks, format_rgb, look_error
 
 SAME_CODE = 0.5
 """Colours whose 8-bit codes differ by at most this are the same: a query of one would return the other."""
 DIGITS = 6
 """Decimals of recorded colours and distances."""
-STACK_LEVEL = 6
-"""Frames between a warning and the caller of `uplift.build`, whose decorator adds one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +70,7 @@ class LookTargets:
 
     def describe(self, table: AtlasTable, model: Model, sensor: Sensor) -> dict[str, Any]:
         """Return what a cube records of its looks, in JSON values, and warn of those that its answers miss."""
-        stored = table.spectra
-        answers = stored.reflectance(np.arange(table.measured_count, len(table.names)), sensor.wavelengths)
+        answers = table.spectra.reflectance(np.arange(table.measured_count, len(table.names)), sensor.wavelengths)
         records = []
         for look, screens, goal, design, answer in zip(
             self.looks, self.screens, self.goals, self.designs, answers, strict=True
@@ -172,10 +169,11 @@ def _warn_of_missed(look: Look, lights: Sequence[Mapping[str, Any]]) -> None:
     missed = [light for light in lights if light["delta_e"] > MET]
     if not missed:
         return
+    code, problem, hint = "look-impossible", "no reflectance meets it", ""
     impossible = any(light["possible"] > MET for light in lights)
-    problem = "no reflectance meets it" if impossible else "the coefficients of its spectrum do not reach it"
-    code = "look-impossible" if impossible else "look-not-reached"
-    hint = "" if impossible else "use more entry_coefficients"
+    if not impossible:
+        code, hint = "look-not-reached", "use more entry_coefficients"
+        problem = "the coefficients of its spectrum do not reach it"
     shown = []
     for light in missed:
         answer, target = hex_codes(np.array([light["answer"], light["wish"]]))
