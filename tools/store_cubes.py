@@ -9,8 +9,6 @@ import uplift
 from uplift.lights.lookup import EMISSION
 
 ROOT = Path(__file__).parents[1]
-DEFAULT = "moments-16"
-"""The stored cube that is installed with the package: sRGB, D65, without an atlas."""
 LOOKUP = ROOT / "uplift" / "lookup"
 
 
@@ -21,7 +19,8 @@ def main() -> None:
         source = ROOT / "atlases" / f"{atlas}.txt" if atlas else None
         path = ROOT / "cubes" / ("-".join(filter(None, (model, str(dim), atlas))) + ".uplift")
         uplift.build(source, dim=dim, model=model, debug=True).save(path, force=True)
-    shutil.copyfile(ROOT / "cubes" / f"{DEFAULT}.uplift", LOOKUP / "default.uplift")
+    # The cube that is installed with the package: sRGB, D65, without an atlas
+    shutil.copyfile(ROOT / "cubes" / "moments-16.uplift", LOOKUP / "default.uplift")
     uplift.build(dim=16, space="ACEScg").save(LOOKUP / "acescg.uplift", force=True)
     uplift.build_emission().save(EMISSION, force=True)
 
