@@ -22,7 +22,6 @@ from uplift.io.mitsuba.texels import (
     read_texels,
     uplift_texels,
 )
-from uplift.io.mitsuba.texture import make_environment, make_texture
 from uplift.io.texture.colours import Counts
 from uplift.io.texture.exr_file import is_exr
 from uplift.io.texture.image import Values
@@ -76,6 +75,8 @@ def _make_plugin(make: Callable[[Any], Any], props: Any) -> Any:
 
 
 def _make(props: Any) -> Any:
+    from uplift.io.mitsuba.texture import make_texture
+
     is_light = props.get("emission", False)
     if _source(props, SOURCES) == "rgb":
         rgb, at = _parse_rgb(props["rgb"]), np.arange(START, END + 1)
@@ -92,6 +93,8 @@ def _make(props: Any) -> Any:
 
 
 def _make_environment(props: Any) -> Any:
+    from uplift.io.mitsuba.texture import make_environment
+
     _source(props, IMAGES)
     _warn_in_scalar_variants("environment")
     return make_environment(props, _texels(props, is_light=True))

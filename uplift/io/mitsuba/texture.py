@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
+import drjit as dr
+import mitsuba as mi
 import numpy as np
 
 from uplift.io.mitsuba.texels import PADDING, Placement, Samples, Texels
@@ -18,8 +20,6 @@ ARCTAN = (0.49999966, -0.318291775, 0.249550106, -0.207882832, 0.16639951, -0.10
 
 def blend(model: Model, multipliers: Sequence[Any], weights: Sequence[Any], wavelengths: Any) -> Any:
     """Return the weighted sum of spectra at ``wavelengths``, a Mitsuba spectrum; each has C multipliers."""
-    import drjit as dr
-
     first, *functions = _basis(model, wavelengths)
     total = dr.zeros(type(wavelengths))
     for each, weight in zip(multipliers, weights, strict=True):
@@ -32,8 +32,6 @@ def blend(model: Model, multipliers: Sequence[Any], weights: Sequence[Any], wave
 
 def _basis(model: Model, wavelengths: Any) -> list[Any]:
     """Return the C basis functions of the linear part at ``wavelengths``."""
-    import drjit as dr
-
     one = dr.ones(type(wavelengths))
     if isinstance(model, Sigmoid):
         middle, half = (model.start + model.end) / 2, (model.end - model.start) / 2
@@ -53,8 +51,6 @@ def _to_reflectance(model: Model, linear: Any) -> Any:
     The arc tangent is x c f(c) with c = 1 / √(1 + x²), its cosine, and f a polynomial. This needs no division, no
     branch and no range reduction. Reflectances differ by less than 1e-6.
     """
-    import drjit as dr
-
     cosine = dr.rsqrt(dr.fma(linear, linear, 1))
     sine = linear * cosine
     if isinstance(model, Sigmoid):
@@ -66,8 +62,6 @@ def _to_reflectance(model: Model, linear: Any) -> Any:
 
 
 def _phase(model: Moments, wavelengths: Any) -> Any:
-    import drjit as dr
-
     low, high = warped(model.warp, np.array([model.start, model.end])).tolist()
     inside = warped(model.warp, dr.clip(wavelengths, model.start, model.end), dr.tanh)
     return dr.pi * (inside - low) / (high - low) - dr.pi
@@ -76,8 +70,6 @@ def _phase(model: Moments, wavelengths: Any) -> Any:
 @cache
 def _texture_class(variant: str) -> type:
     """Define the class for a variant, as each variant has its own base class."""
-    import drjit as dr
-    import mitsuba as mi
 
     class UpliftTexture(mi.Texture):  # type: ignore[misc]
         """Texture of spectra. Filters blend the spectra of texels, and thus their colours."""
@@ -157,16 +149,11 @@ def _texture_class(variant: str) -> type:
 
 def make_texture(props: Any, texels: Texels, placement: Placement) -> Any:
     """Return a texture of the current variant."""
-    import mitsuba
-
-    return _texture_class(mitsuba.variant())(props, texels, placement)
+    return _texture_class(mi.variant())(props, texels, placement)
 
 
 @cache
 def _environment_class(variant: str) -> type:
-    import drjit as dr
-    import mitsuba as mi
-
     class UpliftEnvironment(mi.Emitter):  # type: ignore[misc]
         """Mitsuba's ``envmap`` in grey samples directions, and the spectra give the radiance."""
 
@@ -239,14 +226,10 @@ def _environment_class(variant: str) -> type:
 
 def make_environment(props: Any, texels: Texels) -> Any:
     """Return an environment of the current variant."""
-    import mitsuba
-
-    return _environment_class(mitsuba.variant())(props, texels)
+    return _environment_class(mi.variant())(props, texels)
 
 
 def _bilinear_weights(place: Any) -> tuple[Any, ...]:
-    import drjit as dr
-
     x, y = place.x - 0.5, place.y - 0.5
     x, y = x - dr.floor(x), y - dr.floor(y)
     return (1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y
@@ -254,9 +237,6 @@ def _bilinear_weights(place: Any) -> tuple[Any, ...]:
 
 def _bits(number: Any) -> Any:
     """Return the bits of a float as an unsigned integer."""
-    import drjit as dr
-    import mitsuba as mi
-
     if isinstance(number, float):  # scalar variants
         return int(np.float32(number).view(np.uint32))
     return dr.reinterpret_array(mi.UInt32, number)
