@@ -11,10 +11,11 @@ from uplift.common.errors import StrPath as StrPath  # defined without numpy, wh
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+Floats = NDArray[np.float32]
 Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 Values = NDArray[Any]
-"""Array of float64 or float32."""
+"""Array of numbers of any type, mostly float64 or float32."""
 
 
 def blocks(count: int, size: int) -> Iterator[slice]:

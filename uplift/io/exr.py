@@ -1,16 +1,15 @@
 """Cubes as OpenEXR: header attributes that identify a cube, and all numbers of all nodes, one part per blue slice."""
 
 import json
-import os
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.gamut import Gamut
+from uplift.common.arrays import Floats, StrPath, Values
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write
 from uplift.common.machine import check_memory
@@ -45,7 +44,7 @@ def attributes(data: CubeData) -> dict[str, Any]:
     }
 
 
-def make_part(name: str, header: Mapping[str, Any], channels: Mapping[str, NDArray[Any]]) -> Any:
+def make_part(name: str, header: Mapping[str, Any], channels: Mapping[str, Values]) -> Any:
     """Make an `OpenEXR.Part` of channels (height, width). Raises `OutputError` for NaN."""
     import OpenEXR
 
@@ -54,7 +53,7 @@ def make_part(name: str, header: Mapping[str, Any], channels: Mapping[str, NDArr
     return OpenEXR.Part({**lossless, **header}, pixels, name)
 
 
-def write_parts(parts: Iterable[Any], path: str | os.PathLike[str], *, force: bool = False) -> None:
+def write_parts(parts: Iterable[Any], path: StrPath, *, force: bool = False) -> None:
     """Write parts as one file, atomically and reproducibly. Raises `OutputError`.
 
     The file is opened here, because OpenEXR 3.5 ignores a full disk if it opens the file.
@@ -65,7 +64,7 @@ def write_parts(parts: Iterable[Any], path: str | os.PathLike[str], *, force: bo
         OpenEXR.File(list(parts)).write(file)
 
 
-def _float32(channel: str, plane: NDArray[Any]) -> NDArray[np.float32]:
+def _float32(channel: str, plane: Values) -> Floats:
     """Convert to float32. Integers up to 2²⁴ are exact; numbers that are too large become the largest float."""
     if np.isnan(plane).any():
         raise OutputError(f"channel '{channel}' contains NaN", hint="rebuild the cube")
@@ -78,7 +77,7 @@ def chromaticities(gamut: Gamut) -> tuple[float, ...]:
     return tuple(map(float, (primaries / primaries.sum(axis=1, keepdims=True))[:, :2].ravel()))
 
 
-def write_slices(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> None:
+def write_slices(data: CubeData, path: StrPath, *, force: bool = False) -> None:
     """Write a cube as one OpenEXR file with a part ``blue 07 (0.1234)`` for every node of the blue axis.
 
     Pixel x is the red index. Row y is the green index dim − 1 − y, so that green rises upwards. The channels are 32-bit
@@ -103,7 +102,7 @@ def check_slices(data: CubeData) -> None:
     check_memory(need, f"images of {data.lattice.dim}³ nodes", OutputError, hint)
 
 
-def blue_slices(values: NDArray[Any], dim: int) -> NDArray[Any]:
+def blue_slices(values: Values, dim: int) -> Values:
     """Arrange the values (dim³, …) of nodes as a view (dim, dim, dim, …) with axes blue, row, red.
 
     Image rows count downwards, so row 0 has the highest green: ``row = dim − 1 − green``.
@@ -112,10 +111,10 @@ def blue_slices(values: NDArray[Any], dim: int) -> NDArray[Any]:
     return by_red.swapaxes(0, 2)[:, ::-1]
 
 
-def channels(data: CubeData) -> dict[str, NDArray[Any]]:
+def channels(data: CubeData) -> dict[str, Values]:
     """Return the values (n,) of the nodes by channel name."""
     target = data.lattice.points
-    values: dict[str, NDArray[Any]] = {
+    values: dict[str, Values] = {
         **_rgb("", data.points.rgb),
         **_rgb("lattice.", data.points.rgb),
         **_rgb("target.", target),
@@ -141,5 +140,5 @@ def _parts(data: CubeData) -> Iterator[Any]:
         yield make_part(name, header, {channel: stack[blue] for channel, stack in slices.items()})
 
 
-def _rgb(layer: str, rgb: NDArray[Any]) -> dict[str, NDArray[Any]]:
+def _rgb(layer: str, rgb: Values) -> dict[str, Values]:
     return {f"{layer}{letter}": rgb[:, i] for i, letter in enumerate("RGB")}

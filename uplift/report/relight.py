@@ -23,10 +23,9 @@ from uplift.colorimetry.gamut import SRGB
 from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.srgb import to_display_codes
-from uplift.common.arrays import Array, StrPath
+from uplift.common.arrays import Array, Floats, StrPath
 from uplift.common.errors import OutputError
 from uplift.cube import common_sensor
-from uplift.io.texture.colours import Floats
 from uplift.io.texture.image import read_error, utf8_name
 from uplift.lookup import Cube
 from uplift.lookup.node_table import prepare_products

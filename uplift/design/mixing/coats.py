@@ -24,13 +24,13 @@ from numpy.typing import ArrayLike
 from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.sensor import SLACK
 from uplift.colorimetry.spaces import ImageSpace
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Floats
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.design.mixing import optics, pigments
 from uplift.design.mixing.optics import Layer, Surface
 from uplift.design.mixing.pigments import Flux, Pigment, Scattering
 from uplift.io import exr
-from uplift.io.texture.colours import Counts, Floats, check_encoding
+from uplift.io.texture.colours import Counts, check_encoding
 from uplift.io.texture.uplifter import Converter
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise

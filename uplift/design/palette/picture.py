@@ -10,10 +10,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from uplift.common.arrays import Array, StrPath
+from uplift.common.arrays import Array, StrPath, Values
 from uplift.common.errors import OptionError, TextureError, unknown_name
 from uplift.io.texture.colours import colour_channels
-from uplift.io.texture.image import Part, Values, open_image
+from uplift.io.texture.image import Part, open_image
 
 Weights = NDArray[np.float32]
 

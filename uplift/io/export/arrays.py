@@ -1,13 +1,10 @@
 """Cubes as arrays and tables: the contents of a cube file as npz, and its nodes as CSV."""
 
 import json
-import os
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uplift.common.arrays import blocks
+from uplift.common.arrays import StrPath, Values, blocks
 from uplift.common.csv import csv_text
 from uplift.common.files import atomic_write, write_text
 from uplift.cube import CubeData, contents
@@ -17,7 +14,7 @@ BLOCK = 1 << 12
 """Nodes converted to text at a time."""
 
 
-def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
+def write_npz(data: CubeData, path: StrPath, *, force: bool = False) -> int:
     """Write a cube as an ``.npz`` file without pickled objects; return the number of arrays.
 
     The file has the arrays of docs/cube-file.md under their names. In addition, it has ``multipliers`` (n, C) of the
@@ -39,14 +36,14 @@ def write_npz(data: CubeData, path: str | os.PathLike[str], *, force: bool = Fal
     return len(arrays)
 
 
-def write_csv(data: CubeData, path: str | os.PathLike[str], *, force: bool = False) -> int:
+def write_csv(data: CubeData, path: StrPath, *, force: bool = False) -> int:
     """Write the nodes of a cube as CSV, below a line of column names; return their number.
 
     Columns are linear target and lattice RGB, fitting distance, status, the atlas entry that the node is based on, if
     any, round and standard error of cubes that have them, and the coefficients. Absent nodes are left out.
     """
     points = data.points
-    columns: dict[str, NDArray[Any] | None] = {
+    columns: dict[str, Values | None] = {
         **dict(zip("rgb", data.lattice.points.T, strict=True)),
         **dict(zip(("lattice_r", "lattice_g", "lattice_b"), points.rgb.T, strict=True)),
         "distance": points.distance,

@@ -19,14 +19,12 @@ reference implementation ``rgb2spec``.
 
 import struct
 from string import Template
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.colorimetry.observer import on_range
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Array, StrPath, blocks
+from uplift.common.arrays import Array, Floats, StrPath, Values, blocks
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write
 from uplift.cube import CubeData
@@ -94,7 +92,7 @@ def write_coeff(data: CubeData, path: StrPath, *, layout: str = "coeff", res: in
     return _largest_error(data, sensor, scale, table)
 
 
-def _binary(sensor: Sensor, scale: Array, table: NDArray[np.float32]) -> bytes:
+def _binary(sensor: Sensor, scale: Array, table: Floats) -> bytes:
     at = (sensor.wavelengths - START) / (END - START)
     forward = (at, sensor.matrix, sensor.rgb_to_xyz, sensor.xyz(np.ones(3)))
     sizes = (struct.pack("<I", len(each)) for each in (scale, at))
@@ -102,13 +100,13 @@ def _binary(sensor: Sensor, scale: Array, table: NDArray[np.float32]) -> bytes:
     return MAGIC + b"".join(map(bytes.__add__, sizes, numbers))
 
 
-def _source(layout: str, name: str, scale: Array, table: NDArray[np.float32]) -> str:
+def _source(layout: str, name: str, scale: Array, table: Floats) -> str:
     numbers = np.pad(table, [(0, 0)] * 4 + [(0, 1)]) if layout == "luisa" else table
     words = {"name": name, "res": str(len(scale)), "scale": _rows(scale), "data": _rows(numbers)}
     return Template(read_source(f"{layout}.cpp")).substitute(words)
 
 
-def _rows(numbers: NDArray[Any]) -> str:
+def _rows(numbers: Values) -> str:
     rows = numbers.reshape(-1, numbers.shape[-1]).tolist()
     return "\n".join(",".join(f"{number:.9g}" for number in row) + "," for row in rows)
 
@@ -129,7 +127,7 @@ def _directions(res: int) -> Array:
     return np.stack([np.roll(shares, largest, axis=-1) for largest in range(3)]).reshape(-1, 3)
 
 
-def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> NDArray[np.float32]:
+def _fit(data: CubeData, sensor: Sensor, scale: Array, directions: Array) -> Floats:
     """Fit coefficients (res, n, 3) of the levels of directions (n, 3).
 
     Levels are fitted upwards and downwards from a medium one. Each starts from the multipliers of the previous level,
@@ -195,13 +193,13 @@ def _targets(data: CubeData, rgb: Array) -> Array:
     return around(data, rgb).weighted_sum(data.points.rgb.astype(float), data.atlas.rgb)
 
 
-def _largest_error(data: CubeData, sensor: Sensor, scale: Array, table: NDArray[np.float32]) -> float:
+def _largest_error(data: CubeData, sensor: Sensor, scale: Array, table: Floats) -> float:
     rgb = np.random.default_rng(SEED).random((COLOURS, 3))
     spectra = evaluate_unscaled(_interpolated(scale, table, rgb), sensor.wavelengths)
     return float(np.abs(sensor.rgb(spectra) - _targets(data, rgb)).max())
 
 
-def _interpolated(scale: Array, table: NDArray[np.float32], rgb: Array) -> Array:
+def _interpolated(scale: Array, table: Floats, rgb: Array) -> Array:
     """Return coefficients (n, 3) as rgb2spec interpolates them: linearly between the eight points around a colour."""
     from scipy.interpolate import RegularGridInterpolator
 

@@ -1,12 +1,10 @@
 """An emission table as a program for renderers and shaders, in C or GLSL."""
 
-import os
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError
 from uplift.io.export.program import check_form, comment, compose, write_files
 from uplift.io.export.table import Table, concatenate
@@ -23,7 +21,7 @@ PER_LINE = 27
 
 
 def write_light_program(
-    data: EmissionData, path: str | os.PathLike[str], *, style: str = "c", form: str | None = None, force: bool = False
+    data: EmissionData, path: StrPath, *, style: str = "c", form: str | None = None, force: bool = False
 ) -> list[Path]:
     """Write an emission table as a program in C or GLSL, as `uplift.io.export.write_program` does for a cube."""
     if style not in STYLES:
@@ -80,7 +78,7 @@ def _first_angle(lattice: ChromaticityLattice) -> float:
     return float(3 + slope if v < 0 else 1 - slope)
 
 
-def _bins(uv: Array, radius: Array) -> NDArray[np.float64]:
+def _bins(uv: Array, radius: Array) -> Array:
     """Return the position of each bin's list of lamps, and the lists, each after its length."""
     places, lists = np.full((BIN_COUNT, BIN_COUNT), BIN_COUNT**2), [0]
     for (row, column), listed in touched_bins(uv, radius, BIN_COUNT).items():

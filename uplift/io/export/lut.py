@@ -27,12 +27,12 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import decode, encode
-from uplift.common.arrays import Array, StrPath, Values
+from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError
 from uplift.common.files import atomic_write, write_text
 from uplift.cube import CubeData
 from uplift.io.export.program import identifier, literal, read_source
-from uplift.io.export.table import Floats, model_constants
+from uplift.io.export.table import model_constants
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
 from uplift.models import Moments, reflectance

@@ -3,7 +3,6 @@
 In ``source/``, ``UP_READS`` and ``UP_TABLE`` are the parameter and the argument by which CUDA passes the table.
 """
 
-import os
 import re
 import warnings
 import zlib
@@ -15,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from uplift.common.arrays import StrPath
 from uplift.common.errors import OptionError, UpliftWarning, unknown_name
 from uplift.common.files import atomic_write, check_output, write_text
 from uplift.common.version import VERSION
@@ -60,7 +60,7 @@ LANGUAGES = {
 
 def write_program(
     data: CubeData,
-    path: str | os.PathLike[str],
+    path: StrPath,
     *,
     style: str = "c",
     mode: str = "spectra",

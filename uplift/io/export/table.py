@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Floats, Values
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes, weighted_sum
@@ -25,8 +24,6 @@ COLUMNS = 2048
 MODES = ("spectra", "moments")
 NODES, SAMPLES = 1 << 15, 1 << 10
 """Nodes and colours of which the largest change by rounding is stated."""
-
-Floats = NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +60,7 @@ def make_table(data: CubeData, mode: str) -> Table:
     rows = np.zeros((size + len(data.atlas.names), stride), dtype=np.float32)
     rows[:, : model.count] = np.concatenate(stored)
     rows[:size, model.count] = tags
-    sections: dict[str, NDArray[Any]] = {
+    sections: dict[str, Values] = {
         "ENTRIES": data.atlas.spectra.multipliers,
         "NODES": data.lattice.nodes.astype(np.float32),
         "BINS": _bins(data.lattice.nodes.astype(np.float32)),
@@ -118,7 +115,7 @@ def _rounding(data: CubeData, rounded: Array, exact: Array) -> Array:
     return found - evaluate(data.model, exact, data.sensor.wavelengths)
 
 
-def concatenate(sections: Mapping[str, NDArray[Any]]) -> tuple[Floats, dict[str, int]]:
+def concatenate(sections: Mapping[str, Values]) -> tuple[Floats, dict[str, int]]:
     """Return sections one after the other, filled up with zeros to whole texels, and the index where each begins."""
     ends = np.cumsum([section.size for section in sections.values()]).tolist()
     parts = [section.ravel() for section in sections.values()]
@@ -154,7 +151,7 @@ def _lists(data: CubeData, mode: str) -> tuple[Floats, Floats]:
     return np.array(lists, dtype=np.float32), tags
 
 
-def _moving(data: CubeData) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
+def _moving(data: CubeData) -> tuple[dict[str, Values], dict[str, Any]]:
     """Return sections and constants by which answers are moved to their colours (`uplift.lookup.refine`).
 
     ``FACETS`` are the normals of the object-colour solid, and half its width along each, around a grey of 1/2.

@@ -10,21 +10,11 @@ import numpy as np
 
 from uplift.colorimetry.gamut import METHODS, map_to_gamut
 from uplift.colorimetry.srgb import decode
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Values
 from uplift.common.errors import ColourError, CubeFileError, OptionError, UpliftError, UpliftWarning, needs_extra
-from uplift.io.mitsuba.texels import (
-    THREADS,
-    Placement,
-    Texels,
-    light_texels,
-    prepare_texels,
-    read_colours,
-    read_texels,
-    uplift_texels,
-)
+from uplift.io.mitsuba import texels
 from uplift.io.texture.colours import Counts
 from uplift.io.texture.exr_file import is_exr
-from uplift.io.texture.image import Values
 from uplift.io.texture.lights import prepare_lights
 from uplift.lights.lookup import EmissionTable, load_emission
 from uplift.lookup import Cube, load
@@ -84,12 +74,13 @@ def _make(props: Any) -> Any:
             return _constant(_table(props).spectrum(rgb, at))
         cube, method = _cube(props), str(props.get("out_of_gamut", "error"))
         if cube.data.outside_boxes.find(rgb[None]).rows.size:
-            (_, multipliers), _ = prepare_texels(cube, method, of_entries=True).convert(rgb[None].astype(np.float32))
+            uplifter = texels.prepare_texels(cube, method, of_entries=True)
+            (_, multipliers), _ = uplifter.convert(rgb[None].astype(np.float32))
             return _constant(evaluate(cube.data.atlas.spectra.model, multipliers.astype(float), at)[0])
         return _constant(cube.reflectance(map_to_gamut(rgb, cube.data.sensor, method).rgb, at))
-    texels, placement = _texels(props, is_light=is_light), Placement.read(props)
+    spectra, placement = _texels(props, is_light=is_light), texels.Placement.read(props)
     _warn_in_scalar_variants("texture")
-    return make_texture(props, texels, placement)
+    return make_texture(props, spectra, placement)
 
 
 def _make_environment(props: Any) -> Any:
@@ -111,19 +102,18 @@ def _warn_in_scalar_variants(name: str) -> None:
 def _source(props: Any, names: tuple[str, ...]) -> str:
     sources = [name for name in names if name in props]
     if len(sources) != 1:
-        raise OptionError(
-            f"an uplift texture must have one of {', '.join(names)}, got {len(sources)}", hint="pass one of them"
-        )
+        problem = f"an uplift texture must have one of {', '.join(names)}, got {len(sources)}"
+        raise OptionError(problem, hint="pass one of them")
     return sources[0]
 
 
-def _texels(props: Any, *, is_light: bool) -> Texels:
+def _texels(props: Any, *, is_light: bool) -> texels.Texels:
     """Read the spectra of a spectral texture, or uplift an image; colours outside [0, 1] are mapped, with a warning."""
     import mitsuba
 
     path = _resolve(props["filename"]) if "filename" in props else None
-    if path is not None and (texels := read_texels(path)) is not None:
-        return texels
+    if path is not None and (spectra := texels.read_texels(path)) is not None:
+        return spectra
     rgb: Values
     found: tuple[UpliftWarning, ...] = ()
     counts, method = Counts(), "clip"
@@ -132,21 +122,21 @@ def _texels(props: Any, *, is_light: bool) -> Texels:
         if path is None:
             rgb = _linear(decode, props["bitmap"])
         else:
-            rgb, counts, found = read_colours(path, prepare_lights(table, threads=THREADS))
-        texels = light_texels(table, rgb.astype(float))
+            rgb, counts, found = texels.read_colours(path, prepare_lights(table, threads=texels.THREADS))
+        spectra = texels.light_texels(table, rgb.astype(float))
     else:
         cube, method = _cube(props), str(props.get("out_of_gamut", method))
-        uplifter = prepare_texels(cube, method)
+        uplifter = texels.prepare_texels(cube, method)
         if path is not None and path.is_file() and is_exr(path):
-            rgb, counts, found = read_colours(path, uplifter)
+            rgb, counts, found = texels.read_colours(path, uplifter)
         else:
             bitmap = props["bitmap"] if path is None else mitsuba.Bitmap(str(path))
             rgb, counts = uplifter.mapped(_linear(lambda codes: cube.decode(255 * codes), bitmap))
-        texels, converted = uplift_texels(uplifter, rgb)
+        spectra, converted = texels.uplift_texels(uplifter, rgb)
         counts += converted
     for warning in (*found, *counts.warnings(method, path)):
         warnings.warn(warning, stacklevel=2)
-    return texels
+    return spectra
 
 
 def _table(props: Any) -> EmissionTable:

@@ -9,13 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Floats, Values
 from uplift.common.errors import TextureError, UpliftError, UpliftWarning, unknown_name
 from uplift.io.texture import exr_file
-from uplift.io.texture.colours import Counts, Floats, coloured_parts, space_warnings
-from uplift.io.texture.image import Image, Values, open_image
+from uplift.io.texture.colours import Counts, coloured_parts, space_warnings
+from uplift.io.texture.image import Image, open_image
 from uplift.io.texture.uplifter import Converter, Multipliers, Uplifter, prepare
 from uplift.lights.lookup import EmissionTable
 from uplift.lookup import Cube
@@ -58,7 +57,7 @@ class Texels:
     """
 
     model: Model | Samples
-    numbers: NDArray[np.float32]
+    numbers: Floats
     mean: float
 
     def describe(self, wrap: str) -> str:
@@ -87,7 +86,7 @@ def uplift_texels(uplifter: Uplifter, rgb: Floats) -> tuple[Texels, Counts]:
     return model_texels(uplifter.model, multipliers), counts
 
 
-def model_texels(model: Model, multipliers: NDArray[Any]) -> Texels:
+def model_texels(model: Model, multipliers: Values) -> Texels:
     """Return texels of multipliers (h, w, C)."""
     means = blockwise(lambda rows: evaluate(model, rows, MEAN_WAVELENGTHS).mean(axis=1, keepdims=True), multipliers, 1)
     return Texels(model, multipliers, float(means.mean()))
@@ -119,7 +118,7 @@ class Placement:
         chosen = _choice(props, "filter_type", FILTERS), _choice(props, "wrap_mode", tuple(WRAPS))
         return Placement(*chosen, matrix[np.ix_(axes, axes)])
 
-    def pad(self, numbers: NDArray[np.float32]) -> NDArray[np.float32]:
+    def pad(self, numbers: Floats) -> Floats:
         """Return numbers (h, w, C) with `PADDING` texels around them, so that no lookup needs to wrap."""
         return np.pad(numbers, ((PADDING, PADDING), (PADDING, PADDING), (0, 0)), WRAPS[self.wrap])  # type: ignore[call-overload]
 

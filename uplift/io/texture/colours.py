@@ -1,23 +1,19 @@
 """Colours of an image: their channels, division by alpha, conversion to linear RGB in [0, 1] with counts of changes."""
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uplift.colorimetry.gamut import SRGB, map_to_gamut
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
 from uplift.colorimetry.srgb import decode
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError, UpliftWarning, unknown_name
-from uplift.io.texture.image import Image, Part, Values
+from uplift.io.texture.image import Image, Part
 from uplift.lattice.entry_boxes import NO_ROWS, OutsideBoxes
-
-Floats = NDArray[np.float32]
 
 ENCODINGS = ("auto", "linear", "encoded")
 """How the numbers of an image are interpreted; ``auto`` takes integers as encoded, floats as linear."""
@@ -60,7 +56,7 @@ class ColourChannels:
             return np.rint(np.minimum(divided, 1) * top).astype(values.dtype)
         return without_rounding(divided)
 
-    def opacity(self, values: Values) -> NDArray[np.float32] | None:
+    def opacity(self, values: Values) -> Floats | None:
         """Return the factor (…, 1) in [0, 1] of converted colours, 0 for NaN; None if they were not divided."""
         if self.alpha is None:
             return None
@@ -164,7 +160,7 @@ class Counts:
         sums = {each.name: getattr(self, each.name) + getattr(other, each.name) for each in fields(self)}
         return Counts(**sums | {"max_change": max(self.max_change, other.max_change)})
 
-    def warnings(self, method: str = "clip", path: str | os.PathLike[str] | None = None) -> tuple[UpliftWarning, ...]:
+    def warnings(self, method: str = "clip", path: StrPath | None = None) -> tuple[UpliftWarning, ...]:
         """Return a warning for every count of changed pixels above 0.
 
         Parameters

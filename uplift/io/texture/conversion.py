@@ -1,6 +1,5 @@
 """Conversion of one image, a band of rows at a time, so that memory does not grow with its height."""
 
-import os
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -8,11 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
+from uplift.common.arrays import StrPath, Values
 from uplift.common.errors import TextureError, UpliftWarning
 from uplift.common.files import check_output
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.texture.colours import ColourChannels, Counts, colour_channels_by_part, source_space, space_warnings
-from uplift.io.texture.image import Image, Part, Values, open_image
+from uplift.io.texture.image import Image, Part, open_image
 from uplift.io.texture.uplifter import Converter, ConvertRows, ReadColours
 from uplift.io.texture.writer import OutputPart, Writer, open_writer
 
@@ -45,8 +45,8 @@ class Conversion:
 
 def convert(
     converter: Converter,
-    source: str | os.PathLike[str],
-    target: str | os.PathLike[str],
+    source: StrPath,
+    target: StrPath,
     *,
     force: bool = False,
     progress: ProgressCallback = ignore_progress,

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from uplift.common.arrays import StrPath, Values
 from uplift.common.errors import ColourError, TextureError, UpliftError
 from uplift.common.files import check_regular
 from uplift.common.machine import check_memory
@@ -47,8 +47,6 @@ MAX_METADATA, MAX_METADATA_LENGTH = 100, 10_000
 """Numbers of attributes, and of their characters or numbers, that textures keep."""
 FORMAT_HINT = "use an EXR, HDR, PNG, JPEG or TIFF image"
 MEMORY_HINT = "write the image with smaller tiles or strips, or without interlacing"
-
-Values = NDArray[Any]
 
 
 @dataclass(frozen=True)
@@ -164,7 +162,7 @@ class Image:
 
 
 @contextlib.contextmanager
-def open_image(path: str | os.PathLike[str]) -> Iterator[Image]:
+def open_image(path: StrPath) -> Iterator[Image]:
     """Open an image file. A `TextureError` or `ColourError` in the block without a path gets this one.
 
     Raises `TextureError` if the file is missing, damaged, of another format, has several values per pixel, too many

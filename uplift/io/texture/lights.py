@@ -9,27 +9,11 @@ from numpy.typing import ArrayLike
 from uplift.colorimetry.gamut import conversion
 from uplift.colorimetry.observer import sensor
 from uplift.colorimetry.spaces import find_space
-from uplift.common.arrays import Array
+from uplift.common.arrays import Array, Floats, Values
 from uplift.common.errors import OptionError
 from uplift.io import exr
-from uplift.io.texture.colours import (
-    ColourChannels,
-    Counts,
-    Floats,
-    check_encoding,
-    linear_reader,
-    reads_codes,
-    source_space,
-)
-from uplift.io.texture.image import Part, Values
-from uplift.io.texture.uplifter import (
-    SPECTRAL_LAYOUT,
-    Converted,
-    Converter,
-    ReadColours,
-    resolve_depth,
-    spectral_channels,
-)
+from uplift.io.texture import colours, uplifter
+from uplift.io.texture.image import Part
 from uplift.lights.lookup import MAX_VALUE, EmissionTable
 from uplift.lights.table import emission_digest
 from uplift.lookup.blocks import as_wavelengths
@@ -43,45 +27,45 @@ UNITS = "W.m^-2.sr^-1"
 
 
 @dataclass(frozen=True, eq=False)
-class LightUplifter(Converter):
+class LightUplifter(uplifter.Converter):
     """A converter of the colours of lights to power at ``wavelengths`` (N,) nm, made by `prepare_lights`."""
 
     table: EmissionTable
     wavelengths: Array
     threads: int
 
-    def colour_channels(self, found: ColourChannels) -> ColourChannels:
+    def colour_channels(self, found: colours.ColourChannels) -> colours.ColourChannels:
         # Colours stay multiplied by alpha: a spectrum scales with its light, and light needs no opacity.
         return replace(found, alpha=None)
 
-    def decoder(self, part: Part) -> ReadColours:
-        source = source_space(part, self.sensor, self.space)
-        if self.encoding == "encoded" and not reads_codes(part, source):
-            raise OptionError(  # a transfer function ends at 1, lights do not
-                "floats of lights must be linear", hint="leave out encoding='encoded', or name an encoded space"
-            )
+    def decoder(self, part: Part) -> uplifter.ReadColours:
+        source = colours.source_space(part, self.sensor, self.space)
+        if self.encoding == "encoded" and not colours.reads_codes(part, source):
+            # A transfer function ends at 1, lights do not.
+            hint = "leave out encoding='encoded', or name an encoded space"
+            raise OptionError("floats of lights must be linear", hint=hint)
         matrix = None if source is None else conversion(source.gamut, self.table)
-        to_linear = linear_reader(self.sensor, part, self.encoding, source)
+        to_linear = colours.linear_reader(self.sensor, part, self.encoding, source)
 
-        def read(colours: Values) -> tuple[Floats, Counts]:
-            rgb = np.asarray(to_linear(colours), dtype=float)
+        def read(numbers: Values) -> tuple[Floats, colours.Counts]:
+            rgb = np.asarray(to_linear(numbers), dtype=float)
             usable = np.abs(rgb) <= MAX_VALUE  # NaN is not
             rgb = np.where(usable, rgb, np.where(rgb > 0, BRIGHTEST, 0.0))
             if matrix is not None:
                 rgb = rgb @ matrix.T
             changed = int((~usable.all(axis=-1)).sum())
-            return rgb.astype(np.float32, copy=False), Counts(colours.size // 3, not_finite=changed)
+            return rgb.astype(np.float32, copy=False), colours.Counts(numbers.size // 3, not_finite=changed)
 
         return read
 
-    def convert(self, rgb: Floats) -> Converted:
+    def convert(self, rgb: Floats) -> uplifter.Converted:
         lights, limit = rgb.astype(float), np.finfo(np.float16 if self.depth == "half" else np.float32).max
         wrong = ~self.table.contains(lights)
         lights[wrong] = self.table.rgb(self.table.spectrum(lights[wrong], outside="clip"))
         power = self.table.spectrum(lights, self.wavelengths, outside="clip", dtype=np.float32, threads=self.threads)
         values = lights.astype(np.float32), power
         bright = (np.abs(values[0]) > limit).any(axis=-1) | (power > limit).any(axis=-1)
-        counts = Counts(not_lights=int(wrong.sum()), too_bright=int(bright.sum()))
+        counts = colours.Counts(not_lights=int(wrong.sum()), too_bright=int(bright.sum()))
         return (np.clip(values[0], -limit, limit), np.clip(values[1], 0, limit)), counts
 
 
@@ -130,10 +114,10 @@ def prepare_lights(
     >>> texture.prepare_lights(uplift.load_emission(), [450, 550]).channels
     ('S0.450,000000nm', 'S0.550,000000nm')
     """
-    depth = resolve_depth(depth, DEPTHS, "lights")
-    check_encoding(encoding)
+    depth = uplifter.resolve_depth(depth, DEPTHS, "lights")
+    colours.check_encoding(encoding)
     at = as_wavelengths(wavelengths, table.wavelengths)
-    channels = spectral_channels("S0", at)
+    channels = uplifter.spectral_channels("S0", at)
     settings = {"as": "emission", "wavelengths": at.tolist(), "depth": depth, "encoding": encoding}
     settings |= {} if space is None else {"space": space}
     colour_space = sensor(table.space)
@@ -143,7 +127,7 @@ def prepare_lights(
         "uplift.texture": json.dumps(settings, allow_nan=False),
         "uplift.space": table.space,
         "uplift.observer": table.observer,
-        **SPECTRAL_LAYOUT,
+        **uplifter.SPECTRAL_LAYOUT,
         "emissiveUnits": UNITS,
     }
     chosen = None if space is None else find_space(space)

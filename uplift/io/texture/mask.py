@@ -15,12 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from uplift.common.arrays import Mask, StrPath
+from uplift.common.arrays import Floats, Mask, StrPath, Values
 from uplift.common.errors import ColourError, OptionError, TextureError
 from uplift.common.files import file_digest
 from uplift.cube import common_sensor
-from uplift.io.texture.colours import Counts, Floats, colour_channels, coloured_parts
-from uplift.io.texture.image import Image, Part, Values, open_image
+from uplift.io.texture.colours import Counts, colour_channels, coloured_parts
+from uplift.io.texture.image import Image, Part, open_image
 from uplift.io.texture.uplifter import Converted, Converter, ConvertRows, Uplifter
 from uplift.lattice.entry_boxes import OutsideBoxes
 from uplift.lookup.refine import refine_to_rgb

@@ -6,10 +6,10 @@ import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
-from uplift.common.arrays import StrPath
+from uplift.common.arrays import Floats, StrPath, Values
 from uplift.common.errors import UpliftWarning
-from uplift.io.texture.colours import Counts, Floats, check_encoding, coloured_parts, make_decoder, space_warnings
-from uplift.io.texture.image import Part, Values, open_image
+from uplift.io.texture.colours import Counts, check_encoding, coloured_parts, make_decoder, space_warnings
+from uplift.io.texture.image import Part, open_image
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,9 @@ import numpy as np
 
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.spaces import find_space
+from uplift.common.arrays import Floats
 from uplift.io import exr
-from uplift.io.texture.colours import Counts, Floats, source_space
+from uplift.io.texture.colours import Counts, source_space
 from uplift.io.texture.image import Image, Part
 from uplift.io.texture.uplifter import Converted, Converter, ConvertRows, Sampler, channel_name
 from uplift.lookup import Cube

@@ -16,11 +16,11 @@ from uplift.colorimetry.gamut import check_method, map_to_gamut
 from uplift.colorimetry.observer import light
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace, find_space
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array, Floats, Indices, Values
 from uplift.common.errors import OptionError
 from uplift.io import exr
-from uplift.io.texture.colours import ColourChannels, Counts, Decoder, Floats, check_encoding, make_decoder
-from uplift.io.texture.image import Image, Part, Values
+from uplift.io.texture.colours import ColourChannels, Counts, Decoder, check_encoding, make_decoder
+from uplift.io.texture.image import Image, Part
 from uplift.lattice.entry_boxes import BoxHits, OutsideBoxes
 from uplift.lookup import Cube
 from uplift.lookup.blocks import as_wavelengths, blockwise

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from uplift.common.arrays import StrPath, Values
 from uplift.common.errors import OutputError, TextureError
 from uplift.common.files import atomic_write
 from uplift.io.texture import exr_file
-from uplift.io.texture.image import Attribute, Values, Window, open_image, read_error, utf8_name
+from uplift.io.texture.image import Attribute, Window, open_image, read_error, utf8_name
 
 ROWS_PER_CHUNK = 16
 """Rows that OpenEXR compresses together as ZIP."""
@@ -157,7 +158,7 @@ def _compression_threads(chunks: int) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def open_writer(path: str | os.PathLike[str], parts: Sequence[OutputPart], *, force: bool = False) -> Iterator[Writer]:
+def open_writer(path: StrPath, parts: Sequence[OutputPart], *, force: bool = False) -> Iterator[Writer]:
     """Open a writer. The file appears under its name once all rows are written. Raises `OutputError`."""
     with atomic_write(path, force=force) as temporary:
         writer = Writer(temporary, parts)
