@@ -167,14 +167,8 @@ def _moving(data: CubeData) -> tuple[dict[str, Values], dict[str, Any]]:
     }
     first, _, step = sensor.range
     how = {"SAMPLES": len(sensor.wavelengths), "FIRST": first, "STEP": step, "FACET_COUNT": half}
-    return sections, how | {
-        "MARGIN": data.threshold / 2,
-        "LEAST": LEAST,
-        "SLOPE": SLOPE,
-        "MOST": MOST,
-        "STEEP": STEEP,
-        "REACH": REACH,
-    }
+    moves = {"MARGIN": data.threshold / 2, "LEAST": LEAST, "SLOPE": SLOPE, "MOST": MOST, "STEEP": STEEP, "REACH": REACH}
+    return sections, how | moves
 
 
 def _boxes(boxes: EntryBoxes) -> Floats:

@@ -46,15 +46,11 @@ def _power(gamma: float) -> Curve:
     return lambda codes: np.maximum(codes, 0) ** gamma
 
 
-def _linear(codes: Array) -> Array:
-    return codes
-
-
 H273_TRANSFERS: dict[int, Curve] = {
     **dict.fromkeys((1, 6, 14, 15), _decode_bt709),
     4: _power(2.2),
     5: _power(2.8),
-    8: _linear,
+    8: lambda codes: codes,
     13: decode,
     17: lambda codes: _power(2.6)(codes) * 52.37 / 48,
 }

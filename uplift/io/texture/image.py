@@ -108,23 +108,15 @@ class Image:
     def bands(self, part: Part) -> Iterator[tuple[int, Values]]:
         """Yield row numbers and rows (k, width, channels): integers if all channels are, else floats."""
         window = part.window
-        self.handle.seek_subimage(part.number, 0)
         row = window.width * len(part.channels) * 4
         step = part.rows_per_block * max(1, MAX_BAND_BYTES // (row * part.rows_per_block))
-        for first in range(window.y, window.y + window.height, step):
-            yield first, self._band(part, first, min(first + step, window.y + window.height))
+        for first in range(0, window.height, step):
+            yield window.y + first, self.rows(part, first, min(step, window.height - first))
 
     def rows(self, part: Part, first: int, count: int) -> Values:
         """Read rows (count, width, channels) from row ``first`` of the window, as `bands` does."""
         self.handle.seek_subimage(part.number, 0)
-        top = part.window.y + first
-        return self._band(part, top, top + count)
-
-    def header_text(self, name: str) -> str:
-        """Return a text attribute of the first part, empty if it is missing."""
-        return str(self.handle.spec(0).get_string_attribute(name))
-
-    def _band(self, part: Part, first: int, end: int) -> Values:
+        first, end = part.window.y + first, part.window.y + first + count
         if part.max_code:
             return self._read(part, first, end, part.types[0])
         integers = [index for index, name in enumerate(part.types) if name == "uint"]
@@ -139,6 +131,10 @@ class Image:
                 )
             values[..., index] = numbers / UINT32_SCALE
         return values
+
+    def header_text(self, name: str) -> str:
+        """Return a text attribute of the first part, empty if it is missing."""
+        return str(self.handle.spec(0).get_string_attribute(name))
 
     def _read(self, part: Part, first: int, end: int, dtype: str, channel: int | None = None) -> Values:
         import OpenImageIO

@@ -82,17 +82,15 @@ class Writer:
         self._written = 0
         specs = tuple(self._specs) if len(self._specs) > 1 else self._specs[0]
         with _compression_threads(max(part.rows_per_band for part in parts) // ROWS_PER_CHUNK):
-            handle = OpenImageIO.ImageOutput.create("openexr")  # takes the number of threads
-            if handle is None:
+            self._handle: Any = OpenImageIO.ImageOutput.create("openexr")  # takes the number of threads
+            if self._handle is None:
                 raise OSError(read_error(OpenImageIO))
-            self._handle: Any = handle
             self._check(self._handle.open(utf8_name(path, OutputError), specs))
 
     def start_part(self, number: int) -> None:
         """Start a part."""
         if number:
-            spec = self._specs[number]
-            self._check(self._handle.open(os.fspath(self._path), spec, "AppendSubimage"))
+            self._check(self._handle.open(os.fspath(self._path), self._specs[number], "AppendSubimage"))
 
     def write_rows(self, first: int, values: Values) -> None:
         """Write rows (k, width, channels) from row ``first``. Raises `OSError`, and `OutputError` as `_check_space`."""
@@ -109,10 +107,9 @@ class Writer:
 
     def abort(self) -> None:
         """Close an incomplete file and ignore errors."""
-        if self._handle is None:
-            return
-        self._handle.close()
-        read_error(self._handle)  # otherwise it is printed when the process ends
+        if self._handle is not None:
+            self._handle.close()
+            read_error(self._handle)  # otherwise it is printed when the process ends
 
     def _check_end(self) -> None:
         """Raise `OutputError` if the last rows cannot be read: a disk that fills up with them gives no other sign."""
