@@ -21,7 +21,7 @@ from benchmarks.checker import render as render_chart
 from uplift.colorimetry import delta_e_2000, lab
 from uplift.colorimetry.observer import light, sensor
 from uplift.common.arrays import Array
-from uplift.common.processes import call_in_child
+from uplift.io.processes import call_in_child
 
 LIGHTS = ("D65", "A", "FL11")
 REFERENCE, MITSUBA, PLAIN, ATLAS, ATLAS_17 = (

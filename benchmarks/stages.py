@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from benchmarks import MACBETH, record
-from uplift.common.processes import call_in_child
+from uplift.io.processes import call_in_child
 from uplift.lab.timing import timing_stats
 from uplift.samples import sample_path
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from benchmarks.browser import browser
-from uplift.common.processes import call_in_child
+from uplift.io.processes import call_in_child
 
 PATIENCE = 60.0
 """Seconds that a trial may take."""

@@ -1,1 +1,1 @@
-"""Formats of other tools: textures, EXR slices, exports for other programs, Mitsuba."""
+"""Formats of other tools: textures, EXR slices, exports for other programs, Mitsuba; child processes."""

@@ -12,7 +12,7 @@ import pytest
 
 from benchmarks.browser import browser
 from tests.parts import CC, CHROMIUM, CXX, GLSLANG, NVCC, VULKAN, need, vulkan_device
-from uplift.common.processes import call_in_child
+from uplift.io.processes import call_in_child
 
 HOST = r"""
 #include <stdio.h>

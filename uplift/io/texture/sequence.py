@@ -11,8 +11,8 @@ from typing import Any
 
 from uplift.common.errors import OptionError, TextureError, UpliftError, needs_extra
 from uplift.common.files import check_outputs, remove_stale
-from uplift.common.processes import tied_processes
 from uplift.common.progress import ProgressCallback, ignore_progress
+from uplift.io.processes import tied_processes
 from uplift.io.texture import exr_file
 from uplift.io.texture.conversion import Conversion, convert
 from uplift.io.texture.image import open_image

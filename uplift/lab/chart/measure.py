@@ -17,8 +17,8 @@ from uplift.colorimetry.lights import CHART_LIGHTS
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Values
 from uplift.common.errors import OptionError
-from uplift.common.processes import ChildError, call_in_child
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.io.processes import ChildError, call_in_child
 from uplift.lab.chart import cubes, mitsuba3, published
 from uplift.lab.chart.method import (
     Description,
