@@ -262,7 +262,7 @@ class Atlas:
 
 
 def merge(parts: Iterable[Atlas]) -> Atlas:
-    """Merge atlases, whose entries must have different names, into one, in order.
+    """Merge atlases into one, in order.
 
     Parameters
     ----------
@@ -272,6 +272,11 @@ def merge(parts: Iterable[Atlas]) -> Atlas:
     Returns
     -------
     Atlas
+
+    Raises
+    ------
+    AtlasError
+        Two entries share a name.
     """
     parts = tuple(parts)
     return Atlas(

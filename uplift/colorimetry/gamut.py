@@ -104,7 +104,7 @@ class Primaries:
 
     @classmethod
     def of(cls, numbers: Sequence[float]) -> "Primaries":
-        """Create primaries from eight numbers, in the order of OpenEXR headers; `OptionError` for others.
+        """Create primaries from eight numbers, in the order of OpenEXR headers.
 
         Parameters
         ----------
@@ -114,6 +114,11 @@ class Primaries:
         Returns
         -------
         Primaries
+
+        Raises
+        ------
+        OptionError
+            There are not eight numbers, or they do not define a gamut.
         """
         if len(numbers) != 8:
             problem = f"primaries and white are eight numbers, got {len(numbers)}"
@@ -237,12 +242,22 @@ class GamutMapped:
 
     @property
     def count(self) -> int:
-        """Number of colours that were moved."""
+        """Number of colours that were moved.
+
+        Returns
+        -------
+        int
+        """
         return int(self.outside.sum())
 
     @property
     def max_change(self) -> float:
-        """Largest absolute change of a component."""
+        """Largest absolute change of a component.
+
+        Returns
+        -------
+        float
+        """
         return float(np.abs(self.requested[self.outside] - self.rgb[self.outside]).max(initial=0))
 
 

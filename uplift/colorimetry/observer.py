@@ -54,6 +54,10 @@ def sensor(
     wavelengths : tuple of float, default (380, 780, 5)
         First and last wavelength and step in nm, as `Sensor.range`.
 
+    Returns
+    -------
+    Sensor
+
     Raises
     ------
     UnknownNameError
@@ -156,10 +160,21 @@ def light(
 
     Parameters
     ----------
-    illuminant, observer : str
-        Illuminant and colour-matching functions.
+    illuminant : str
+        Illuminant.
+    observer : str
+        Colour-matching functions.
     start, end, step : float
         Range and step in nm, as `Sensor.range`.
+
+    Returns
+    -------
+    Light
+
+    Raises
+    ------
+    UnknownNameError
+        A name is unknown.
     """
     power = samples("illuminant", illuminant, start, end, step)
     weights = samples("observer", observer, start, end, step) * power[:, None]
@@ -181,7 +196,9 @@ def illuminant_spd(illuminant: str, start: float = START, end: float = END, step
 def smallest_space(
     reflectances: ArrayLike, illuminant: str = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
 ) -> str | None:
-    """Find the smallest of the common RGB spaces that holds all colours of reflectances (…, N).
+    """Find the smallest of the common RGB spaces that holds all colours of reflectances.
+
+    Shapes: ``reflectances`` (…, N).
 
     >>> import numpy as np
     >>> smallest_space(np.full(81, 0.5))

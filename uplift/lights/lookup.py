@@ -33,8 +33,7 @@ class EmissionTable:
     """A table of spectra of lights.
 
     Powers are relative to the equal-energy light of luminance 1, whose power is 1 at every wavelength: XYZ of a power s
-    is Σ s cmfs / Σ ȳ, and white, linear RGB (1, 1, 1), has luminance 1. RGB and XYZ that are not finite are a
-    `ColourError`. So are, for spectra and their expected error, colours that no light has (``colour-not-a-light``).
+    is Σ s cmfs / Σ ȳ, and white, linear RGB (1, 1, 1), has luminance 1.
 
     Parameters
     ----------
@@ -115,6 +114,8 @@ class EmissionTable:
 
         Raises
         ------
+        ColourError
+            Values that are not finite, or a colour that no light has (``colour-not-a-light``).
         OptionError
             Invalid wavelengths, treatment, type or number of threads.
         """
@@ -135,13 +136,26 @@ class EmissionTable:
         ----------
         xyz : array_like, shape (..., 3)
             XYZ; white of the RGB space has Y = 1.
-        wavelengths, outside, dtype, threads
-            As in `spectrum`.
+        wavelengths : array_like, shape (N,), optional
+            Wavelengths in nm, by default those of the table.
+        outside : {"error", "clip"}, default "error"
+            Treatment of colours that no light has.
+        dtype : {float64, float32}, default float64
+            Type of the result.
+        threads : int, default 1
+            Number of threads.
 
         Returns
         -------
         ndarray, shape (..., N)
             Power, not negative.
+
+        Raises
+        ------
+        ColourError
+            Values that are not finite, or a colour that no light has (``colour-not-a-light``).
+        OptionError
+            Invalid wavelengths, treatment, type or number of threads.
         """
         return self._query(_checked, xyz, wavelengths, outside, dtype, threads)
 
@@ -186,6 +200,11 @@ class EmissionTable:
         -------
         ndarray, shape (..., 3)
             XYZ; white has Y = 1.
+
+        Raises
+        ------
+        ColourError
+            Values that are not finite.
         """
         return blockwise(self._rows_to_xyz, as_rgb(rgb), 3)
 
@@ -230,6 +249,11 @@ class EmissionTable:
         Returns
         -------
         ndarray of bool, shape (...)
+
+        Raises
+        ------
+        ColourError
+            Values that are not finite.
         """
         xyz = self.xyz(rgb)
         flat = xyz.reshape(-1, 3)
@@ -249,6 +273,11 @@ class EmissionTable:
         -------
         ndarray, shape (...)
             Mean ΔE00 of the ColorChecker.
+
+        Raises
+        ------
+        ColourError
+            Values that are not finite, or a colour that no light has (``colour-not-a-light``).
         """
 
         def errors(xyz: Array) -> Array:
