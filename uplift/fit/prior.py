@@ -27,7 +27,8 @@ DETERMINED = Kernel(length=6.0, noise=1e-3)
 LOOK_VARIANCE = 0.01
 """Variance of the noise of a look relative to that of entries."""
 FRACTIONS = np.multiply.accumulate(np.full(16, 0.7))
-"""Of a deviation that leaves the space of valid coefficients or is `STEEP`, the largest of which neither holds."""
+"""Parts of a deviation that are tried where all of it leaves the space of valid coefficients or is `STEEP`. The largest
+that does neither counts."""
 STEEP = 100
 """Multipliers that a deviation must not exceed: beyond them a spectrum is nearly a box, which small changes of its
 coefficients reshape."""
@@ -103,7 +104,8 @@ class Prior:
         sums, nearest = kernel_sums(rgb_to_lab(self.sensor, rgb), self.errors.locations, columns, LENGTH, none)
         # Expected square v(x) Σ k e² / Σ k + f, and the learnt radius of 68 % in its root
         squares = self.errors.combine(sums[:, :used], nearest)[:, 0] + self.errors.floor
-        return np.asarray(self.errors.radii[0] * np.sqrt(squares))
+        standard, _ = self.errors.radii
+        return np.asarray(standard * np.sqrt(squares))
 
     def with_entries(self, entries: FittedEntries, looks: int) -> "Prior":
         """Krige entries and then looks, which are certain, with the same kernel; the standard errors stay."""
