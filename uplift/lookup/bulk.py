@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from uplift.colorimetry.sensor import Sensor, as_rgb
-from uplift.common.arrays import Array, Indices
+from uplift.common.arrays import Array, Floats, Indices
 from uplift.common.machine import require_memory_of_xla
 from uplift.lattice import EntryBoxes, Lattice
 from uplift.lookup.blocks import as_coefficient_count, as_colours, as_thread_count, as_wavelengths, blockwise
@@ -40,7 +40,6 @@ CHUNKS = (1 << 16, 1 << 12)
 """Rows per chunk: two shapes, so that little is compiled; the smaller one is for short inputs."""
 
 Places = NDArray[np.int32]
-Floats = NDArray[np.float32]
 
 
 class Grid(NamedTuple):
