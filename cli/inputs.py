@@ -112,7 +112,7 @@ def check_plot(path: str) -> str:
 
 
 def check_range(wavelengths: Array, own: Array) -> None:
-    """Check that wavelengths (N,) lie in the range of a cube's or table's; the library continues spectra."""
+    """Check that wavelengths (N,) lie in the range of a cube or a table; the library continues spectra."""
     first, last = own[[0, -1]]
     outside = [each for each in wavelengths if not first <= each <= last]
     if outside:

@@ -1,8 +1,8 @@
 """Stacked equations of a palette, M x ≈ y, where x holds free colours and spectra, and their solution.
 
 Colours are weighted by 1/√3 and smoothness by 1/(√rows ‖(−1, 2, −1)‖), so that weights of 1 are comparable.
-Differences are scaled as for samples 10 nm apart, and none extends beyond the ends, unlike in the paper (sections
-3.2–3.3, eq. 18–24).
+Bergner, Möller & Drew 2004, sections 3.2–3.3, eq. 18–24; but differences are scaled as for samples 10 nm apart, and
+none extends beyond the ends.
 """
 
 from collections.abc import Iterator
