@@ -2,7 +2,7 @@
 
 Smooth spectra: multipliers have no upper bound on slope, so that from them alone a dark red rises to a reflectance of 1
 outside the range of the colour-matching functions. So a colour x starts from a brighter one, x' = x / k with
-k = √max(x). It is solved from a grey by minimum-norm steps, and its spectrum is scaled by k (docs/materials.md).
+k = √max(x). It is solved from a grey by minimum-norm steps, and its spectrum is scaled by k.
 
 The learnt base adds the deviation that families of measured materials have from smooth spectra (docs/prior.md). It is
 kriged relative to the brightening, so that dark colours stay dark, at the nodes of the table.
@@ -37,13 +37,13 @@ GREY = 2 / 3
 TABLE = Lattice(np.linspace(0, 1, 17) ** 2)
 MIN_LEVEL, MAX_LEVEL = 1e-4, 0.98
 SAME_SENSOR = 1e-14
-"""Difference of elements of W, of instruction sets, up to which stored tables are those of a sensor."""
+"""Difference of elements of W up to which a stored table is that of a sensor: they differ between instruction sets."""
 NO_FREEDOM = 3
 """Number of coefficients that the colour alone determines."""
 SAME_COLOUR, SAME_SPECTRUM = 6.0, 0.03
 """ΔE*ab and rms within which a spectrum of a library is that of an atlas entry, which replaces it."""
 MAX_ENTRIES = 1000
-"""Entries from which relevances are learnt."""
+"""Entries from which relevances are learnt, at most."""
 BOUND = 0.1
 """Part of the distance of a smooth spectrum from 0 and 1 that always remains."""
 COLOUR_WEIGHT = 0.06
@@ -81,7 +81,7 @@ class Base:
 
 
 def smooth_table(problem: Problem, goal: Array) -> Base:
-    """Smooth spectra of the table: those in `FILE` if it has them for the model and sensor, or solved."""
+    """Smooth spectra of colours ``goal`` (17³, 3): those in `FILE`, if it has the model and sensor, or solved."""
     sensor = problem.sensor
     if problem.model == Moments():
         with (files(__package__) / FILE).open("rb") as file, np.load(file, allow_pickle=False) as stored:
@@ -114,7 +114,7 @@ def learn_base(
     Spectra out of gamut, and those of atlas entries, are not used. The base is that of smooth spectra without families,
     and for models whose spectra the colour alone determines.
     """
-    # Unrealisable nodes of the table are solved for the nearest realisable colours: their own multipliers would be
+    # Unrealisable nodes of the table are solved for realisable colours of less chroma: their own multipliers would be
     # arbitrary, and would spoil the interpolation between nodes.
     table = nodes_of(TABLE, problem.sensor)
     bright = table.goal(table.points)

@@ -18,7 +18,8 @@ TOLERANCE, MAX_ITERATIONS = 1e-12, 1000
 def solve_bounded(matrix: Array, values: Array, low: Array, high: Array) -> Array:
     """Minimise ‖M x − y‖ for a matrix (rows, n) and values (rows,) within bounds (n,) of x, some of them finite.
 
-    By an active-set method, BVLS of Stark & Parker 1995 in scipy's ``lsq_linear``.
+    By an active-set method, BVLS of Stark & Parker 1995 in scipy's ``lsq_linear``. `UpliftWarning`
+    (``design-not-converged``) if it stops early.
     """
     from scipy.optimize import lsq_linear
 

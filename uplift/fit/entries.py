@@ -1,7 +1,7 @@
 """Fit of atlas entries: the measured spectrum, its colours under several lights, and exactly its RGB.
 
 docs/mathematics.md, 6. `Marquardt`, a solver of optimistix that is stepped in numpy, minimises the objective: nothing
-needs to be compiled for a few entries, and those that have converged leave the batch (docs/speed.md).
+needs to be compiled for a few entries, and those that have converged leave the batch.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ from uplift.models.model import Model
 
 LIGHTS_WEIGHT, SMOOTHNESS = 0.03, 1e-3
 """Weights of a unit of CIE L*a*b* under a light, and of the multipliers but the constant one, in the metric M of
-docs/mathematics.md, 5, relative to the root-mean-square difference of the spectra (docs/materials.md).
+docs/mathematics.md, 5, relative to the root-mean-square difference of the spectra.
 
 Without smoothness the minimum of a dark entry jumps: of two spectra that meet its colours nearly equally well one has
 multipliers ten times as large, and noise decides between them.
@@ -212,14 +212,13 @@ class FittedEntries(NamedTuple):
 def fit_entries(problem: Problem, measured: Array, rgb: Array, **weights: float) -> FittedEntries:
     """Fit measured reflectances (E, N) by the spectrum model, and meet their linear RGB (E, 3) to the tolerance.
 
-    ``weights`` are those of `objective`, min ‖g − m‖² + Σ |w ΔL*a*b*|². The order of the entries does not change the
-    rounding of sums.
+    ``weights`` are the keyword arguments of `objective`. The order of the entries does not change the rounding of sums.
     """
     goal = objective(problem.model, problem.forward.basis, problem.lights, **weights)
     order = np.lexsort(rgb.T)
     measured, rgb = measured[order], rgb[order]
     near = minimise(goal, measured)
-    # The minimum has nearly the colour; of all spectra that have it exactly, the nearest to the minimum is taken.
+    # The minimum has nearly the colour; minimum-norm steps from there reach it.
     multipliers = solve_in_numpy(problem.forward, near, rgb, problem.tolerance, MAX_STEPS)
     spectra = np.asarray(problem.model.to_reflectance(multipliers @ problem.forward.basis.T))
     error = delta_e_spectra(problem.error_light or problem.sensor.light, spectra, measured)

@@ -108,7 +108,7 @@ class FamilyKriging:
 
 
 def krige_families(families: Sequence[Family], samples: Sequence[Points]) -> FamilyKriging:
-    """Fit the kriging of families to their deviations at L*a*b*, of any number, also 0."""
+    """Fit the kriging of families to their deviations at L*a*b*, of which each family may have any number, also 0."""
     number = np.repeat(np.arange(len(families)), [len(points.counts) for points in samples])
     locations, deviations, counts, _ = (np.concatenate(columns) for columns in zip(*samples, strict=True))
     spread = np.array([family.spread for family in families])

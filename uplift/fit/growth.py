@@ -1,12 +1,18 @@
-"""Growth: nodes are fitted in rounds, each from what earlier rounds found (docs/mathematics.md, 7; docs/accuracy.md).
+"""State of growth, the second attempt at failed nodes, and the improvement pass (docs/mathematics.md, 7).
 
-Rounds go from a coarse lattice to finer ones. The answer at a node is the spectrum of its colour that is nearest to its
-prior. The correction between prior and answer is smooth over the lattice: a node starts from its prior plus the
-correction interpolated from earlier rounds, and one step then does what two did. The answer does not depend on the
-start. Nodes that fail are tried again from the mean of their fitted neighbours. The improvement pass (Tódová 2020,
-"Constrained spectral uplifting", section 3.1.4) moves nodes over the threshold out of local minima.
+Nodes are fitted in rounds, in one of three orders (docs/accuracy.md):
 
-`uplift.fit.growth_thesis` grows outward from seeds instead, as Tódová 2020 does.
+- `uplift.fit.growth_outward`, the default: outward from the seeds, in shells.
+- `uplift.fit.growth_coarse`: from a coarse lattice to finer ones.
+- `uplift.fit.growth_thesis`: outward, each node from a fitted neighbour, as Tódová 2020 does.
+
+In the first two the answer at a node is the spectrum of its colour that is nearest to its prior. The correction between
+prior and answer is smooth over the lattice, so a node starts from its prior plus the correction expected from earlier
+rounds. Most nodes then need one step in place of two, and the answer does not depend on the start. Nodes that fail are
+tried again from the mean of their fitted neighbours (`retry`).
+
+After any of them the improvement pass (`improve`; Tódová 2020, "Constrained spectral uplifting", section 3.1.4) moves
+nodes over the threshold out of local minima.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,6 +34,7 @@ MAX_CORRECTION = 0.1
 """Largest correction, in units of the metric, that others start from: nearly box-shaped spectra have larger ones, which
 are not smooth."""
 NUDGE = 0.5
+"""Change of a multiplier in the improvement pass."""
 EXTREME = 100.0
 """Linear part of a nearly white (+) or nearly black (−) spectrum."""
 STEPS = ("more iterations", "from grey", "constant multiplier nudged", "all multipliers nudged", "from white or black")
@@ -51,7 +58,7 @@ class Growth:
 
     ``multipliers`` (n, C) are the best so far, ``distance`` (n,) their distance from the goal and ``rgb`` (n, 3) their
     linear RGB; 0, infinite and 0 at nodes that are not to be fitted. ``round`` (n,) is that in which the node was
-    fitted, −1 if it was not, and ``done`` counts those that were.
+    fitted, −1 if none did or the improvement pass did, and ``done`` counts the nodes that rounds fitted.
     """
 
     def __init__(self, problem: Problem, nodes: Nodes, progress: ProgressCallback) -> None:
@@ -75,7 +82,10 @@ class Growth:
         prior: Array | None = None,
         max_passes: int = MAX_PASSES,
     ) -> Solution:
-        """Solve nodes (k,) from multipliers (k, C) and keep what is better than before; ``number`` is their round."""
+        """Solve nodes (k,) from multipliers (k, C) and keep results that are nearer to the goal than before.
+
+        ``number`` is their round, or `NOT_FITTED` in the improvement pass.
+        """
         goal = self.nodes.goal(points)
         solution = self.problem.solve(goal, start, max_passes, prior)
         better = solution.distance < self.distance[points]

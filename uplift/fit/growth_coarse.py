@@ -9,7 +9,7 @@ from uplift.fit.problem import Nodes, Problem
 from uplift.lattice import weighted_sum
 
 MIN_CELLS = 4
-"""Cells along each axis of the coarsest lattice, at least."""
+"""Cells along each axis of the coarsest lattice, at least; all of them in smaller lattices."""
 ALL = 1 - 1e-9
 """Sum of the weights of known corners above which all corners are known."""
 

@@ -1,4 +1,7 @@
-"""Growth outward from the seeds, in shells: a node starts from its prior and the corrections on its way to a seed."""
+"""Growth outward from the seeds, in shells, the default order.
+
+A node starts from its prior plus the correction extrapolated from the two nodes before it on the way to a seed.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +18,7 @@ def grow_outward(
 ) -> Growth:
     """Fit nodes from the prior, in the order of their distance from the seeds (S,), or from the middle without any.
 
-    Seeds start from entries, not from the prior, and give no correction.
+    Seeds start from entries, or half-way between entry and prior, and give and take no correction.
     """
     growth, lattice = Growth(problem, nodes, progress), nodes.lattice
     middle = lattice.index(np.full((1, 3), lattice.dim // 2))
@@ -31,7 +34,7 @@ def grow_outward(
         for block in blocks(len(shell), BLOCK_POINTS):
             points = shell[block]
             prior = expected(points, nodes.goal(points))
-            # Where both are known, δ ≈ 2 δ₁ − δ₂ with the corrections one and two steps towards a seed, else δ₁.
+            # δ ≈ 2 δ₁ − δ₂ with the corrections one and two steps towards a seed, δ₁ where δ₂ is not known, or else 0.
             near, far = toward[points], toward[toward[points]]
             one = known[near] & (distance[near] < number)
             two = one & known[far] & (distance[far] < distance[near])

@@ -18,7 +18,10 @@ NUDGES = (0.5, -0.5)
 def grow_from_neighbours(
     problem: Problem, nodes: Nodes, expected: Expected, seeds: Indices, progress: ProgressCallback
 ) -> Growth:
-    """Fit nodes that can be reached from seeds (S,); without any, growth starts in the middle, from grey."""
+    """Fit nodes that can be reached from seeds (S,).
+
+    Without seeds, growth starts at the node of ``nodes`` that is nearest to the middle, from grey.
+    """
     growth, lattice = Growth(problem, nodes, progress), nodes.lattice
     seeds = np.intersect1d(seeds, nodes.points)
     if seeds.size:

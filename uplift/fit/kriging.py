@@ -36,7 +36,9 @@ CELLS = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
 
 
 class Kernel(NamedTuple):
-    """Covariance exp(−d / l) + ν √(v v′) ((1 − w) (1 − d / r)⁴ (1 + 4 d / r) + w [same material]); r, w: see above.
+    """Covariance exp(−d / l) + ν √(v v′) ((1 − w) (1 − d / r)⁴₊ (1 + 4 d / r) + w [same material]).
+
+    Here l is ``length``, ν ``noise``, r `REACH` and w `WHITE`.
 
     The first term is common to the materials of an atlas. The noise ν v belongs to one of them: kriging keeps most of
     it at the colour of an entry and near it, and averages it elsewhere. The function of d / r is that of Wendland 1995,
@@ -62,7 +64,10 @@ class Points(NamedTuple):
 
 
 def average_close(locations: Array, deviations: Array) -> Points:
-    """Average deviations (E, C) of close locations (E, 3), so that at most `MAX_POINTS` remain, and count them."""
+    """Average deviations (E, C) of close locations (E, 3), so that at most `MAX_POINTS` remain, and count them.
+
+    With cells of the largest edge more may remain.
+    """
     if len(locations) <= MAX_POINTS:
         return Points(locations, deviations, np.ones(len(locations)), np.arange(len(locations)))
     for edge in CELLS:

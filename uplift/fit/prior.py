@@ -41,11 +41,11 @@ FLAT_LEVELS = (5e-5, 1 - 5e-5)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Prior:
-    """Base spectra and, with an atlas, the interpolated deviation of its entries from them.
+    """Base spectra and, with an atlas, the kriged deviation of its entries from them.
 
     ``errors`` are the expected squares of ΔE00, and ``left_out`` (E, N) the reflectances expected at the colours of the
     entries without them, in their order; both None for an atlas of fewer than 8 entries. ``shares`` (3, C) are
-    the coefficients of spectra of the primaries that sum to 1, for `with_flat_greys`.
+    the coefficients of spectra of the primaries that sum to 1, after `with_flat_greys`, else None.
     """
 
     model: Model
@@ -80,7 +80,7 @@ class Prior:
         return multipliers
 
     def with_flat_greys(self) -> "Prior":
-        """Expect flat spectra at and near greys; only for models that have a choice.
+        """Return a prior that expects flat spectra at and near greys; itself for models that have no choice.
 
         Mallett & Yuksel 2019, "Spectral primary decomposition for rendering with sRGB reflectance".
         """
@@ -108,7 +108,10 @@ class Prior:
         return np.asarray(standard * np.sqrt(squares))
 
     def with_entries(self, entries: FittedEntries, looks: int) -> "Prior":
-        """Krige entries and then looks, which are certain, with the same kernel; the standard errors stay."""
+        """Return the prior of entries whose last ones are looks, with the same kernel and standard errors.
+
+        Looks are nearly certain: see `LOOK_VARIANCE`.
+        """
         measured = len(entries.rgb) - looks
         # Of the same entries in any order, sums round alike.
         order = np.lexsort([*entries.rgb.T, np.arange(len(entries.rgb)) >= measured])

@@ -54,8 +54,8 @@ class Problem:
 class Nodes:
     """Nodes of a lattice that are to be fitted, by their numbers (k,), ascending.
 
-    ``unrealisable`` are those whose colour no reflectance has, and ``nearest`` (u, 3) the linear RGB of the nearest
-    realisable colours, which replace theirs in the fit.
+    ``unrealisable`` are those whose colour no reflectance has, and ``nearest`` (u, 3) the linear RGB that replace
+    theirs in the fit: realisable colours of the same hue and less chroma (`nodes_of`).
     """
 
     lattice: Lattice
@@ -73,7 +73,7 @@ class Nodes:
 
 
 def nodes_of(lattice: Lattice, sensor: Sensor, points: Indices | None = None) -> Nodes:
-    """Find the goals of nodes, all by default (docs/mathematics.md, 9).
+    """Find the goals of nodes, by their numbers, or of all nodes (docs/mathematics.md, 9).
 
     The goal of an unrealisable node has its hue and less chroma: it lies on the straight line to the grey of the same
     luminance, `MARGIN` inside the object-colour solid. The spectra on the boundary are steps between 0 and 1 (MacAdam

@@ -17,7 +17,7 @@ from uplift.lattice import AXES, CORNERS, Lattice, axis_nodes, weighted_sum
 from uplift.models import evaluate
 
 NEAR, FAR = 8.0, 16.0
-"""ΔE*ab up to which a corner is near its entry, and from which it is far (docs/materials.md)."""
+"""ΔE*ab up to which a corner is near its entry, and from which it is far."""
 MAX_HALF_WIDTH = 1.0
 """Lattice steps: the half width of an entry box without other entries nearby."""
 SAME_COLOUR = 1e-6
@@ -83,10 +83,10 @@ class Seeds:
 
 
 def seed(lattice: Lattice, rgb: Array) -> Seeds:
-    """Assign nodes to atlas entries of linear RGB (E, 3), independently of the order of the entries.
+    """Assign nodes to atlas entries of linear RGB (E, 3), independently of the order of entries of different colours.
 
     Every entry gets its nearest node, unless a closer entry owns it. Then, in rounds, every entry gets the nearest free
-    corner of its cell: the "better approach" of the thesis.
+    corner of its cell: the "better approach" of Tódová 2020, section 3.1.2.
     """
     cells, _ = lattice.corners(rgb)
     distance = np.linalg.norm(lattice.target(cells) - rgb[:, None, :], axis=-1)
@@ -115,8 +115,8 @@ The weight changes linearly between them; the rest is the prior.
 HALF_ENTRY: Blend = (0.5, 0.0)
 """The default: shades of an entry, paint of nearly its colour, are like it, other materials near it like the prior.
 
-More of the entry is worse for other materials, and less is worse for shades (docs/materials.md). Corners of coarse
-lattices whose colour is another one start from the prior alone.
+More of the entry is worse for other materials, and less is worse for shades. Corners of coarse lattices whose colour
+is another one start from the prior alone.
 """
 FULL_ENTRY: Blend = (1.0, 1.0)
 """Tódová 2020, section 3.1.2."""
@@ -139,7 +139,7 @@ def initial_guess(points: Indices, rgb: Array, prior: Prior, seeds: Seeds, entri
 
 
 def lattice_error(problem: Problem, lattice: Lattice, prior: Prior, blend: Blend, entries: FittedEntries) -> Array:
-    """Largest ΔE00 (E,) under the lights between each entry's spectrum and the lattice at its colour.
+    """Largest ΔE00 (E,) under the lights between each entry's fitted spectrum and the lattice at its colour.
 
     Only the corners of the entries' cells are fitted. Entry boxes are not used.
     """

@@ -29,7 +29,7 @@ FIRST_DAMPING = 1e-6
 SINGLE_STEPS, MORE_STEPS = 2, 8
 """Passes that take one step, in which most problems converge, and the steps of each later pass."""
 MIN_GAIN, PATIENCE = 1e-3, 8
-"""A problem is abandoned after `PATIENCE` consecutive passes that each reduce its distance by less than `MIN_GAIN`.
+"""A problem is abandoned after `PATIENCE` consecutive passes that each reduce its distance by less than this part.
 Otherwise unrealisable colours, frequent in wide gamuts, would remain until the last pass."""
 NUMPY_ROWS = 128
 """Problems of a block that is stepped in numpy."""
@@ -230,8 +230,8 @@ def _advance(method: Method) -> Callable[..., Any]:
 def iterate(solver: Any, fn: Any, y: Any, args: Any, options: Options, max_steps: Any) -> tuple[Any, Any, Any]:
     """Step a solver of optimistix by hand until it terminates, as its documentation shows for interactive use.
 
-    Returns the last ``y``, the state and the number of steps.
-    `optimistix.least_squares` takes the same steps, and seconds more to compile.
+    Returns the last ``y``, the state and the number of steps. `optimistix.least_squares` takes the same steps, but
+    takes longer to compile.
     """
     state = solver.init(fn, y, args, options, *jax.eval_shape(fn, y, args), NO_TAGS)
     arrays, static = equinox.partition(state, equinox.is_array)
@@ -275,7 +275,7 @@ def iterate_rows(
 
 
 def solve_in_numpy(forward: ForwardMap, start: Array, target: Array, tolerance: float, max_steps: int) -> Array:
-    """Find multipliers (n, C) of linear RGB (n, 3), each nearest to its own start."""
+    """Find multipliers (n, C) of linear RGB (n, 3) by minimum-norm steps from ``start`` (n, C), without compiling."""
 
     return iterate_rows(
         LeastChange(forward, tolerance),

@@ -22,14 +22,13 @@ from uplift.fit.solver import NO_TAGS, BatchSolver, Options, Stepped
 from uplift.models.minimum_norm import ForwardMap
 
 CLOSENESS = 1e-5
-"""Weight of the difference from the prior, in linear RGB per unit of the metric; a hundredth of it in each further
-pass."""
+"""Weight of the difference from the prior, in linear RGB per unit of the metric; divided by 100 in each further pass."""
 SMALL_STEP = 1e-2
 """Change at which a stock solver stops, relative to the residual requested."""
 MAX_STEPS = 64
 """Steps of a pass."""
 MAX_PASSES = 4
-"""Times that an unsolved problem is solved again, with its last answer as prior."""
+"""Passes of an unsolved problem; each but the first has the answer of the one before as prior."""
 
 Solver: TypeAlias = optimistix.AbstractLeastSquaresSolver | optimistix.AbstractMinimiser
 STOCK = {

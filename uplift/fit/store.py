@@ -17,13 +17,13 @@ from uplift.lattice import NO_ENTRY, NOT_FITTED, PointTable, Status
 SINGLE: np.dtype[Any] = np.dtype(np.float32)
 DOUBLE: np.dtype[Any] = np.dtype(np.float64)
 MAX_LOSS = 0.1
-"""Part of the threshold that single precision may add to the distance of a node; docs/stability.md."""
+"""Part of the threshold that single precision may add to the distance of a node."""
 
 
 def store(growth: Growth, seeds: Seeds, prior: Prior) -> PointTable:
     """Return the table of all nodes. RGB, distance and status are those of the stored coefficients.
 
-    Unrealisable nodes are fitted to the nearest realisable colour; their distance is measured from their own.
+    Unrealisable nodes are fitted to a realisable colour of less chroma; their distance is measured from their own.
     """
     nodes, lattice, threshold = growth.nodes, growth.nodes.lattice, growth.problem.threshold
     coefficients, distance, standard_error = _store_coefficients(growth, prior)
@@ -46,7 +46,7 @@ def store(growth: Growth, seeds: Seeds, prior: Prior) -> PointTable:
 def _store_coefficients(
     growth: Growth, prior: Prior
 ) -> tuple[NDArray[Any], NDArray[np.float32], NDArray[np.float32] | None]:
-    """Coefficients (n, C), their distances (n,) and standard errors (n,), all 0 at nodes that are not fitted.
+    """Coefficients (n, C), their distances (n,) and standard errors (n,), all 0 at nodes that are not to be fitted.
 
     The coefficients are float32 if that is accurate enough for every node, else float64 for all. Where rounding them
     cannot change the colour (`Model.is_float32_safe`), the colour is that of the solver; elsewhere it is evaluated from
