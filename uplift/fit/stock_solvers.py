@@ -22,7 +22,8 @@ from uplift.fit.solver import NO_TAGS, BatchSolver, Options, Stepped
 from uplift.models.minimum_norm import ForwardMap
 
 CLOSENESS = 1e-5
-"""Weight of the difference from the prior, in linear RGB per unit of the metric; divided by 100 in each further pass."""
+"""Weight of the difference from the prior, in linear RGB per unit of the metric; every further pass divides it by
+100."""
 SMALL_STEP = 1e-2
 """Change at which a stock solver stops, relative to the residual requested."""
 MAX_STEPS = 64
