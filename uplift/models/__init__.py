@@ -27,7 +27,11 @@ def from_description(description: Mapping[str, Any]) -> Model:
     KeyError
         The name is unknown or a key is missing.
     TypeError
-        A key is unknown or a value has the wrong type.
+        A key is unknown.
+    OptionError
+        A number is out of range.
+    UnknownNameError
+        The warp is unknown.
 
     Examples
     --------

@@ -1,8 +1,8 @@
 """Arithmetic that dominates the cost of fits and lookups: the arc tangent, and products of tall and small matrices.
 
-The arc tangent of XLA calls the scalar function of the C library. A polynomial vectorises: it is seven times faster and
-as accurate (tests/models/test_arithmetic.py). numpy passes through memory for every term, so there the polynomial gains
-nothing, but a series for small differences of arc tangents does.
+The arc tangent of XLA calls the scalar function of the C library. A polynomial vectorises: it is several times faster
+and as accurate (tests/models/test_arithmetic.py). numpy passes through memory for every term, so there the polynomial
+gains nothing, but a series for small differences of arc tangents does.
 
 The BLAS of numpy distributes products of tall and small matrices over threads at several times their cost, and at a
 hundred times if other processes use the cores. Slices below its threshold stay on one thread.
@@ -60,7 +60,7 @@ def arctan(x: Any) -> Any:
 
 
 def arctan_difference(x: Array, change: Array) -> Array:
-    """Evaluate arctan(x + change) − arctan(x) of numpy arrays (N, n) to a relative accuracy of 1e-9.
+    """Evaluate arctan(x + change) − arctan(x) of numpy arrays (N, n) to 1e-9 of the largest difference of a column.
 
     The difference is the arc tangent of change / (1 + x (x + change)), whose argument is usually small. Columns with a
     large argument, or with a difference of more than π/2, are computed from both arc tangents.

@@ -3,8 +3,8 @@
 Multipliers p are changed in the metric M = (R Rᵀ)⁻¹, as x = R⁻¹ p; A = ∂r/∂x is the Jacobian of the RGB r, and t the
 target (docs/mathematics.md, 5). With the damped pseudo-inverse A⁺ = Aᵀ (A Aᵀ + μ tr I)⁻¹,
 
-- Δx = A⁺ (t − r) changes the current spectrum least: the minimum-norm step, of the lookup,
-- Δx = A⁺ (t − r + A d) − d changes the prior spectrum least, from which x differs by d: the step of the fit.
+- Δx = A⁺ (t − r) changes the current spectrum least: the minimum-norm step, of the lookup and of atlas entries,
+- Δx = A⁺ (t − r + A d) − d changes the prior spectrum least, from which x differs by d: the step of the nodes.
 """
 
 from collections.abc import Sequence

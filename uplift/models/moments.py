@@ -29,7 +29,7 @@ MAX_SAFE_LINEAR = 30.0
 """Bound of the linear part up to which single precision keeps colours (tests/models/test_models.py): reflectances
 from .01 to .99."""
 GREY_SHARES = (1e-8, 1e-6, 1e-4, 1e-3, 1e-2)
-
+"""Weights of grey that rounded moments are mixed with, in turn, until they are those of a reflectance."""
 
 WARPS: dict[str, tuple[tuple[float, float, float], ...]] = {
     "none": (),
@@ -171,7 +171,7 @@ def multipliers_of_rounded(model: Moments, moments: Array) -> tuple[Array, Mask]
     """Return multipliers (n, C) of moments (n, C) that were rounded or filtered, and their validity (n,).
 
     Rounding can move moments of saturated colours out of the moment space. They are mixed with the least of
-    `GREY_SHARES` of grey that returns them.
+    `GREY_SHARES` of grey that returns them; where none does, they are not valid.
     """
     multipliers, valid = model.try_from_storage(moments)
     for share in GREY_SHARES:

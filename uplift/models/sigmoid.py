@@ -17,7 +17,7 @@ from uplift.models.model import Model
 MAX_SAFE_LINEAR = 1.0
 """Bound of the linear part up to which single precision keeps colours (tests/models/test_models.py)."""
 LEAST = 1e-30
-"""Least 1 - 4(ρ - ½)² of a reflectance ρ, for which 0 and 1 have finite multipliers."""
+"""Lower limit of 1 − 4 (ρ − ½)² of a reflectance ρ, so that the linear parts of 0 and 1 are finite."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Sigmoid(Model):
 
 
 def evaluate_unscaled(coefficients: Array, wavelengths: Array) -> Array:
-    """Evaluate eq. 5 of Jakob & Hanika 2019 for coefficients (n, 3) of wavelengths (N,) in nm, not scaled."""
+    """Evaluate eq. 5 of Jakob & Hanika 2019 for coefficients (n, 3), at wavelengths (N,) in nm that are not scaled."""
     x = coefficients @ np.stack([wavelengths**2, wavelengths, np.ones_like(wavelengths)])
     return 0.5 + x / (2 * np.sqrt(1 + x * x))
 
