@@ -18,7 +18,7 @@ from uplift.lattice.lattice import Lattice, weighted_sum
 from uplift.lattice.point_table import NO_ENTRY
 
 CORE = 0.1
-"""Share of the half width of a box outside [0, 1] up to which the entry alone answers."""
+"""Part of the half width of a box outside [0, 1] up to which the entry alone answers."""
 CELL_BLOCK = np.array(list(product((-1, 0, 1), repeat=3)))
 """(27, 3) steps to the cells that a box can touch: its half width is at most one step."""
 MARGIN = 1e-6
@@ -50,18 +50,18 @@ class Nodes:
     """The nodes around n colours: eight corners of a cell each and, for k of them, the entry of a box."""
 
     points: Indices
-    """(n, 8) lattice points."""
+    """(n, 8) numbers of the corners in the lattice."""
     weights: Array
     """(n, 8) their trilinear weights w, summing to 1."""
     hits: BoxHits
     """The colours in entry boxes. There the lattice has weight t and is evaluated where the ray leaves the box."""
 
     def weighted_sum(self, lattice: Values, atlas: Values) -> Values:
-        """Σ w · values of the lattice points (dim³, K), mixed with the entries (E, K): (n, K), in their type."""
+        """Σ w · values of the lattice (dim³, K), mixed with those of the entries (E, K): (n, K), in their type."""
         return self.hits.mix(weighted_sum(lattice, self.points, self.weights), atlas[self.hits.entry])
 
     def nearest(self) -> tuple[Indices, Indices, Indices]:
-        """Return the nodes of largest weight: lattice points (n,), and rows and entries (m,) where it is an entry."""
+        """Return the corners of largest weight (n,), and the rows and entries (m,) where an entry weighs more."""
         best = self.weights.argmax(axis=1)[:, None]
         points = np.take_along_axis(self.points, best, axis=1)[:, 0]
         weights = np.take_along_axis(self.weights, best, axis=1)[:, 0]

@@ -1,4 +1,4 @@
-"""The arrays that a build computes for every lattice point, and how each point was fitted."""
+"""The arrays that a build computes for every node, and how each node was fitted."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from uplift.common.arrays import Indices, Mask
 
 NO_ENTRY = -1
-"""Value of `PointTable.entry` at points that are not based on an atlas entry."""
+"""Value of `PointTable.entry` at nodes that no atlas entry seeds."""
 NOT_FITTED = -1
-"""Value of `PointTable.round` at points that no round of growth fitted."""
+"""Value of `PointTable.round` at nodes that no round of growth fitted."""
 
 
 class Status(IntEnum):
-    """How a lattice point was fitted."""
+    """How a node was fitted."""
 
     ATLAS_PRIMARY = 0
     ATLAS_CORNER = 1
@@ -35,7 +35,7 @@ class Status(IntEnum):
 
 
 ABSENT_VALUES = {"status": int(Status.ABSENT), "entry": NO_ENTRY, "round": NOT_FITTED}
-"""Values of the arrays at absent points; 0 in all others."""
+"""Values at absent nodes, by the name of the array; 0 in all others."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,9 +44,9 @@ class PointTable:
 
     ``coefficients`` (n, C) are the argument of ``model.from_storage``: float32 or, where single precision is not
     accurate enough, float64. ``rgb`` (n, 3) is the linear RGB that the stored spectrum evaluates to, and ``distance``
-    (n,) max |target RGB − rgb|. ``entry`` (n,) is the row of the atlas table that a node is based on, −1 for none.
+    (n,) max |target RGB − rgb|. ``entry`` (n,) is the row of the atlas entry that seeds a node, −1 for none.
     ``round`` (n,), stored with ``debug=True`` only, is the round of growth that fitted the node, −1 for none.
-    ``standard_error`` (n,), the root-mean-square ΔE00 expected between the answer and a measurement, is None where the
+    ``standard_error`` (n,) is the ΔE00 from the answer within which 68 % of measurements are expected, None if the
     atlas is too small to estimate it. Absent nodes have status ``ABSENT``, entry and round −1, and 0 everywhere else.
     """
 
@@ -63,7 +63,7 @@ class PointTable:
 
     @cached_property
     def present(self) -> Mask:
-        """(n,) True where a point has a spectrum: everywhere, unless the cube was built for a scene."""
+        """(n,) True where a node has a spectrum: everywhere, unless the cube was built for a scene."""
         return self.status != Status.ABSENT
 
     @property
@@ -88,7 +88,7 @@ class PointTable:
         return PointTable(**rows).spread(points, len(self.status))
 
     def filled(self, points: Indices, rows: Mapping[str, NDArray[Any]]) -> "PointTable":
-        """Return the table with columns of ``rows`` at absent ``points`` (k,), and values of absent points in others.
+        """Return the table with columns of ``rows`` at absent nodes ``points`` (k,); others keep `ABSENT_VALUES` there.
 
         Coefficients become float64 if those of the rows are.
         """
