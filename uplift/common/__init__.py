@@ -1,1 +1,1 @@
-"""Shared basics of all layers: array types, errors, atomic file writing, CSV text, progress events, BLAS threads."""
+"""Shared basics of all layers: arrays, errors, text, files in and out, progress, and limits of the machine."""

@@ -19,7 +19,7 @@ Values = NDArray[Any]
 
 
 def blocks(count: int, size: int) -> Iterator[slice]:
-    """Split rows into blocks of at most ``size``."""
+    """Yield the slices of blocks of at most ``size`` of ``count`` rows, in order."""
     for first in range(0, count, size):
         yield slice(first, min(first + size, count))
 

@@ -1,4 +1,4 @@
-"""Exception hierarchy: every error and warning carries a stable code, a location, the problem and a hint."""
+"""Exception hierarchy: errors and warnings carry a stable code, the problem and, where known, a place and a hint."""
 
 import contextlib
 import os
@@ -80,13 +80,13 @@ class AtlasError(UpliftError, ValueError):
 
 
 class UnknownNameError(UpliftError, KeyError):
-    """A name is not in the tables: illuminant, observer, RGB space, model or atlas entry."""
+    """A name is unknown, such as that of an illuminant, an RGB space, a mode or an atlas entry."""
 
     code = "unknown-name"
 
 
 class OptionError(UpliftError, ValueError):
-    """An option is outside its range."""
+    """An option is outside its range, of the wrong type, or does not go with others."""
 
     code = "option"
 
@@ -122,7 +122,7 @@ class PaletteError(UpliftError, ValueError):
 
 
 class ColourError(UpliftError, ValueError):
-    """A colour is outside [0, 1], not finite, or unreadable."""
+    """A colour is outside [0, 1], not finite, unreadable, or one that a cube or a reflectance cannot have."""
 
     code = "colour"
 
@@ -140,7 +140,7 @@ class OutputError(UpliftError, OSError):
 
 
 class UpliftWarning(Diagnostic, UserWarning):
-    """Something was skipped or changed; the rest was done."""
+    """Something was skipped, changed or not reached; the work went on."""
 
     code = "warning"
 

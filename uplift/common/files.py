@@ -17,6 +17,7 @@ from uplift.common.errors import OutputError, StrPath, UpliftError
 DAY = 86_400.0
 """Seconds without a change after which a temporary file belongs to a writer that was killed."""
 KERNEL = "/proc"
+"""Folder of the files of the kernel, where there is one."""
 PREFIX = ".{}."
 """First characters of temporary files, by the name of the file."""
 _TEMPORARIES: set[Path] = set()

@@ -55,7 +55,7 @@ CGROUP_LIMITS = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limi
 
 
 def free_memory() -> int | None:
-    """Return the bytes that this process can still have, None if unknown: of the machine, its container, its limit."""
+    """Return the bytes that this process can still have: of the machine, its container, its limit; None if unknown."""
     limits = []
     with contextlib.suppress(OSError, AttributeError):  # on Linux
         limits.append(1024 * sum(map(int, AVAILABLE.findall(Path("/proc/meminfo").read_text()))))
@@ -76,7 +76,7 @@ def free_memory() -> int | None:
 
 
 def check_memory(need: float, subject: str, error: type[UpliftError], hint: str) -> None:
-    """Raise ``error`` if the subject needs more memory than is free."""
+    """Raise ``error`` (``out-of-memory``) if the subject needs more bytes than are known to be free."""
     free = free_memory()
     if free is not None and need > free:
         problem = f"{subject} needs about {need / 1e9:.3g} GB of memory, {free / 1e9:.3g} GB are free"
