@@ -39,7 +39,7 @@ def cosine_basis(phase: Array, count: int) -> Array:
 
 
 def integrate(multipliers: Array, synthesis: Array, analysis: Array) -> Array:
-    """Integrate spectra of multipliers (n, C) to (n, M): K samples by ``synthesis`` (C, K), times ``analysis`` (K, M)."""
+    """Integrate spectra of multipliers (n, C) to (n, M): samples by ``synthesis`` (C, K), times ``analysis`` (K, M)."""
     moments = np.empty((len(multipliers), analysis.shape[1]))
     for block in blocks(len(multipliers), max(_SAMPLES // len(analysis), 1)):
         moments[block] = (0.5 + arctan(multipliers[block] @ synthesis) / np.pi) @ analysis
