@@ -17,7 +17,7 @@ CAMERA = "camera"
 LAYOUT = "give rows of a wavelength in nm and the sensitivities of red, green and blue"
 MAX_BYTES = 1_000_000
 CORRELATED = 50.0
-"""Distance in nm at which the correlation of reflectances that a camera's matrix is fitted to falls to 1/e."""
+"""Distance in nm over which the correlation of the reflectances that a camera's matrix is fitted to falls to 1/e."""
 MAX_CONDITION = 1e4
 """Limit of the condition number of a camera's matrix: one channel is a mixture of the others beyond it."""
 
@@ -94,7 +94,8 @@ def camera_sensor(camera: Camera, standard: Sensor) -> Sensor:
 def read_camera(path: StrPath) -> Camera:
     """Read sensitivities from a CSV file: rows of a wavelength in nm, red, green and blue.
 
-    A first row without numbers is a header; lines that begin with ``#`` are comments.
+    Rows without numbers before the first with numbers are headers; lines that begin with ``#`` are comments. Raises
+    `OptionError` for anything else.
     """
     text = read_bytes(path, OptionError, limit=MAX_BYTES, hint=LAYOUT).decode("utf-8-sig", errors="replace")
     table: list[list[float]] = []

@@ -14,7 +14,7 @@ PRIOR_COUNT = 2.0
 COVERAGE = ((0.68, 1.0), (0.95, 2.0))
 """Shares of materials within the standard error and within the error bound; their radii if errors were normal."""
 TRUST = 20.0
-"""Entries at which half of the difference from a normal distribution is applied, on a logarithmic scale."""
+"""Entries at which half of the difference from Student's distribution is applied, on a logarithmic scale."""
 MIN_VARIANCE = 0.02
 """Lower limit of the variance assigned to a left-out entry."""
 FAMILIAR = 0.95
@@ -23,7 +23,7 @@ BLOCK_NUMBERS = 1 << 17
 """Numbers of the matrix of weights held at a time."""
 TINY = np.finfo(float).tiny
 MAX_ROWS = 1000
-"""Entries that the distances between neighbours are learnt from."""
+"""Entries that the distances between neighbours are learnt from, at most."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

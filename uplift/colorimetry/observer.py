@@ -22,11 +22,11 @@ DEFAULT_OBSERVER = "CIE 1931 2 Degree Standard Observer"
 COMMON_SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB")
 """Names of colour-science, by the area of the gamut in CIE 1976 u′, v′."""
 START, END, STEP = WAVELENGTHS
-"""Range and step in nm that every table of the CIE covers."""
+"""Range and step in nm of a sensor by default."""
 
 
 def grid() -> Array:
-    """Return the wavelengths of a sensor by default, shape (81,): 380–780 nm at 5 nm."""
+    """Return the wavelengths (81,) of a sensor by default: 380–780 nm at 5 nm."""
     return np.arange(START, END + STEP / 2, STEP)
 
 
@@ -39,7 +39,7 @@ def sensor(
     """Create a sensor from names of colour-science.
 
     Bradford adaptation takes the white of the illuminant to the white of the space. Each row of the matrix is scaled
-    so that the perfect reflector gives (1, 1, 1) to the last significant bit.
+    so that the perfect reflector gives (1, 1, 1) up to rounding.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def sensor(
     UnknownNameError
         A name is unknown; the hint gives the nearest names.
     OptionError
-        A camera without its space, or one that cannot be used; see `Camera`.
+        A camera without its space, or one that cannot be used (see `Camera`), or a colour temperature out of range.
 
     Examples
     --------
@@ -175,6 +175,8 @@ def light(
     ------
     UnknownNameError
         A name is unknown.
+    OptionError
+        A colour temperature is out of range.
     """
     power = samples("illuminant", illuminant, start, end, step)
     weights = samples("observer", observer, start, end, step) * power[:, None]
@@ -196,9 +198,7 @@ def illuminant_spd(illuminant: str, start: float = START, end: float = END, step
 def smallest_space(
     reflectances: ArrayLike, illuminant: str = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
 ) -> str | None:
-    """Find the smallest of the common RGB spaces that holds all colours of reflectances.
-
-    Shapes: ``reflectances`` (…, N).
+    """Find the smallest of `COMMON_SPACES` that holds all colours of reflectances (…, 81) on `grid`; None if none does.
 
     >>> import numpy as np
     >>> smallest_space(np.full(81, 0.5))

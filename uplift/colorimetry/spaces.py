@@ -20,8 +20,8 @@ from uplift.common.files import check_regular
 from uplift.common.text import format_value, parse_float
 
 VARIABLE = "OCIO"
-CONFIGURATION_HINT = "correct the environment variable OCIO, or unset it to use the built-in configuration"
 """Environment variable with the path of a configuration."""
+CONFIGURATION_HINT = "correct the environment variable OCIO, or unset it to use the built-in configuration"
 BUILT_IN = "ocio://studio-config-latest"
 REFERENCE = "ACES2065-1"
 AP0 = Primaries((0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.077), (0.32168, 0.33767))
@@ -53,7 +53,7 @@ class ImageSpace:
     """Whether `decode` computes each component from all three."""
 
     def matrix_to(self, sensor: Sensor) -> Array | None:
-        """Compute the matrix to the linear RGB of a sensor. Shape (3, 3)."""
+        """Compute the matrix (3, 3) to the linear RGB of a sensor; None if the primaries are equal."""
         sensor.require_xyz()
         matrix = conversion(self.gamut, sensor)
         return None if np.abs(matrix - np.eye(3)).max() <= MAX_PRIMARIES_DIFFERENCE else matrix
@@ -76,9 +76,9 @@ class OcioSpace:
     name: str
     """Its name in the configuration."""
     is_linear: bool
-    """Whether its values are linear."""
+    """Whether its encoding is scene-linear."""
     processor: Any
-    """CPU processor to linear RGB of `AP0`, or to XYZ."""
+    """CPU processor to linear RGB of `AP0`."""
 
     def convert(self, values: Array) -> Array:
         """Convert values. Shapes: ``values`` (…, 3) → (…, 3)."""
@@ -98,7 +98,7 @@ class OcioSpace:
         return AP0.rgb_to_xyz @ self.matrix
 
     def as_image_space(self) -> ImageSpace:
-        """Describe colours of the space."""
+        """Return the space with the primaries of its own if it is linear, else decoded to `AP0`."""
         if self.is_linear:
             return ImageSpace(self.name, self, lambda codes: codes)
         return ImageSpace(self.name, AP0, self.convert, floats_are_codes=True, mixes_channels=True)

@@ -21,7 +21,7 @@ from uplift.common.errors import unknown_name
 
 PATH = Path(__file__).parent / "tables.npz"
 START, END, STEP = WAVELENGTHS = (380.0, 780.0, 5.0)
-"""Range and step in nm of the spectra of the file, which every table of the CIE covers."""
+"""Range and step in nm of the spectra of the file."""
 SPECTRA = {"illuminant": "SDS_ILLUMINANTS", "observer": "MSDS_CMFS"}
 """Tables of colour-science whose spectra the file has, by the kind of their names."""
 TABLES = {
