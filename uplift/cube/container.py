@@ -168,7 +168,7 @@ def check_metadata(value: Any, schema: Any, path: str = "metadata") -> None:
 
     A schema is `str` for text, `int` for a whole number from 0, a range (low, high) of numbers, a list [schema, limit]
     of at most so many items, or a table of schemas by key, with ``?`` after optional keys and ``*`` for all others.
-    None is for any value. Every query reads metadata: pydantic would add a tenth to the start of a query.
+    None is for any value. Every query reads metadata, and pydantic takes long to import.
     """
     items: list[tuple[Any, Any, str]] = []
     if schema is None:

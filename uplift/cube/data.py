@@ -19,7 +19,7 @@ from uplift.models import evaluate
 from uplift.models.model import Model
 
 MAX_SIZE = 500.0
-"""Largest sum of the multipliers' sizes of points that have not their own colours, in mixtures."""
+"""Largest Σ |p| of the multipliers of nodes that have not their own colours, in mixtures of spectra."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -102,13 +102,13 @@ class CubeData:
     lattice: Lattice
     sensor: Sensor
     threshold: float
-    """Largest fitting distance, in linear RGB, of a fitted point."""
+    """Largest fitting distance, in linear RGB, of a fitted node."""
     atlas: AtlasTable
     points: PointTable
     error_illuminant: str
     """Illuminant of all ΔE00 values in the cube."""
     provenance: Mapping[str, Any]
-    """How the cube was built: version, options, names and digests of the atlas files. JSON values."""
+    """How the cube was built, such as its options and the names and digests of its atlas files. JSON values."""
 
     def __repr__(self) -> str:
         sensor, own = self.sensor, self.atlas.spectra.model
@@ -156,7 +156,7 @@ class CubeData:
 
     @cached_property
     def complete_cells(self) -> Mask | None:
-        """(n,) True for cells with eight present corners, by the number of the lowest. None if no point is absent."""
+        """(n,) True for cells with eight present corners, by the number of the lowest. None if no node is absent."""
         return None if self.points.present.all() else self.lattice.complete_cells(self.points.present)
 
     @cached_property
@@ -175,14 +175,14 @@ class CubeData:
         return None if self.inexact_cells is None else self.lattice.corner_points(self.inexact_cells)
 
     def missing_points(self, rgb: Array | None = None) -> Indices:
-        """Return the absent points that linear RGB (n, 3) need, or all absent points."""
+        """Return the absent nodes that linear RGB (n, 3) need, or all absent nodes."""
         absent = ~self.points.present
         if rgb is not None:
             absent &= self.lattice.corner_points(self.lattice.mask(self.entry_boxes.cell(rgb)))
         return np.flatnonzero(absent)
 
     def smoothed_multipliers(self, points: Indices) -> Array:
-        """Return multipliers (m, C) of points for mixtures, with less steep steps where colours are not exact.
+        """Return multipliers (m, C) of nodes for mixtures, with less steep steps where colours are not exact.
 
         Spectra near the boundary of the solid are steps, which single precision cannot place; answers there are moved.
         """
@@ -193,7 +193,7 @@ class CubeData:
 
 
 def common_sensor(cubes: Iterable[CubeData]) -> Sensor:
-    """Return the sensor of cubes that have the same RGB space, illuminant and observer; `OptionError` otherwise."""
+    """Return the sensor of the first of cubes of one RGB space, illuminant and observer; `OptionError` otherwise."""
     sensors = [cube.sensor for cube in cubes]
     spaces = {(each.space, each.illuminant, each.observer) for each in sensors}
     if len(spaces) > 1:

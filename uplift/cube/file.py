@@ -31,7 +31,7 @@ KIND = Kind(FORMAT, (3, VERSION), "cube", foreign="not-a-cube")
 FEATURES = ("debug", "errors", "left-out", "camera", "sparse", "outside", "outside-measured")
 """Optional parts of a file, in the order in which the metadata list them."""
 MAX_POINTS = 1 << 27
-"""Points of the largest lattice of a sparse file, as a small file must not claim all memory."""
+"""Nodes of the largest lattice of a sparse file, as a small file must not claim all memory."""
 MAX_CONDITION = 1e6
 """Limit of the condition number of the matrix from XYZ to RGB."""
 MIN_THRESHOLD, MAX_THRESHOLD = 1e-12, 0.1
@@ -49,7 +49,7 @@ POINTS = {
     "round": Stored("n", ("int16",), feature="debug"),
     "standard_error": Stored("n", SINGLE, 0, feature="errors"),
 }
-"""Arrays of the `PointTable`. Sparse files have rows of the present points only."""
+"""Arrays of the `PointTable`. Sparse files have rows of the present nodes only."""
 SENSOR = {
     "wavelengths": Stored("N", low=0),
     "cmfs": Stored("N 3"),
@@ -163,7 +163,7 @@ def contents(data: CubeData) -> tuple[Tensors, dict[str, Any]]:
             tensors[name] = np.ascontiguousarray(array, array.dtype if array.dtype.name in types else types[-1])
     present = data.points.present
     if not present.all():
-        # A sparse file has the rows of the present points, and their numbers.
+        # A sparse file has the rows of the present nodes, and their numbers.
         tensors |= {name: np.ascontiguousarray(tensors[name][present]) for name in POINTS if name in tensors}
         tensors["points"] = np.flatnonzero(present).astype(np.uint32)
     announced = {ARRAYS[name].feature for name in tensors}
@@ -242,7 +242,7 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
 
 
 def _check(data: CubeData) -> None:
-    """Check what a lookup relies on beyond types and ranges. The points of a sparse cube are those in its file."""
+    """Check what a lookup relies on beyond types and ranges. The nodes of a sparse cube are those in its file."""
     atlas, sensor, nodes = data.atlas, data.sensor, data.lattice.nodes
     names = (*atlas.names, *(() if atlas.outside is None else atlas.outside.names))
     looks = tuple(look["name"] for look in data.provenance.get("looks", ()))
@@ -266,7 +266,7 @@ def _check(data: CubeData) -> None:
 
 
 def _expand(points: PointTable, numbers: Indices, lattice: Lattice) -> PointTable:
-    """Expand the rows (m, …) of the points ``numbers`` (m,) to those of the lattice, (n, …)."""
+    """Expand the rows (m, …) of the nodes ``numbers`` (m,) to those of the lattice, (n, …)."""
     size = lattice.size
     valid = 0 < len(numbers) < size <= MAX_POINTS and bool((np.diff(numbers) > 0).all()) and bool(numbers[-1] < size)
     require(valid, "point numbers must ascend within the lattice, with some missing")
@@ -279,7 +279,7 @@ def _expand(points: PointTable, numbers: Indices, lattice: Lattice) -> PointTabl
 
 
 def summarise(data: CubeData) -> dict[str, Any]:
-    """Return facts about a cube, most general first, as ``uplift info`` and reports list them."""
+    """Return facts about a cube in JSON values, for ``uplift info`` and reports."""
     points = data.points
     present, errors = points.present, points.standard_error
     return {
