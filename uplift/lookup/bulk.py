@@ -56,7 +56,7 @@ class Grid(NamedTuple):
     boxes: Any
     """(E + 1, 3, 3) centre in linear RGB, and reciprocals of the distances to the lower and upper faces."""
     lattice: Any
-    """(dim³, N) values of the lattice points, float32; NaN at absent points."""
+    """(dim³, N) values of the lattice, float32; NaN at absent nodes."""
     atlas: Any
     """(E + 1, N) values of the entries, float32."""
     limits: Any
@@ -224,7 +224,7 @@ class Sampler:
         padded = np.pad(colours, ((0, missing), (0, 0))) if missing else colours
         with jax.enable_x64(True):
             values = np.asarray(_interpolate(self.grid, padded))[: len(colours)]
-        require_covered(~np.isnan(values[:, 0]), colours)  # absent points make NaN
+        require_covered(~np.isnan(values[:, 0]), colours)  # absent nodes make NaN
         if self.exact is not None:
             rows, moved = self.exact(colours)
             if rows.size:

@@ -1,4 +1,4 @@
-"""Bounds of answers: how far any reflectance of a colour can be from the answer under another light."""
+"""Bounds of answers: how far the colour of any reflectance of an RGB can be from the answer's under another light."""
 
 from dataclasses import dataclass
 
@@ -66,7 +66,8 @@ class Bounds:
 def bounds(cube: Cube, rgb: Array, light: Light, mode: str = "spectra", divisions: int = mismatch.DIVISIONS) -> Bounds:
     """Compute bounds of the answers to linear RGB (n, 3) under a light at the wavelengths of the sensor.
 
-    Colours outside [0, 1] are answered by `reflectance_anywhere`; ``divisions`` is the density of the boundary points.
+    Colours outside [0, 1] are answered by `reflectance_anywhere`; ``divisions`` (0 to 4) sets the number of boundary
+    points, see `uplift.colorimetry.mismatch.COUNTS`.
     Raises `ColourError` if no reflectance has a colour.
     """
     data = cube.data

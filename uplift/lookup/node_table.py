@@ -1,4 +1,4 @@
-"""Tables of the values of all nodes, for queries of more colours than the lattice has points."""
+"""Tables of the values of all nodes, for queries of at least as many colours as the cube has nodes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class NodeTable:
 
     data: CubeData
     lattice: Values
-    """(dim³, K) values of the lattice points, NaN at absent points."""
+    """(dim³, K) values of the lattice, NaN at absent nodes."""
     atlas: Values
     """(E, K) values of the atlas entries."""
     exact: Exact | None
@@ -34,7 +34,7 @@ class NodeTable:
     def of_present_points(
         cls, data: CubeData, points: Values, atlas: Values, exact: Exact, dtype: DTypeLike
     ) -> "NodeTable":
-        """Make a table of a type from values (m, K) of the present points."""
+        """Make a table of a type from values (m, K) of the present nodes."""
         lattice, atlas = (each.astype(dtype, copy=False) for each in (points, atlas))
         if data.complete_cells is not None:
             lattice = np.full((data.lattice.size, points.shape[1]), np.nan, dtype)

@@ -1,4 +1,4 @@
-"""Colours that a cube does not hold: outside its RGB space (docs/mathematics.md, 9), or not in its scene."""
+"""Colours that a cube does not hold: outside its RGB space (docs/mathematics.md, 8), or not in its scene."""
 
 from dataclasses import replace
 from functools import partial
@@ -73,7 +73,7 @@ def reflectance_anywhere(data: CubeData, rgb: Array, at: Array, mode: str, outsi
 
 
 def fill_missing(data: CubeData, points: Indices, other: CubeData, threads: int = 1) -> CubeData:
-    """Return the cube with absent ``points`` (k,) filled by the answers of another cube of the same RGB space.
+    """Return the cube with absent nodes ``points`` (k,) fitted to the answers of another cube of the same RGB space.
 
     Their standard error is the largest of the cube, as their distance from measurements is unknown.
     """

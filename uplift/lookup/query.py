@@ -42,7 +42,7 @@ class QueryResult:
     statuses: tuple[Status, ...]
     """Statuses of the corners of the cell."""
     entry: str | None
-    """Atlas entry of the same colour."""
+    """Atlas entry whose 8-bit codes are those of the colour, within `CODE_TOLERANCE`."""
     standard_error: float | None
     """ΔE00 from the answer that 68 % of measurements stay within; None if the cube has no estimate."""
     error_bound: float | None
@@ -70,7 +70,7 @@ def query(
     """Answer linear RGB (n, 3) in [0, 1] in full detail, block by block.
 
     ``requested_rgb`` are the colours before gamut mapping, ``lights`` those of `QueryResult.standard_errors`. Colours
-    ``outside`` (n,) are answered as requested.
+    that are ``outside`` (n,) are answered as requested, not as mapped. Raises `UnknownNameError` for an unknown mode.
     """
     if mode not in MODES:
         raise unknown_name(mode, MODES, "mode")

@@ -22,7 +22,7 @@ MAX_STEPS = 24
 FIRST_DAMPING = 1e-2
 """μ after a rejected full step; nearly all colours need one or two full steps and no damping."""
 PULLED = 1e-11
-"""The same, scaled, of the convex problem, so that spectra do not depend on the steps (docs/reader.py)."""
+"""Residual, of scaled RGB, at which the convex problem ends: so small that spectra do not depend on the steps."""
 MAX_PULLS = 100
 """Steps of the convex problem; most colours need four, few more than 20."""
 TRACE = [0, 2, 5]
@@ -43,8 +43,8 @@ BLOCK_COLUMNS = 1024
 def refine_to_rgb(data: CubeData, model: Model, start: Array, rgb: Array) -> Array:
     """Move multipliers ``start`` (n, C) of a model to linear RGB (n, 3), to the sensor and threshold of a cube.
 
-    Unrealisable colours are replaced by the nearest realisable ones of less chroma. Colours that do not converge, such
-    as those of the sigmoid near white in coarse cells, start again from grey.
+    Colours that do not converge are tried again, from their start and from grey, with unrealisable ones replaced by
+    realisable ones of less chroma (`within_solid`). Results that come no nearer to these are not taken.
     """
     forward = forward_map(model, data.sensor.wavelengths, data.sensor.matrix)
     multipliers, target = np.array(start.T, order="C"), np.array(rgb.T, order="C")
@@ -74,7 +74,7 @@ def pull(sensor: Sensor) -> tuple[Array, Array, Array]:
 
 
 def with_colours(data: CubeData, spectra: Values, at_sensor: Array, rgb: Array, wavelengths: Array) -> Values:
-    """Move mixtures to their colours (n, 3), or to the nearest realisable ones (docs/mathematics.md, 9).
+    """Move mixtures to their colours (n, 3), or to realisable ones of less chroma (docs/mathematics.md, 9).
 
     ``spectra`` (n, N) are reflectances in [0, 1] at any wavelengths (N,) in nm, ``at_sensor`` (n, M) the same at those
     of the sensor. They need not be of the model. Those that have their colour stay to the last bit.
