@@ -60,9 +60,9 @@ def build_emission(
         Measured lamps, or the files that contain them, in addition to those of colour-science. Of lamps of nearly the
         same chromaticity, those of the atlas are exact; without an atlas, the CIE illuminants A and D50 to D75.
     knots : int, default 96
-        Nodes around white, at least as many as the spectral locus has corners.
+        Nodes around white, 3 to 1024. The spectral locus has one at each corner, so there are never fewer than these.
     rings : int, default 24
-        Nodes from white to the locus.
+        Nodes from white to the locus, 3 to 512.
     space : str, default "sRGB"
         RGB space of queries, by its name in colour-science. White is the white of the space, without adaptation.
     observer : str, default "CIE 1931 2 Degree Standard Observer"
@@ -87,7 +87,8 @@ def build_emission(
     Warns
     -----
     UpliftWarning
-        A lamp of the atlas with the chromaticity of another one of it, which is left out (``entry-duplicate``).
+        A lamp of the atlas with the chromaticity of another one of it, which is left out (``entry-duplicate``), or an
+        entry of a file that was skipped (``entry-skipped``).
 
     Examples
     --------

@@ -107,7 +107,7 @@ class LampEntries:
 def lamp_entries(
     constraints: Lamps, others: Lamps, lattice: ChromaticityLattice, radiometry: Array
 ) -> tuple[LampEntries, tuple[tuple[str, str], ...]]:
-    """Give each lamp a disc that reaches half of the way to the next one, and does not leave the lattice.
+    """Give each lamp a disc that reaches half of the way to the next one, and at most `MAX_RADIUS`, in the lattice.
 
     Other lamps are exact unless they are close to a constraint, or have nearly the chromaticity of another lamp: of two
     lamps of one RGB neither is exact, and the expected light averages them. `radiometry` (N, 3) leads from power to

@@ -19,7 +19,7 @@ from uplift.lookup.cube import find_file
 from uplift.models.arithmetic import blocked_matmul
 
 EMISSION = Path(__file__).with_name("emission.uplift")
-"""The packaged table of linear sRGB."""
+"""The packaged table of sRGB."""
 OUTSIDE = ("error", "clip")
 """Treatments of colours that no light has: an error, or the nearest colour towards white."""
 MAX_VALUE = 1e30
@@ -311,7 +311,7 @@ def load_emission(path: str | os.PathLike[str] | None = None) -> EmissionTable:
     Parameters
     ----------
     path : path-like, optional
-        File of the table, or ``emission`` for the table of the package, for linear sRGB, which is also the default.
+        File of the table, or ``"emission"`` if no file has the name: the sRGB table of the package, also the default.
 
     Returns
     -------
