@@ -65,7 +65,10 @@ class Document:
 
     @cached_property
     def text(self) -> str:
-        """The content as text with LF line ends: UTF-16, UTF-8, or else Latin-1. Raises `AtlasError` for others."""
+        """The content as text with LF line ends: UTF-16, UTF-8, or else Latin-1.
+
+        Raises `AtlasError` if it is empty, has a NUL character, or is damaged UTF-16.
+        """
         data, encoding, hint = self.data, None, "save the atlas as UTF-8 text"
         # One byte of every ASCII character in UTF-16 is 0: the first one if the order of bytes is big-endian.
         even, odd = data[:UTF_16_START:2], data[1:UTF_16_START:2]

@@ -48,7 +48,7 @@ NAME_LABELS = (
     "samplename", "name", "colorname", "colourname", "patchname", "patch", "label", "title", "sample", "material",
     "spectrum", "sampleid", "patchid", "id", "sampleloc", "sampleno", "no", "number", "index",
 )  # fmt: skip
-"""Labels of names, in lower case and without blanks, the preferred ones first."""
+"""Labels of names, in lower case without blanks and punctuation, the preferred ones first."""
 SAMPLE_LABELS = (
     NAME_LABELS,
     ("wavelength", "wavelength(nm)", "wavelengthnm", "lambda", "λ", "wl", "nm"),
