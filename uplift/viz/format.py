@@ -32,14 +32,14 @@ def format_size(size: float) -> str:
 
 
 def format_error(error: float) -> str:
-    """Format a ΔE00 or an rms with three digits."""
+    """Format a ΔE00 or an rms with three digits, below 0.01 with four decimals."""
     if error < SMALLEST_ERROR:
         return f"< {SMALLEST_ERROR:.4f}"
     return f"{error:.4f}" if error < 0.01 else f"{error:.3g}"
 
 
 def format_build_time(seconds: float | None) -> str:
-    """Format the time that a build takes."""
+    """Format the seconds that a build takes: ``nothing`` for 0, empty for None."""
     if seconds is None:
         return ""
     return format_time(seconds * 1e9) if seconds else "nothing"

@@ -1,4 +1,4 @@
-"""Contact sheets: all slices of constant blue of a cube, or the diagrams of an emission table, on one image.
+"""Contact sheets: all slices of constant blue of a cube on one image.
 
 One panel per quantity with one colour per node, one tile per blue slice, and a legend; OpenEXR for colour work, PNG for
 viewing. The palettes are suitable for colour-vision deficiencies: a ramp of one hue, dark to light, and orange as
@@ -37,8 +37,7 @@ Image = NDArray[np.float32]
 def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
     """Write the contact sheet of a cube: linear RGB in a single-part ``.exr``, or sRGB in a ``.png``.
 
-    Panels show lattice RGB, fitting distance, status, standard error (of cubes with an atlas) and round (with debug
-    information).
+    Panels show lattice RGB, fitting distance, status, and, of cubes that store them, standard error and round.
     """
     check_sheet(path, force=force)
     exr.check_slices(data)
@@ -82,7 +81,7 @@ def _draw_text(image: Image, labels: tuple["Label", ...]) -> Image:
     return image + cover * (np.float32(TEXT_GREY) - image)
 
 
-PANEL = 640  # approximate width of a panel in pixels; sheets are 1000 to 2000 pixels wide
+PANEL = 640  # approximate width of a panel in pixels; a node has at least one, so panels of large lattices are wider
 GAP = 3  # pixels between tiles
 PANELS_PER_ROW = {3: 3, 4: 2, 5: 3}  # panels per row, by the number of panels
 LINES = 3  # lines of the legend below every panel
