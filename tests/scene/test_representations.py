@@ -11,7 +11,7 @@ from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
 from uplift.lab.comparison.compare import make_scene
 from uplift.lab.study.moments import Technique
-from uplift.scene.representations import all_representations
+from uplift.scene.representations import FACTORIES, all_representations, find_representation
 from uplift.scene.representations.composite import (
     enhanced_riemann,
     fourier_coefficients,
@@ -203,11 +203,18 @@ def test_linear_model_of_all_components_is_exact(checker, light_powers):
     np.testing.assert_allclose(basis.T @ basis, np.eye(6), atol=1e-12)
 
 
+@pytest.mark.parametrize("family", FACTORIES)
+def test_a_name_finds_the_representation_of_this_name(family):
+    _, sizes = FACTORIES[family]
+    names = [f"{family}{size}" for size in sizes]
+    assert [find_representation(name).name for name in names] == names
+
+
 def test_hero_wavelengths_are_unbiased_and_variance_falls_with_paths(checker):
     power = checker.powers[:1] * checker.surfaces[:1]
     spread = []
-    for paths in (1, 8):
-        hero = hero_wavelengths(paths)
+    for count in (4, 32):
+        hero = hero_wavelengths(count)
         actual = hero.xyz(hero.encode_light(np.tile(power, (4000, 1))))
         error = actual.std(axis=0) / np.sqrt(len(actual))
         assert (np.abs(actual.mean(axis=0) - power @ xyz_weights()) < 4 * error + 1e-5).all()

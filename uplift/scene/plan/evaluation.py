@@ -121,7 +121,7 @@ class EvaluationSet:
         return np.concatenate(found)
 
     def error(self, xyz: Array) -> ErrorSummary:
-        """Errors of XYZ (n, 3) under each light, where white has Y = 1."""
+        """Errors of XYZ (K, n, 3) under the lights, where white has Y = 1."""
         parts = []
         differences = delta_e_2000(self.setup.lab, self.setup.to_lab(xyz))
         for light, difference in zip(self.setup.lights, differences, strict=True):
@@ -147,7 +147,7 @@ class EvaluationSet:
 def renderings(
     counts: Sequence[int], tests: EvaluationSet, floor: float, progress: ProgressCallback, others: str | None
 ) -> list[Rendering]:
-    """Fit wavelengths, of ``counts`` in ascending order, up to an error of ``floor``; without it, all wavelengths.
+    """Fit wavelengths, of ``counts`` in ascending order, up to an error of ``floor``; all of them if none reaches it.
 
     Those that do not lower the error are left out. Meyer's wavelengths and other representations follow for an
     observer of that name, ``others``, unless another rendering costs no more and is as accurate.

@@ -136,7 +136,7 @@ def read_scene_file(path: StrPath) -> SceneFile:
     Raises
     ------
     PlanFileError
-        If the file cannot be read or a value does not fit, with the line and the key.
+        If the file cannot be read or a value does not fit; the error names the key.
     """
     file = read_toml(path, PlanFileError)
     # No value of a TOML file is a path: the key is refused there.

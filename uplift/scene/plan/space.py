@@ -42,7 +42,7 @@ FINE = 64
 PROBE = 9
 """Coefficients of the cubes that measure lattices."""
 LEAST_BYTES, POINT_NUMBER = 4, 4
-"""Bytes of a coefficient, unless colours need 8, and of the number of a point in a sparse file."""
+"""Bytes of a coefficient, unless colours need 8, and of the number of a node in a sparse file."""
 
 
 class CandidateSpace:
@@ -164,7 +164,7 @@ class CandidateSpace:
     def _with_pixels(
         self, choice: Options, points: tuple[int, int], rendering: Rendering, bound: float
     ) -> Iterator[Candidate]:
-        """Candidates of a cube, of ``points`` with all cells and with those of the textures, and of a rendering."""
+        """Candidates of a cube, of ``points`` nodes with all cells and with those of the textures, and a rendering."""
         colours, count = self.colours, round(rendering.surface)
         for sparse, pixel in product((False, True)[: 1 + self.scene.sparse], PIXELS):
             if choice.model == Sigmoid.name and pixel.form == texture.Moments.name:
@@ -214,7 +214,7 @@ class CandidateSpace:
         return self.cubes[choice]
 
     def _points(self, choice: Options) -> tuple[int, int]:
-        """Points of a lattice, and those around one colour of every bin of the textures."""
+        """Numbers of the nodes of a lattice, and of those around one colour of every bin of the textures."""
         lattice = Lattice(axis_nodes(choice.axis, int(choice.dim)))
         needed = lattice.corner_points(lattice.mask(cells_touched(lattice, self.colours.colour_bins)))
         return lattice.size, int(needed.sum())

@@ -31,7 +31,7 @@ FACTORIES: Mapping[str, tuple[Callable[[int], Representation], tuple[int, ...]]]
     "GQ": (samples.gauss_samples, SIZES),
     "TM": (models.trigonometric_moments, (5, 9, 13, 17)),  # moments that cubes may store
     "SG": (models.sigmoid_coefficients, (3,)),
-    "HW": (models.hero_wavelengths, (1, 4, 16, 64)),  # paths per pixel
+    "HW": (models.hero_wavelengths, (4, 16, 64, 256)),  # wavelengths per pixel
 }
 """Factory and sizes by abbreviation. The linear model (LM) is not included, as it depends on the scene."""
 

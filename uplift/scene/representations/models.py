@@ -7,6 +7,7 @@ import numpy as np
 from uplift.colorimetry import observer
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
 from uplift.common.arrays import Array, Indices
+from uplift.common.errors import OptionError
 from uplift.fit.entries import Marquardt
 from uplift.fit.solver import iterate_rows
 from uplift.models import Moments, Sigmoid
@@ -50,7 +51,7 @@ def trigonometric_moments(count: int) -> Representation:
     """Trigonometric moments (TM): the zeroth and those above it, mirrored, as many as a cube has coefficients.
 
     Peters et al. 2019, "Using moments to represent bounded signals for spectral rendering". These are the moments of
-    the spectrum itself. The coefficients of cubes are fitted to colours as well (docs/materials.md).
+    the spectrum itself. The coefficients of cubes are fitted to colours as well (docs/mathematics.md, 6).
     """
     model = Moments(count)
     phase = model.phase(samples.wavelengths())
@@ -116,14 +117,18 @@ def linear_model(count: int, lights: Array, surfaces: Array) -> Representation:
     )
 
 
-def hero_wavelengths(paths: int) -> Representation:
-    """Hero wavelengths (HW): Monte Carlo sampling with ``paths`` per pixel, of four wavelengths each.
+def hero_wavelengths(count: int) -> Representation:
+    """Hero wavelengths (HW): Monte Carlo sampling with ``count`` wavelengths per pixel, in paths of four each.
 
     Wilkie, Nawaz, Droske, Weidlich & Hanika 2014, "Hero wavelength spectral sampling": a hero, and three more at
     distances of a quarter of the range. They follow the density of Radziszewski, Boryczko & Alda 2009, as in pbrt. The
     heroes of a pixel are stratified: one in each of as many equal strata as it has paths. A row is a pixel with its
-    own, reproducible random numbers. Spectra remain tables, evaluated at the wavelengths of a path.
+    own, reproducible random numbers. Spectra remain tables, evaluated at the wavelengths of a path. Raises
+    `OptionError` unless the count is a multiple of four.
     """
+    paths, rest = divmod(count, WAVELENGTHS_PER_PATH)
+    if rest or not paths:
+        raise OptionError(f"number of hero wavelengths must be a positive multiple of four, got {count}")
     low, high = np.tanh(STEEPNESS * (np.array([observer.START, observer.END]) - CENTRE))
 
     def draw(pixels: int) -> Array:
@@ -144,4 +149,4 @@ def hero_wavelengths(paths: int) -> Representation:
         weights = (np.interp(drawn, samples.wavelengths(), column) for column in samples.xyz_weights().T)
         return np.stack([(estimate * weight).mean(axis=1) for weight in weights], axis=1)
 
-    return Representation(f"HW{WAVELENGTHS_PER_PATH * paths}", "hero wavelengths", encode, encode, xyz)
+    return Representation(f"HW{count}", "hero wavelengths", encode, encode, xyz)

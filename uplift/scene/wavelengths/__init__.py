@@ -90,7 +90,8 @@ def choose(
     Raises
     ------
     OptionError
-        Both or neither of ``count`` and ``target``, a value out of range, or a target that no count meets.
+        Both or neither of ``count`` and ``target``, a value out of range, a count without a rule of the method
+        (``undefined-rule``), or a target that no count meets.
     UnknownNameError
         The method or the measure does not exist.
     """
