@@ -41,7 +41,7 @@ def read_palette(path: StrPath) -> Palette:
     Raises
     ------
     PaletteError
-        If the file cannot be read or a value does not fit, with the line and the key.
+        If the file cannot be read or a value does not fit; the error names the key.
     """
     file = read_toml(path, PaletteError)
     table = file.validate(_PaletteTable)
