@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import uplift
 from uplift.atlas import read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_spectra
@@ -15,6 +16,7 @@ from uplift.lab.study.sensitivity import (
     compare,
     perturb,
     rebuild,
+    study_sensitivity,
 )
 
 LIGHT = observer.light("FL11")
@@ -29,6 +31,13 @@ def test_answers_change_in_proportion_to_the_query(small_cube):
         assert 0 < rounding["rms_most"] < 1e-5
         assert 0 < rounding["light_most"] < 1e-2
         assert wide["rms_mean"] < wide["rms_most"] < wide["largest"]
+
+
+def test_cubes_of_any_wavelengths_are_studied():
+    cube = uplift.build(dim=3, step=10)
+    moves, changes = study_sensitivity(cube, None, 0)
+    assert len(moves) == 3 * len(CONTINUOUS_MODES)
+    assert changes == []
 
 
 def test_jumps_are_found_and_only_those():

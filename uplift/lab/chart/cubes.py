@@ -55,7 +55,7 @@ class CubeOptions:
 
 @cache
 def built_cube(task: Task, options: CubeOptions) -> tuple[Cube, float, float]:
-    """Build a cube, store and load it, once for all methods that need it; return CPU seconds of the last two."""
+    """Build, store and load a cube once for all methods; return it and the CPU seconds to build and to load it."""
     from uplift.fit.families import families_with
     from uplift.pipeline.build import build
 

@@ -21,7 +21,7 @@ from uplift.common.colour_science import colour_science
 from uplift.common.errors import AtlasError, OptionError
 
 RANGE = (360.0, 830.0, 1.0)
-"""First and last wavelength and step in nm: the tables of the CIE."""
+"""First and last wavelength and step in nm: those of the CIE 1931 observer."""
 
 
 def at_1_nm(sensor: Sensor) -> Sensor:

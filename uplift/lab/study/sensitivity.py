@@ -79,7 +79,7 @@ def study_sensitivity(
     if data.complete_cells is not None:
         problem = "a sparse cube has no answers between the cells of its scene"
         raise OptionError(problem, code="sparse-cube", hint="build it without a scene")
-    light = observer.light(NARROW_BAND_LIGHT, data.sensor.observer)
+    light = observer.light(NARROW_BAND_LIGHT, data.sensor.observer, *data.sensor.range)
     changes = []
     if atlas is not None and entries > 0:
         options = recorded_options(data.provenance["options"])
@@ -98,7 +98,8 @@ def perturb(cube: Cube, light: Light, count: int = COLOURS) -> list[Record]:
     Every channel moves up or down, at random, by the full step. ``rms`` is the change of the reflectance over
     wavelength, ``largest`` that at any wavelength; ``light`` and ``own`` are ΔE00 under a light and under the
     illuminant of the cube, where the change of the query causes it. ``_mean`` and ``_most`` are over the colours.
-    ``jump`` is what the first of them is at most if steps are halved: 0 but for rounding, unless answers jump.
+    ``jump`` is the largest ΔE00 under the light that remains when steps are halved: 0 but for rounding, unless answers
+    jump.
     """
     lights = light, cube.data.sensor.light
     moves: list[Record] = []

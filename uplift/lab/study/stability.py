@@ -115,10 +115,10 @@ def run(config: RunConfig, atlases: Mapping[str, Atlas]) -> Record:
 
     The record has the options; the share ``success`` of the realisable nodes that are fitted; ``points``, all nodes;
     ``realisable``, those whose colour some reflectance has; ``unfitted``, realisable nodes farther from their colour
-    than the threshold; ``stand_ins``, unrealisable ones farther from their nearest realisable colour; ``rounds`` of
-    growth after the first; ``calls``, nodes that improvement was tried on, summed over its steps; ``worst``, the
-    largest distance of a realisable node, max |linear RGB|, and its colour ``r``, ``g``, ``b``; ``seconds`` of wall
-    time, including compilation.
+    than the threshold; ``stand_ins``, unrealisable ones farther from the realisable colour that they are fitted to;
+    ``rounds`` of growth after the first; ``calls``, nodes that improvement was tried on, summed over its steps;
+    ``worst``, the largest distance of a realisable node, max |linear RGB|, and its colour ``r``, ``g``, ``b``;
+    ``seconds`` of wall time, including compilation.
     """
     steps = [0]
     options = asdict(config)
