@@ -86,7 +86,7 @@ def fit_quality(cube: Cube) -> Row:
 
 
 def round_trip(cube: Cube, sensor: Sensor, mode: str = "spectra") -> list[float]:
-    """Return the mean and the largest ΔE00 between the requested colours and those of the spectra, for a judge."""
+    """Return the mean and the largest ΔE00 by a sensor between requested colours and those of their spectra."""
     found = delta_e_rgb(sensor, QUERIES, sensor.rgb(cube.reflectance(QUERIES, sensor.wavelengths, mode)))
     return [float(found.mean()), float(found.max())]
 

@@ -1,4 +1,4 @@
-"""Materials that `uplift advise` chooses to measure, against random choice, for docs/advice.md."""
+"""Materials that `uplift advise` chooses to measure, against random choice, for docs/guides/measuring.md."""
 
 from typing import Any
 

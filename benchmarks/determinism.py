@@ -1,8 +1,7 @@
 """Reproducibility of builds, for docs/stability.md.
 
-Threads, cores, devices and batch sizes must not change a byte. Instruction sets must not change the nodes of the
-lattice. They may change spectra; the largest difference is what `uplift check` has to allow between machines
-(`uplift.report.regression`).
+Threads, cores and devices must not change a byte. Instruction sets must not change where the nodes lie. They may change
+spectra; the largest difference is what `uplift check` has to allow between machines (`uplift.report.regression`).
 """
 
 import os
@@ -58,7 +57,7 @@ APART: dict[str, dict[str, str]] = {
     "all three without AVX-512": WITHOUT_AVX512,
     "all three without AVX": NUMPY_SSE4 | XLA_SSE4 | BLAS_SSE4,
 }
-"""Environment variables of settings that must not change nodes."""
+"""Environment variables of settings that must not change where the nodes lie."""
 PREFIXES = {"one core": ("taskset", "-c", "0")}
 """Commands before that of a setting."""
 

@@ -71,7 +71,7 @@ def check_answers(rgb: Array, target: Array, *, least: float) -> dict[str, float
     residual = np.nan_to_num(np.abs(rgb - target).max(axis=1), nan=np.inf, posinf=np.inf)
     share = float((residual <= THRESHOLD).mean())
     if share < least:
-        raise RuntimeError(f"wrong answer, not timed: {share:.1%} of the points are within {THRESHOLD:g}")
+        raise RuntimeError(f"wrong answer, not timed: {share:.1%} of the nodes are within {THRESHOLD:g}")
     return {"share": share, "worst": float(residual.max())}
 
 
@@ -149,7 +149,7 @@ RGB2SPEC_VERSIONS = (
     ("e162107a2dfd7efe4384618ecd14e97d4a035685", "Gauss-Newton, double precision", 0.9),
     ("30a97d414f7cdb1c2c553daf3b4a83c333e6365e", "Levenberg-Marquardt, single precision", 0.99),
 )
-"""Commit, method, and the minimum share of points that must be fitted."""
+"""Commit, method, and the minimum share of nodes that must be fitted."""
 RGB2SPEC_FLAGS = ("-O3 -DNDEBUG", "-O3 -DNDEBUG -march=native -ffast-math")
 """Those of its CMakeLists.txt for a release, and the fastest: -Ofast, -funroll-loops and -flto gain nothing more."""
 RGB2SPEC_COMPILES = ("-std=c++11", "-include", "algorithm", "-pthread")
@@ -186,7 +186,7 @@ def table_sensor() -> Sensor:
 
 
 def table_colours(path: Path) -> tuple[Array, Array]:
-    """Return the linear RGB (n, 3) of the spectra in a table of rgb2spec, and those of its points."""
+    """Return the linear RGB (n, 3) of the spectra in a table of rgb2spec, and those of its nodes."""
     data = path.read_bytes()  # "SPEC", u32 dim, f32 scale[dim], f32 data[3][dim][dim][dim][3]
     dim = int.from_bytes(data[4:8], "little")
     level, even = np.frombuffer(data, "<f4", dim, 8).astype(float), np.linspace(0, 1, dim)

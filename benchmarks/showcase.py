@@ -1,4 +1,4 @@
-"""The pictures of the README and their numbers, for docs/materials.md.
+"""Pictures of the README, docs/materials.md and docs/guides/film.md, and their numbers.
 
 The light on the charts is uniform, so that spectra are integrated
 instead of rendered; docs/scene.md has renderings of the same chart, which agree.
@@ -50,7 +50,7 @@ SESSION = (
 
 
 def main() -> None:
-    """Draw both pictures and store the numbers of the first."""
+    """Draw the charts, the still life and the film, and store the numbers of the charts and of the film."""
     FOLDER.mkdir(exist_ok=True)
     lamps = [light(name) for name in RELIGHT_LIGHTS]
     methods, inside = colours(lamps)
