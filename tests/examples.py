@@ -45,7 +45,7 @@ def examples() -> list[str]:
 
 
 def page_examples(text: str) -> Iterator[str]:
-    """Yield the examples of a page: lines that begin with ``uplift`` in its code blocks."""
+    """Yield the examples of a page: lines that begin with ``uplift`` or ``mkdir -p`` in its code blocks."""
     for language, block in BLOCKS.findall(text):
         for line in block.replace("\\\n", " ").splitlines() if language in SHELLS else ():
             if match := re.match(r"(?:\$ )?((?:uplift|mkdir -p) .*)", line):

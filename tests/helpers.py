@@ -1,4 +1,4 @@
-"""Assertions on errors and warnings by their stable codes; quiet builds; cubes with changed or absent points."""
+"""Assertions on errors and warnings by their stable codes; quiet builds; cubes with changed or absent nodes."""
 
 import contextlib
 import warnings
@@ -44,12 +44,12 @@ def quiet_build(*args: Any, **options: Any) -> Cube:
 
 
 def with_points(data: CubeData, **arrays: Any) -> CubeData:
-    """Return ``data`` with some arrays of its point table replaced."""
+    """Return ``data`` with some arrays of its table of nodes replaced."""
     return replace(data, points=replace(data.points, **arrays))
 
 
 def with_absent_points(data: CubeData, present: np.ndarray) -> CubeData:
-    """Return the cube with the points ``present`` (dim³,) only, as a build for a scene returns it."""
+    """Return the cube with the nodes ``present`` (dim³,) only, as a build for a scene returns it."""
     arrays = {name: getattr(data.points, name) for name in POINTS}
     arrays = {name: array.copy() for name, array in arrays.items() if array is not None}
     for name, array in arrays.items():
@@ -58,6 +58,6 @@ def with_absent_points(data: CubeData, present: np.ndarray) -> CubeData:
 
 
 def near_black(data: CubeData) -> np.ndarray:
-    """Mask (dim³,) of the points in the lowest quarter of every axis."""
+    """Mask (dim³,) of the nodes in the lowest quarter of every axis."""
     position = data.lattice.position(np.arange(data.lattice.size))
     return (position <= data.lattice.dim // 4).all(axis=1)

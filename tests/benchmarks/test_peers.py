@@ -48,7 +48,7 @@ def test_colours_of_a_table_come_back(table):
 def test_axes_that_are_swapped_are_wrong_answers(table, tmp_path):
     swapped = table[1].reshape(3, 2, 2, 2, 3).swapaxes(2, 3)
     write(tmp_path / "swapped.coeff", swapped)
-    with pytest.raises(RuntimeError, match=r"wrong answer, not timed: 50\.0% of the points"):
+    with pytest.raises(RuntimeError, match=r"wrong answer, not timed: 50\.0% of the nodes"):
         peers.check_answers(*peers.table_colours(tmp_path / "swapped.coeff"), least=0.9)
 
 

@@ -18,7 +18,7 @@ def best_residual(sensor, rgb):
 
 @pytest.mark.parametrize("space", ["sRGB", "ACEScg", "ProPhoto RGB"])
 def test_solid_contains_the_colours_that_a_solver_reaches(space):
-    """On a small lattice, and on the points of a large one nearest to the boundary."""
+    """On a small lattice, and on the nodes of a large one nearest to the boundary."""
     sensor = observer.sensor(space)
     limits = solid(sensor.matrix)
     large = Lattice(axis_nodes("srgb", 17)).points

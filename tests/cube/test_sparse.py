@@ -1,4 +1,4 @@
-"""Files of sparse cubes: present points only, and errors for points without a place."""
+"""Files of sparse cubes: present nodes only, and errors for nodes without a place."""
 
 import subprocess
 import sys
@@ -47,7 +47,7 @@ def test_corner_points_and_complete_cells_are_inverse():
 
 
 def points(change):
-    """A change of the numbers of the present points."""
+    """A change of the numbers of the present nodes."""
 
     def apply(tensors, metadata):
         tensors["points"] = np.ascontiguousarray(change(tensors["points"].copy()))

@@ -70,7 +70,7 @@ def test_tiny_lattices_are_fitted_to_their_corners(model, dim, sensor):
 
 
 def test_points_that_fail_from_their_start_are_fitted_from_their_neighbours(sensor):
-    """All but the middle point start so near black that no step helps; growth proceeds outward from it."""
+    """All but the middle node start so near black that no step helps; growth proceeds outward from it."""
     rounds = []
     middle = LATTICE.size // 2
     start = np.full((LATTICE.size, 9), -1e9) * MODEL.constant()
@@ -115,7 +115,7 @@ def test_growth_proceeds_outward_in_shells(sensor):
 
 @pytest.mark.parametrize("rgb", [NO_COLOURS, np.array([[0.2, 0.3, 0.4]])], ids=["no seeds", "seeds"])
 def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch, rgb):
-    """Outward, all at once, and from coarse lattices to finer ones; few points differ."""
+    """Outward, all at once, and from coarse lattices to finer ones; few nodes differ."""
     lattice = Lattice(axis_nodes("srgb", 17))
     spectra = [reflectance(MODEL, fitted(MODEL, sensor, lattice, rgb)[0].coefficients, sensor.wavelengths)]
     for order in ([1], [4, 2, 1]):
@@ -131,7 +131,7 @@ def test_the_answer_does_not_depend_on_the_order_of_growth(sensor, monkeypatch, 
 
 
 def test_an_unrealisable_colour_has_status_unfitted(sensor):
-    """The green corner of ProPhoto RGB, not declared as unrealisable. Other points are not affected."""
+    """The green corner of ProPhoto RGB, not declared as unrealisable. Other nodes are not affected."""
     wide = observer.sensor("ProPhoto RGB", "D65")
     lattice = Lattice(np.linspace(0, 1, 3))
     points, improvements = fitted(MODEL, wide, lattice)
@@ -189,7 +189,7 @@ def distance(problem, coefficients):
 
 
 def greys(problem, level):
-    """Multipliers of a flat spectrum per lattice point."""
+    """Multipliers of a flat spectrum per node."""
     return np.tan(np.pi * (np.asarray(level) - 0.5))[:, None] * problem.model.constant()
 
 
@@ -212,7 +212,7 @@ def test_single_precision_is_used_where_it_is_accurate(problem):
 
 
 def test_double_precision_is_used_where_single_is_inaccurate(problem, monkeypatch):
-    """The threshold is so small that rounding exceeds it in the last block: all points are evaluated again."""
+    """The threshold is so small that rounding exceeds it in the last block: all nodes are evaluated again."""
     monkeypatch.setattr("uplift.fit.growth.BLOCK_POINTS", 256)
     strict = replace(problem, threshold=1e-7)
     multipliers = greys(problem, np.concatenate([np.full(STORED.size - 9, 0.5), np.linspace(0.99, 0.9999, 9)]))

@@ -64,7 +64,7 @@ def prior(sensor):
 
 
 def test_the_share_of_the_entry_falls_from_near_to_far_corners(prior):
-    """The primary point starts from its entry at any distance."""
+    """The primary node starts from its entry at any distance."""
     shares = []
     for dim in (6, 12, 16, 24):
         lattice = Lattice(np.linspace(0, 1, dim))

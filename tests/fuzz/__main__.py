@@ -1,4 +1,4 @@
-"""`make nightly`: every target with many inputs; those that fail are kept in out/fuzz."""
+"""`make nightly`: every target with many inputs; the first one of each kind of failure is kept in out/fuzz."""
 
 import json
 from collections import Counter

@@ -115,7 +115,7 @@ def colours_in(data, cell, count=400):
 
 
 def missing(data, required):
-    """Count colours that are answered from points other than those that ``required`` returns for their cell."""
+    """Count colours that are answered from nodes other than those that ``required`` returns for their cell."""
     count = 0
     for cell in np.unique(data.entry_boxes.cells[0])[::3]:
         mask = np.zeros(data.lattice.size, dtype=bool)

@@ -36,7 +36,7 @@ OPTIONS = [{"dim": 48}, {"model": "sigmoid"}, {"coefficients": 3}, {"coefficient
 @pytest.mark.parametrize("atlas", [MACBETH, None], ids=["atlas", "none"])
 @pytest.mark.parametrize("options", [*OPTIONS, {"axis": "linear"}], ids=str)
 def test_every_point_is_fitted(atlas, options):
-    """All points are within 1e-4, computed from the stored coefficients only."""
+    """All nodes are within 1e-4, computed from the stored coefficients only."""
     data = quiet_build(atlas, **{"dim": 12, **options}).data
     spectra = data.model.to_reflectance(data.model.from_storage(data.points.coefficients) @ data.model.basis(GRID).T)
     assert np.abs(data.sensor.rgb(spectra) - data.lattice.points).max() <= 1e-4
@@ -131,7 +131,7 @@ def in_order():
 @settings(max_examples=3, phases=[Phase.generate])
 @given(order=st.permutations(range(24)))
 def test_the_order_of_the_atlas_changes_only_the_order_of_its_table(in_order, order):
-    """Points are equal bit by bit, except for the row of their entry; the table is equal up to rounding."""
+    """Nodes are equal bit by bit, except for the row of their entry; the table is equal up to rounding."""
     spectra = read_atlas(MACBETH)
     shuffled = quiet_build(Atlas(tuple(spectra.entries[row] for row in order)), dim=5).data
     for name in ("coefficients", "rgb", "distance", "status", "standard_error"):
@@ -146,7 +146,7 @@ def test_the_order_of_the_atlas_changes_only_the_order_of_its_table(in_order, or
 
 
 def test_builds_do_not_depend_on_batches(monkeypatch):
-    """In a wide gamut, where some points need many iterations."""
+    """In a wide gamut, where some nodes need many iterations."""
     options = {"dim": 7, "space": "ITU-R BT.2020"}
     as_it_is = quiet_build(MACBETH, **options).data
     monkeypatch.setattr("uplift.fit.batch.CPU_ROWS", (1024, 256))

@@ -45,7 +45,7 @@ def lossy_cube(small_cube):
 
 @pytest.fixture(scope="session")
 def spoilt(small_cube):
-    """The same cube with two points over the threshold."""
+    """The same cube with two nodes over the threshold."""
     distance, status = small_cube.data.points.distance.copy(), small_cube.data.points.status.copy()
     distance[[100, 300]] = 0.01, 0.02
     status[[100, 300]] = Status.UNFITTED
