@@ -98,7 +98,7 @@ class OcioSpace:
         return AP0.rgb_to_xyz @ self.matrix
 
     def as_image_space(self) -> ImageSpace:
-        """Return the space with the primaries of its own if it is linear, else decoded to `AP0`."""
+        """Return the space with its own primaries if it is linear, else decoded to `AP0`."""
         if self.is_linear:
             return ImageSpace(self.name, self, lambda codes: codes)
         return ImageSpace(self.name, AP0, self.convert, floats_are_codes=True, mixes_channels=True)
