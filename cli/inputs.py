@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from uplift.common.errors import AtlasError, OptionError, OutputError, TextureError
+from uplift.common.files import check_regular
 from uplift.common.text import format_value, parse_float
 
 from .output.diagnostics import warn
@@ -32,12 +33,19 @@ MAX_SIDE = 960
 """Pixels of the longer side of an image, as shown and compared."""
 
 
+def atlas_files(files: Sequence[str | Path]) -> Sequence[str | Path]:
+    """Return the files of atlases; without any, the default ones."""
+    from uplift.atlas import shipped_atlases
+
+    return files or sorted(Path().glob(LOCAL)) or [shipped.path for shipped in shipped_atlases()]
+
+
 def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
     """Return atlases by the stems of their file names; without files, the default ones."""
-    from uplift.atlas import read_atlas, shipped_atlases
+    from uplift.atlas import read_atlas
 
     atlases: dict[str, Atlas] = {}
-    for file in files or sorted(Path().glob(LOCAL)) or [shipped.path for shipped in shipped_atlases()]:
+    for file in atlas_files(files):
         name = Path(file).stem
         if name in atlases:
             raise AtlasError(f"another atlas has the name '{name}' too", path=file, hint="rename one of the files")
@@ -46,8 +54,14 @@ def read_atlases(files: Sequence[str | Path]) -> dict[str, Atlas]:
 
 
 def expand_patterns(sources: Sequence[str]) -> list[str]:
-    """Return the paths of images and patterns, in order. A pattern may hold the number of a UDIM tile."""
-    return [path for source in sources for path in _expand(source)]
+    """Return the paths of images and patterns, in order. A pattern may hold the number of a UDIM tile.
+
+    Raises `TextureError` for a path that is not a file, and for a pattern that matches none.
+    """
+    paths = [path for source in sources for path in _expand(source)]
+    for path in paths:
+        check_regular(path, TextureError, hint="name an image")
+    return paths
 
 
 def _expand(source: str) -> list[str]:
@@ -94,6 +108,40 @@ def find_input_space(name: str) -> ImageSpace:
     from uplift.colorimetry.spaces import find_space
 
     return find_space(name)
+
+
+def check_space(name: str) -> str:
+    """Return the name or the chromaticities of the RGB space of an image."""
+    find_input_space(name)
+    return name
+
+
+def check_rgb_space(name: str) -> str:
+    """Return the name of an RGB space, or that of raw values of a camera."""
+    from uplift.colorimetry.camera import CAMERA
+
+    if name != CAMERA:
+        from uplift.colorimetry.spaces import look_up_space
+
+        look_up_space(name)
+    return name
+
+
+def check_light(name: str) -> str:
+    """Return the name of an illuminant."""
+    from uplift.colorimetry.tables import stated_name
+
+    stated_name("illuminant", name)
+    return name
+
+
+def check_observer(name: str) -> str:
+    """Return the name of an observer or a camera, or that of a camera's file."""
+    from uplift.colorimetry import observer, tables
+
+    if not observer.is_camera_file(name) and name not in tables.names("camera"):
+        tables.stated_name("observer", name)
+    return name
 
 
 def check_page(path: str) -> str:

@@ -16,7 +16,7 @@ from click.shell_completion import CompletionItem
 
 from uplift.common.text import format_value, parse_float, parse_whole
 
-from .inputs import check_page, check_plot, parse_wavelengths
+from .inputs import check_light, check_observer, check_page, check_plot, check_rgb_space, check_space, parse_wavelengths
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
@@ -112,9 +112,16 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         return self.function(value)
 
 
+class OutputFile(Parsed):
+    """The name of a file or folder that a command writes, which the function checks."""
+
+
 NUMBER, WHOLE = Number(), Whole()
 WHOLE_OR_AUTO = Whole(word="auto")
-PAGE, PLOT, WAVELENGTHS = Parsed(check_page), Parsed(check_plot), Parsed(parse_wavelengths)
+WAVELENGTHS = Parsed(parse_wavelengths)
+LIGHT, OBSERVER = Parsed(check_light), Parsed(check_observer)
+SPACE, INPUT_SPACE = Parsed(check_rgb_space), Parsed(check_space)
+OUTPUT, PAGE, PLOT = OutputFile(str), OutputFile(check_page), OutputFile(check_plot)
 
 
 def completion(*sources: str, files: bool = False) -> Callable[..., list[CompletionItem]]:
@@ -157,10 +164,11 @@ def repeatable(
 
 atlas = partial(repeatable, "--atlas", "files", metavar="FILE", shell_complete=complete_atlas)
 LAMPS = ", such as led, 3200K or FL11"
-light = partial(repeatable, "--light", "lights", examples=LAMPS, metavar="NAME", shell_complete=complete_light)
+named_lights = partial(repeatable, metavar="NAME", type=LIGHT, shell_complete=complete_light)
+light = partial(named_lights, "--light", "lights", examples=LAMPS)
 """Why its defaults differ is in `uplift help lights`."""
 tolerance = partial(click.option, "--tolerance", metavar="ΔE00", type=NUMBER)
-output = partial(click.option, "-o", "--output", metavar="FILE", type=click.Path())
+output = partial(click.option, "-o", "--output", metavar="FILE", type=OUTPUT)
 OF_PACKAGE = ", or ACEScg for the packaged ACEScg cube{}. [default: the packaged sRGB cube]"
 """Help of ``--cube`` where a packaged cube will do."""
 
@@ -194,6 +202,7 @@ def input_space(subject: str, default: str = "as the file states", name: str = "
         "--input-space",
         name,
         metavar="NAME",
+        type=INPUT_SPACE,
         shell_complete=complete_space,
         help=f"RGB space of {subject}: a name of OpenColorIO or colour-science such as ACEScg or lin_rec2020, or x,y "
         f"of red, green, blue and white. [default: {default}]",
@@ -306,19 +315,23 @@ verbose = click.option("-v", "--verbose", is_flag=True, help="Print a line for e
 def space(camera: str = "") -> Decorator:
     """``--space``: the space of what is built or listed."""
     text = f"RGB space by its name in colour-science or OpenColorIO, such as ACEScg{camera}."
-    return click.option("--space", default="sRGB", help=text, shell_complete=complete_space)
+    return click.option("--space", default="sRGB", type=SPACE, help=text, shell_complete=complete_space)
 
 
 def observer(camera: str = "") -> Decorator:
     """``--observer``."""
     default, text = "CIE 1931 2 Degree Standard Observer", f"Standard observer{camera}."
-    return click.option("--observer", default=default, help=text, shell_complete=complete_observer)
+    return click.option("--observer", default=default, type=OBSERVER, help=text, shell_complete=complete_observer)
 
 
 sensor = stacked(
     space("; or camera: raw values"),
     click.option(
-        "--illuminant", default="D65", help="Illuminant under which RGB are defined.", shell_complete=complete_light
+        "--illuminant",
+        default="D65",
+        type=LIGHT,
+        help="Illuminant under which RGB are defined.",
+        shell_complete=complete_light,
     ),
     observer(", or with --space camera a camera: name or CSV file of sensitivities"),
 )

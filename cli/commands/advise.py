@@ -10,6 +10,7 @@ from .. import options
 from ..inputs import expand_patterns, read_pictures
 from ..output.console import make_table, print_json, say, show
 from ..output.progress import progress_bar
+from ..outputs import check_outputs
 
 SHOWN = 4
 """Images of a picture."""
@@ -50,13 +51,12 @@ def command(
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
     from uplift.colorimetry.observer import light
     from uplift.colorimetry.srgb import hex_codes
-    from uplift.common.files import check_outputs
     from uplift.io.scene_colours import Images
     from uplift.lookup import load
     from uplift.scene import advice
 
     paths = expand_patterns(images)
-    check_outputs((plot_path,), inputs=(*paths, cube_path), force=force)
+    check_outputs(plot_path, inputs=paths)
     cube = load(cube_path)
     sensor = cube.data.sensor
     lit = [light(name, cube.observer, *sensor.range) for name in lights or RELIGHT_LIGHTS]

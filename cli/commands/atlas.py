@@ -10,6 +10,7 @@ import click
 
 from .. import options
 from ..output.console import has_colours, make_table, paragraph, print_csv, print_fields, print_json, say, show, swatch
+from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
@@ -50,7 +51,6 @@ def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, 
     """
     from uplift.atlas import read_atlas, write_atlas
     from uplift.colorimetry.observer import sensor
-    from uplift.common.files import check_output
 
     if not files:
         if output is not None:
@@ -58,9 +58,9 @@ def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, 
         _print_shipped(style)
         return
     if output is not None:
-        path = check_output(output, inputs=files, force=force)
+        check_outputs(output)
         atlas = read_atlas(*files, measured=scale)
-        write_atlas(atlas, path, force=force)
+        write_atlas(atlas, output, force=force)
         say(f"{output}: {len(atlas)} entries", err=True)
         return
     atlas = read_atlas(*files, measured=scale)

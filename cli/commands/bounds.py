@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.files import check_outputs, write_text
+from uplift.common.files import write_text
 
 from .. import options
 from ..output.answers import format_rgb, hex_code, patch
 from ..output.console import make_table, print_csv, print_fields, print_json_answers, say, show
+from ..outputs import check_outputs
 from .query import Answers, colour_options, result_object
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def command(
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
     from uplift.lookup.metamer_bounds import bounds
 
-    check_outputs((plot_path, html), inputs=(colours["cube_path"], colours["input_path"]), force=force)
+    check_outputs(plot_path, html)
     answers = Answers(lights=lights or RELIGHT_LIGHTS, **colours)
     if html is not None and not answers.single:
         raise click.UsageError("--html shows one colour: give it on the command line.")

@@ -19,6 +19,7 @@ from .. import options
 from ..inputs import expand_patterns
 from ..output.console import say
 from ..output.progress import progress_bar
+from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -166,15 +167,13 @@ def command(
     images. Other colours are errors, unless 'query' and 'texture' are given --fill-missing.
     """
     enable_jit_cache()
-    from uplift.common.files import check_output
-
     context = click.get_current_context()
     given = {
         str(each.name): each.opts[-1]
         for each in context.command.params
         if context.get_parameter_source(str(each.name)) is ParameterSource.COMMANDLINE
     }
-    inputs: list[str | Path | None]
+    inputs: tuple[str | Path, ...] = ()
     if plan_path is not None:
         if others := [option for name, option in given.items() if name not in ALLOWED_WITH_PLAN]:
             raise click.UsageError(f"The plan already sets these options: leave out {', '.join(others)}.")
@@ -183,28 +182,26 @@ def command(
         plan = read_plan(plan_path)
         make: Callable[..., Cube] = partial(plan.build, debug=settings["debug"])
         name = cube_name(plan_path) if output is None else output
-        inputs = [plan_path, *plan.images.paths, *plan.atlases]
+        inputs = (*plan.images.paths, *plan.atlases)
     else:
         if not images and (useless := [given[name] for name in OF_IMAGES if name in given]):
             raise click.UsageError(f"{', '.join(useless)}: no --scene image is given to which this applies.")
         name = _default_name(files, images, settings) if output is None else output
-        inputs = [*files, *settings["library"], settings["looks"], settings["observer"]]
         settings["shortest"], settings["longest"] = settings.pop("limits")
         pixels = [settings.pop(name) for name in OF_IMAGES]
         if images:
             from uplift.io.scene_colours import Images
 
             settings["scene"] = Images(tuple(map(Path, expand_patterns(images))), *pixels)
-            inputs += settings["scene"].paths
+            inputs = settings["scene"].paths
         from uplift.atlas import read_atlas
         from uplift.pipeline.build import build
 
         stated = {name: value for name, value in settings.items() if value not in (None, ())}
         make = partial(build, read_atlas(*files, measured=scale) if files else None, **stated)
-    path = check_output(name, inputs=inputs, force=force)
+    path = Path(name)
     slices = path.with_suffix(".exr") if settings["debug"] else None
-    if slices is not None:
-        check_output(slices, inputs=inputs, force=force)
+    check_outputs(path, slices, inputs=inputs)
     begin = time.perf_counter()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
         cube = make(progress=progress)

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import options
-from ..inputs import DEFAULT_ATLASES, read_atlases
-from ..output.console import make_table, paragraph, say, show, write_files
+from ..inputs import DEFAULT_ATLASES, atlas_files, read_atlases
+from ..output.console import make_table, paragraph, say, show
 from ..output.progress import progress_bar
+from ..outputs import check_folder, write_files
 from ..startup import enable_jit_cache, use_one_blas_thread
 
 if TYPE_CHECKING:
@@ -83,14 +84,14 @@ def command(
         return
     if any(required.values()):
         raise click.UsageError("The limits of a recommendation require --recommend.")
-    from uplift.common.files import check_folder, write_text
+    from uplift.common.files import write_text
     from uplift.lab.chart.picture import render_chart, write_picture
     from uplift.lab.chart.table import chart_csv, read_chart
 
-    folder = check_folder(output, FILES, inputs=files, force=force)
+    folder = check_folder(output, FILES, inputs=atlas_files(files))
     chart = read_chart(source) if source is not None else _measure(files, patterns, quick=quick)
     table, page = partial(write_text, chart_csv(chart)), partial(write_text, render_chart(chart))
-    write_files(folder, FILES, table, partial(write_picture, chart), page, force=force)
+    write_files(folder, FILES, table, partial(write_picture, chart), page)
     _print_fronts(chart)
 
 

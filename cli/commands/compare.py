@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from uplift.common.files import check_folder, write_text
+from uplift.common.files import write_text
 
 from .. import options
-from ..inputs import DEFAULT_ATLASES, read_atlases
-from ..output.console import make_table, print_csv_text, print_json, say, show, write_files
+from ..inputs import DEFAULT_ATLASES, atlas_files, read_atlases
+from ..output.console import make_table, print_csv_text, print_json, say, show
 from ..output.progress import progress_bar
+from ..outputs import check_folder, write_files
 from ..startup import use_one_blas_thread
 
 if TYPE_CHECKING:
@@ -83,19 +84,17 @@ def command(
     if write is not None:
         if output is None or filters or tolerance is not None:
             raise click.UsageError("--write requires --output, and does not apply to --filters and --tolerance.")
-        _write_spectra(write, files, lights, output, force=force)
+        _write_spectra(write, files, lights, output)
         return
     if tolerance is not None:
         check_target(tolerance)
-    folder = None if output is None else check_folder(output, FILES, inputs=files, force=force)
+    folder = None if output is None else check_folder(output, FILES, inputs=atlas_files(files))
     comparison, tuned = _measure(files, lights, filters=filters, quick=quick)
     if folder is not None:
         from uplift.lab.comparison.pictures import render_comparison, write_boxes, write_costs
 
         page = partial(write_text, render_comparison(comparison, tuned))
-        write_files(
-            folder, FILES, partial(write_boxes, comparison), partial(write_costs, comparison), page, force=force
-        )
+        write_files(folder, FILES, partial(write_boxes, comparison), partial(write_costs, comparison), page)
     if tolerance is not None:
         _print_advice(comparison, tolerance)
     elif style == "table":
@@ -104,15 +103,16 @@ def command(
         _print_records(comparison, tuned, style)
 
 
-def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[str, ...], output: str, *, force: bool) -> None:
+def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[str, ...], output: str) -> None:
     from uplift.atlas import merge, write_atlas
     from uplift.lab.comparison.compare import make_scene, represent
     from uplift.scene.representations import find_representation
 
-    representation, atlases = find_representation(name), read_atlases(files)
+    representation = find_representation(name)
+    folder = check_folder(output, SPECTRA, inputs=atlas_files(files))
+    atlases = read_atlases(files)
     pair = represent(representation, make_scene(atlases, lights), merge(atlases.values()).names)
-    folder = check_folder(output, SPECTRA, inputs=files, force=force)
-    write_files(folder, SPECTRA, *(partial(write_atlas, atlas) for atlas in pair), force=force)
+    write_files(folder, SPECTRA, *(partial(write_atlas, atlas) for atlas in pair))
     say(f"{folder}: {len(pair[0])} surfaces and {len(pair[1])} lights as {representation.name}")
 
 

@@ -10,6 +10,7 @@ from .. import options
 from ..inputs import expand_patterns, read_pictures
 from ..output.console import make_table, print_json, say, show
 from ..output.progress import progress_bar
+from ..outputs import check_outputs
 
 
 @click.command("diff")
@@ -51,16 +52,16 @@ def command(
     """
     from uplift.colorimetry.lights import SCENE_LIGHTS
     from uplift.common.errors import OptionError
-    from uplift.common.files import check_outputs, write_text
+    from uplift.common.files import write_text
     from uplift.lookup import load
     from uplift.report.diff import diff_cubes, to_json
 
     if tolerance is not None and tolerance < 0:
         raise OptionError(f"tolerance must not be negative, got {tolerance:g}")
     paths = expand_patterns(images)
+    check_outputs(output, inputs=paths)
     names = (first, second) if first != second else (first, f"{second} (again)")
     cubes = dict(zip(names, map(load, (first, second)), strict=True))
-    check_outputs((output,), inputs=(first, second, *paths), force=force)
     with progress_bar("comparing answers"):
         read = read_pictures(paths, next(iter(cubes.values())).data.sensor, **pixels)
         pictures = {path: picture.rgb.astype(float) for path, picture in zip(paths, read, strict=True)}

@@ -16,6 +16,7 @@ from ..output.answers import coordinates, describe_coordinates, format_rgb, hex_
 from ..output.console import print_fields, print_json, say
 from ..output.diagnostics import warn
 from ..output.progress import progress_bar
+from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -146,7 +147,6 @@ def command(
     import numpy as np
 
     from uplift.atlas import Atlas, read_atlas
-    from uplift.common.files import check_outputs
     from uplift.design.mixing import Ingredients, Medium, Surface, make_coat, mix, overpainter
     from uplift.design.mixing.coats import COATS, ramp
     from uplift.design.mixing.pigments import CONSTANT, SQUARE_ROOT, dispersive
@@ -171,7 +171,7 @@ def command(
         )
     if output is not None and not output.lower().endswith(".exr"):
         raise OutputError("painted images are OpenEXR files", path=output, hint="give a file name ending in .exr")
-    check_outputs((plot_path, output), inputs=(cube_path, over, *files), force=force)
+    check_outputs(plot_path, output, inputs=[word.partition(":")[2] for word in words])
     cube = load(cube_path)
     sensor, space = cube.data.sensor, None if input_space is None else find_input_space(input_space)
     if wavelengths is not None:

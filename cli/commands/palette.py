@@ -14,6 +14,7 @@ from uplift.common.errors import OptionError
 
 from .. import options
 from ..output.console import has_colours, make_table, paragraph, print_json, say, show
+from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     import numpy as np
@@ -69,14 +70,14 @@ def command(
       uplift palette engine.toml --html engine.html
       uplift palette vanish.toml --format json > vanish.json
     """
-    from uplift.common.files import check_outputs, write_text
+    from uplift.common.files import write_text
     from uplift.design.palette import design, matrix, read_palette, standard_model, unmet_goals, write_designed
     from uplift.design.palette.picture import cutaway
     from uplift.design.palette.plots import plot_matrix, plot_spectra
     from uplift.design.palette.relight_page import page, relighting
 
     palette = read_palette(spec)
-    check_outputs((output, plot_path, spectra_path, html), inputs=(*palette.sources, image), force=force)
+    check_outputs(output, plot_path, spectra_path, html, inputs=palette.sources)
     picture = _read_picture(palette, html, image, labels)
     solution = design(palette, standard_model(palette.sensor, palette.count))
     colours = matrix(solution)

@@ -1,10 +1,13 @@
 """``uplift plan``: choose cube, wavelengths and texture format for a scene."""
 
+from pathlib import Path
+
 import click
 
 from .. import options
 from ..output.console import json_text, make_table, paragraph, print_json, say, show
 from ..output.progress import progress_bar
+from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 
@@ -41,15 +44,14 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
     spectra, a list of spectra, or a cube, which 'uplift build --plan' builds.
     """
     enable_jit_cache()
-    from uplift.common.files import check_output, write_text
+    from uplift.common.files import write_text
     from uplift.scene.plan import plan, read_scene_file, summary
     from uplift.scene.plan.candidates import QUICK, SearchGrid
     from uplift.scene.plan.files import SUFFIX
 
     scene_file = read_scene_file(scene)
-    inputs = (scene_file.path, *scene_file.textures, *scene_file.atlases)
-    name = scene_file.path.with_suffix(SUFFIX) if output is None else output
-    path = check_output(name, inputs=inputs, force=force)
+    path = scene_file.path.with_suffix(SUFFIX) if output is None else Path(output)
+    check_outputs(path, inputs=(*scene_file.textures, *scene_file.atlases))
     summary.check_path(scene_file, path)
     with progress_bar() as progress:
         result = plan(scene_file, QUICK if quick else SearchGrid(), progress)

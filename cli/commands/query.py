@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from uplift.common.errors import UpliftWarning
-from uplift.common.files import check_output
 from uplift.common.text import printable
 
 from .. import options
@@ -20,6 +19,7 @@ from ..inputs import check_range
 from ..output.answers import coordinates, describe_coordinates, format_rgb, hex_code, patch, print_spectrum, sparkline
 from ..output.console import emit, has_colours, print_csv, print_json, print_json_answers, say
 from ..output.diagnostics import warn
+from ..outputs import check_outputs
 from ..startup import hide_drawing_notes
 
 if TYPE_CHECKING:
@@ -182,8 +182,7 @@ def command(
             raise click.UsageError("--check takes the colours from its FILE: give no others.")
         _check(stored, colours["cube_path"], colours["mode"], tolerance, style)
         return
-    if plot_path is not None:
-        check_output(plot_path, inputs=(colours["cube_path"], colours["input_path"]), force=force)
+    check_outputs(plot_path)
     answers = Answers(lights=lights, **colours)
     results: Iterable[QueryResult] = chain.from_iterable(answers)
     if plot_path is not None:

@@ -13,6 +13,7 @@ from ..inputs import expand_patterns, read_pictures
 from ..output.console import make_table, print_json, say, show
 from ..output.diagnostics import warn
 from ..output.progress import progress_bar
+from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
@@ -73,7 +74,7 @@ def command(
     enable_jit_cache()
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
     from uplift.common.errors import OutputError
-    from uplift.common.files import check_output, write_text
+    from uplift.common.files import write_text
     from uplift.io import texture
     from uplift.lookup import load
     from uplift.report.measures import mean_p95_max
@@ -95,7 +96,7 @@ def command(
     paths = expand_patterns(images) or [str(sample_path(SAMPLE))]
     if suffix == IMAGE and len(paths) > 1:
         raise click.UsageError("An .exr file holds one image: relight images one by one.")
-    check_output(output, inputs=(*paths, cube_path, *files), force=force)
+    check_outputs(output, inputs=paths)
     if not images and cube_path is None:
         files = files or (SAMPLE_ATLAS,)
     lights = lights or RELIGHT_LIGHTS
@@ -113,11 +114,12 @@ def command(
         return
     with progress_bar("computing spectra"):
         cubes = {SPECTRAL: load()}
+        pictures = read_pictures(paths, cubes[SPECTRAL].data.sensor, **pixels)
         if (own := _cube_of_user(cube_path, files)) is not None:
             cubes[f"{SPECTRAL} with {', '.join(Path(each).stem for each in files or [cube_path or ''])}"] = own
         relit = [
             relight(Path(path).name, each.rgb, cubes, lights, opacity=each.opacity, reduction=each.reduction)
-            for path, each in zip(paths, read_pictures(paths, cubes[SPECTRAL].data.sensor, **pixels), strict=True)
+            for path, each in zip(paths, pictures, strict=True)
         ]
         if suffix == PAGE:
             write_text(relit_page(relit), output, force=force)

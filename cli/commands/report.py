@@ -11,6 +11,7 @@ from .. import options
 from ..inputs import check_page
 from ..output.console import emit, json_text, say
 from ..output.progress import progress_bar
+from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     from uplift.report.assessment import Assessment
@@ -56,9 +57,9 @@ def command(
     """
     from uplift.atlas import read_atlas
     from uplift.colorimetry.lights import REPORT_LIGHTS
-    from uplift.common.files import check_outputs, write_text
+    from uplift.common.files import write_text
     from uplift.lookup import load
-    from uplift.pipeline.rebuild import recorded_atlas
+    from uplift.pipeline.rebuild import recorded_atlas, recorded_files
     from uplift.report.assessment import assess
     from uplift.report.page import render_report, to_json
 
@@ -66,9 +67,10 @@ def command(
     if style == "html":
         path = check_page(output or f"{Path(cube).stem}.html")
     loaded = load(cube)
-    check_outputs((path,), inputs=(cube, *files), force=force)
+    recorded = () if files else recorded_files(loaded.data, cube, folders)
+    check_outputs(path, inputs=recorded)
+    atlas = read_atlas(*files) if files else recorded_atlas(loaded.data, cube, folders)
     with progress_bar("evaluating the cube"):
-        atlas = read_atlas(*files) if files else recorded_atlas(loaded.data, cube, folders)
         size = Path(cube).stat().st_size
         assessment = assess(loaded, Path(cube).name, size, atlas, lights or REPORT_LIGHTS)
         text = json_text(to_json(assessment)) + "\n" if style == "json" else render_report(assessment, worst)

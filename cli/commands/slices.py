@@ -6,12 +6,23 @@ import click
 
 from .. import options
 from ..output.console import say
+from ..outputs import check_outputs
+
+
+def _check_sheet(path: str) -> str:
+    from uplift.viz.sheet import check_sheet
+
+    check_sheet(path)
+    return path
+
+
+SHEET = options.OutputFile(_check_sheet)
 
 
 @click.command("slices")
 @options.cube_argument
 @options.output(help="Slices to write, as .exr. [default: CUBE's name with .exr, in the current folder]")
-@click.option("--plot", "sheet", metavar="FILE", type=click.Path(), help="Contact sheet to write, as .exr or .png.")
+@click.option("--plot", "sheet", metavar="FILE", type=SHEET, help="Contact sheet to write, as .exr or .png.")
 @options.force
 def command(cube: str, output: str | None, sheet: str | None, force: bool) -> None:
     """Write the blue slices of a cube as images.
@@ -33,15 +44,12 @@ def command(cube: str, output: str | None, sheet: str | None, force: bool) -> No
     """
     if output is None and sheet is None:
         output = f"{Path(cube).stem}.exr"
-    from uplift.common.files import check_outputs
     from uplift.cube import read
     from uplift.io.exr import write_slices
-    from uplift.viz.sheet import check_sheet, write_sheet
+    from uplift.viz.sheet import write_sheet
 
+    check_outputs(output, sheet)
     data = read(cube)
-    check_outputs((output, sheet), inputs=[cube], force=force)
-    if sheet is not None:
-        check_sheet(sheet, force=force)
     if output is not None:
         write_slices(data, output, force=force)
         say(f"{output}: {data.lattice.dim} blue slices")

@@ -7,12 +7,11 @@ from typing import Any
 
 import click
 
-from uplift.common.files import check_folder
-
 from .. import options
-from ..inputs import DEFAULT_ATLASES, read_atlases
-from ..output.console import make_table, print_csv_text, print_json, say, show, write_files
+from ..inputs import DEFAULT_ATLASES, atlas_files, read_atlases
+from ..output.console import make_table, print_csv_text, print_json, say, show
 from ..output.progress import progress_bar
+from ..outputs import check_folder, write_files
 from ..startup import enable_jit_cache
 
 MOMENTS_PLOTS = ("moments.png", "moments-patches.png", "moments-worst.png")
@@ -84,14 +83,14 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
     from uplift.lab.study.moments import TECHNIQUES, study_moments
 
     atlases = read_atlases(files)
-    folder = None if output is None else check_folder(output, MOMENTS_PLOTS, inputs=files, force=force)
+    folder = None if output is None else check_folder(output, MOMENTS_PLOTS, inputs=atlas_files(files))
     with progress_bar("reconstructions") as progress:
         study = study_moments(atlases, max_moments, progress)
     if folder is not None:
         from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
 
         plots = partial(plot_errors, {"all entries": study.curves()}), partial(plot_patches, study)
-        write_files(folder, MOMENTS_PLOTS, *plots, partial(plot_worst, study), force=force)
+        write_files(folder, MOMENTS_PLOTS, *plots, partial(plot_worst, study))
     results = [[study.result(technique, count) for technique in TECHNIQUES] for count in range(max_moments + 1)]
     table = [
         {"moments": str(count)}
@@ -166,14 +165,14 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
 
     atlases = read_atlases(files or (MACBETH,)) | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
     design = replace(QUICK_DESIGN if quick else DesignSpace(), atlases=(NO_ATLAS, *atlases))
-    folder = None if output is None else check_folder(output, STABILITY_PLOTS, inputs=files, force=force)
+    folder = None if output is None else check_folder(output, STABILITY_PLOTS, inputs=atlas_files(files))
     with progress_bar("builds") as progress:
         results = study_stability(design.configs(), atlases, progress)
     records = list(results.values())
     if folder is not None:
         from uplift.lab.study.plots import plot_map
 
-        write_files(folder, STABILITY_PLOTS, partial(plot_map, records), force=force)
+        write_files(folder, STABILITY_PLOTS, partial(plot_map, records))
     hidden = ("success", "points", "stand_ins")
     _print(style, records, records, [{key: row[key] for key in row if key not in hidden} for row in records])
     if style == "table":
@@ -230,17 +229,18 @@ def sensitivity(
     from uplift.lookup import load
     from uplift.pipeline.rebuild import recorded_atlas
 
-    loaded, others = load(cube), select_methods(methods) if methods else ()
+    others = select_methods(methods) if methods else ()
+    loaded = load(cube)
     atlas = recorded_atlas(loaded.data, cube, folders) if cube is not None and entries else None
     if output is not None and atlas is None:
         raise click.UsageError("--output draws the effect of entries: it needs a CUBE with an atlas, and --entries.")
-    folder = None if output is None else check_folder(output, SENSITIVITY_PLOTS, inputs=[cube], force=force)
+    folder = None if output is None else check_folder(output, SENSITIVITY_PLOTS)
     with progress_bar("builds") as progress:
         moves, changes = study_sensitivity(loaded, atlas, entries, progress)
     if folder is not None:
         from uplift.lab.study.plots import plot_locality
 
-        write_files(folder, SENSITIVITY_PLOTS, partial(plot_locality, changes), force=force)
+        write_files(folder, SENSITIVITY_PLOTS, partial(plot_locality, changes))
     for method in others:
         moves += perturb_method(method, observer.light(NARROW_BAND_LIGHT))
     record = {"moves": moves, "changes": [change.record() for change in changes]}

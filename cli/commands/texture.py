@@ -179,8 +179,7 @@ def convert(
 def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path]]:
     """Return pairs of an image and its texture. Several images, and patterns, go into the folder ``target``.
 
-    The folder is created. Raises `TextureError` for a pattern that matches no file, `OutputError` for a folder that
-    cannot be created.
+    Raises `TextureError` for images that are not there, `OutputError` for a file in place of the folder.
     """
     images = expand_patterns(sources)
     if UDIM in target:
@@ -192,13 +191,9 @@ def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path
             hint = "give a file name ending in .exr, or a folder"
             raise OutputError("textures are OpenEXR files", path=target, hint=hint)
         return [(Path(images[0]), folder)]
-    try:
-        if folder.suffix.lower() == ".exr" and not folder.is_dir():
-            raise NotADirectoryError
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
+    if folder.suffix.lower() == ".exr" and not folder.is_dir():
         problem = f"is not a folder, but there are {len(images)} images"
-        raise OutputError(problem, path=target, hint="give a folder for the textures") from error
+        raise OutputError(problem, path=target, hint="give a folder for the textures")
     return [(Path(path), folder / f"{Path(path).stem}.exr") for path in images]
 
 

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import options
-from ..inputs import DEFAULT_ATLASES, check_range, read_atlases
+from ..inputs import DEFAULT_ATLASES, atlas_files, check_range, read_atlases
 from ..output.console import make_table, print_csv, print_json, show
 from ..output.progress import progress_bar
+from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
@@ -89,11 +90,11 @@ def command(
     if channels is not None and orders is None:
         raise click.UsageError("--channels requires --orders.")
     from uplift.atlas import merge, on_grid
-    from uplift.colorimetry.observer import sensor
-    from uplift.common.files import check_outputs
+    from uplift.colorimetry import observer
     from uplift.scene import wavelengths as library
 
-    check_outputs((plot_path,), inputs=files, force=force)
+    check_outputs(plot_path, inputs=atlas_files(files))
+    sensor = observer.sensor(**camera)
     atlas = merge(read_atlases(files).values())
     setting = library.make_setup(on_grid(atlas, library.grid()), lights or ("D65",), observer_name=camera["observer"])
     with progress_bar("fitting wavelengths"):
@@ -110,7 +111,7 @@ def command(
         from uplift.scene.wavelengths.plots import plot_choice
 
         plot_choice(setting, choice, plot_path, force=force)
-    _print(choice, sensor(**camera), atlas.names, style)
+    _print(choice, sensor, atlas.names, style)
 
 
 def _print(choice: Choice, camera: Sensor, materials: tuple[str, ...], style: str) -> None:

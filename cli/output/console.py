@@ -11,9 +11,8 @@ import os
 import shutil
 import sys
 import textwrap
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -106,13 +105,6 @@ def print_csv(header: Sequence[object], rows: Iterable[Sequence[object]]) -> Non
 def print_csv_text(text: str) -> None:
     """Print CSV."""
     _Lines().write(text)
-
-
-def write_files(folder: Path, names: Sequence[str], *writers: Callable[..., None], force: bool) -> None:
-    """Write the files of a folder, and print their names to standard error."""
-    for name, write in zip(names, writers, strict=True):
-        write(folder / name, force=force)
-    say(f"{folder}: {', '.join(names)}", err=True)
 
 
 class _Lines:

@@ -18,6 +18,7 @@ DAY = 86_400.0
 """Seconds without a change after which a temporary file belongs to a writer that was killed."""
 KERNEL = "/proc"
 """Folder of the files of the kernel, where there is one."""
+FOLDER_HINT = "name a folder to write to"
 PREFIX = ".{}."
 """First characters of temporary files, by the name of the file."""
 _TEMPORARIES: set[Path] = set()
@@ -71,16 +72,21 @@ def check_outputs(
     paths: Iterable[StrPath | None], *, inputs: Iterable[StrPath | None] = (), force: bool = False
 ) -> None:
     """Check all outputs of a program before it reads and writes anything, as `check_output`; None are left out."""
-    inputs = list(inputs)
-    checked: dict[Path, StrPath] = {}
+    outputs, inputs = [path for path in paths if path is not None], list(inputs)
+    for path in outputs:
+        check_output(path, inputs=inputs, force=force)
+    _check_distinct(outputs)
+
+
+def _check_distinct(paths: Iterable[StrPath]) -> None:
+    """Raise `OutputError` if two paths are the same file."""
+    seen: dict[str, StrPath] = {}
     for path in paths:
-        if path is None:
-            continue
-        place = check_output(path, inputs=inputs, force=force).resolve()
-        if place in checked:
-            problem = f"is the same file as {os.fspath(checked[place])}"
+        place = os.path.realpath(path)
+        if place in seen:
+            problem = f"is the same file as {os.fspath(seen[place])}"
             raise OutputError(problem, path=path, hint="give each output its own name")
-        checked[place] = path
+        seen[place] = path
 
 
 def check_output(path: StrPath, *, inputs: Iterable[StrPath | None] = (), force: bool = False) -> Path:
@@ -121,15 +127,36 @@ def check_output(path: StrPath, *, inputs: Iterable[StrPath | None] = (), force:
 def check_folder(
     path: StrPath, names: Iterable[str], *, inputs: Iterable[StrPath | None] = (), force: bool = False
 ) -> Path:
-    """Create a folder if necessary, and check that files with these names can be written in it."""
+    """Check that files with these names can be written to a folder, which `make_folder` creates if necessary."""
+    folder = Path(path)
+    outputs = [folder / name for name in names]
+    if os.path.isdir(folder):
+        check_outputs(outputs, inputs=inputs, force=force)
+        return folder
+    missing = Path(os.path.abspath(folder))
+    while not os.path.lexists(missing.parent):
+        missing = missing.parent
+    if os.path.lexists(missing):
+        raise _not_a_folder(folder)
+    check_output(missing)
+    _check_distinct(outputs)
+    return folder
+
+
+def make_folder(path: StrPath) -> Path:
+    """Create a folder, and those above it, if they do not exist."""
     folder = Path(path)
     try:
-        folder.mkdir(exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError as error:
+        raise _not_a_folder(folder) from error
     except OSError as error:
-        problem = f"cannot be created: {error.strerror}"
-        raise OutputError(problem, path=folder, hint="name a folder to write to") from error
-    check_outputs([folder / name for name in names], inputs=inputs, force=force)
+        raise OutputError(f"cannot be created: {error.strerror}", path=folder, hint=FOLDER_HINT) from error
     return folder
+
+
+def _not_a_folder(path: Path) -> OutputError:
+    return OutputError("is not a folder", path=path, hint=FOLDER_HINT)
 
 
 def write_text(text: str, path: StrPath, *, force: bool = False) -> None:

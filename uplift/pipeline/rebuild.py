@@ -48,7 +48,7 @@ def rebuild(
 ) -> Cube:
     """Build a cube, read from ``path``, again. Warnings of the first build are not repeated.
 
-    Atlas files are searched as by `recorded_atlas`. A file that has changed is used, with the `UpliftWarning`
+    Atlas files are searched as by `recorded_files`. A file that has changed is used, with the `UpliftWarning`
     ``atlas-changed``. Raises `CubeFileError` if the cube does not record its options, was filled from another cube, or
     an atlas file is missing.
     """
@@ -80,14 +80,22 @@ def rebuild(
 def recorded_atlas(data: CubeData, path: StrPath, folders: Sequence[StrPath] = ()) -> Atlas | None:
     """Read the atlas that a cube, read from ``path``, was built from; None for a cube without one.
 
+    The files are those of `recorded_files`. Warnings are not repeated.
+    """
+    return _read(data, recorded_files(data, path, folders))
+
+
+def recorded_files(data: CubeData, path: StrPath, folders: Sequence[StrPath] = ()) -> tuple[Path, ...]:
+    """Find the files of the atlas that a cube, read from ``path``, was built from.
+
     The files are searched by name and digest in ``folders``, in the folder of the cube, and in folders ``atlases`` in
-    these, and by digest among the shipped atlases. A recorded name never opens a file elsewhere. Warnings are not
-    repeated. Raises `CubeFileError` if the cube does not record its atlas, or a file is missing or has changed.
+    these, and by digest among the shipped atlases. A recorded name never opens a file elsewhere. Raises
+    `CubeFileError` if the cube does not record its atlas, or a file is missing or has changed.
     """
     files = _find_all(data, path, "atlases", folders)
     for error in filter(None, files.values()):
         raise error
-    return _read(data, files)
+    return tuple(files)
 
 
 def _read(data: CubeData, files: Iterable[Path]) -> Atlas | None:

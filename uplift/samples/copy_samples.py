@@ -4,7 +4,7 @@ import shutil
 from pathlib import Path
 
 from uplift.common.arrays import StrPath
-from uplift.common.files import atomic_write, check_folder
+from uplift.common.files import atomic_write, check_folder, make_folder
 
 FOLDER = Path(__file__).parent / "files"
 
@@ -32,6 +32,7 @@ def copy_samples(folder: StrPath = ".", *, force: bool = False) -> tuple[Path, .
     copies = {Path(folder) / name: sample_path(name) for name in sample_names()}
     missing = {copy: sample for copy, sample in copies.items() if not _is_equal(copy, sample)}
     check_folder(folder, [copy.name for copy in missing], force=force)
+    make_folder(folder)
     for copy, sample in missing.items():
         with atomic_write(copy, force=force) as temporary:
             shutil.copyfile(sample, temporary)

@@ -39,7 +39,8 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
 
     Panels show lattice RGB, fitting distance, status, and, of cubes that store them, standard error and round.
     """
-    check_sheet(path, force=force)
+    check_sheet(path)
+    check_output(path, force=force)
     exr.check_slices(data)
     sheet = compose(data)
     image = _draw_text(sheet.image, sheet.labels)
@@ -56,12 +57,11 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
         imsave(temporary, codes, format="png", metadata={"Software": "uplift"})
 
 
-def check_sheet(path: StrPath, *, force: bool = False) -> None:
-    """Check that `write_sheet` can write a file, before long work."""
+def check_sheet(path: StrPath) -> None:
+    """Check the suffix of a contact sheet."""
     if Path(path).suffix.lower() not in (".exr", ".png"):
         problem, hint = "the name of a sheet must end in .exr or .png", "name the file .exr or .png"
         raise OutputError(problem, path=path, hint=hint)
-    check_output(path, force=force)
 
 
 def _draw_text(image: Image, labels: tuple["Label", ...]) -> Image:

@@ -9,8 +9,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from uplift.common.errors import OptionError, TextureError, UpliftError, needs_extra
-from uplift.common.files import check_outputs, remove_stale
+from uplift.common.errors import OptionError, StrPath, TextureError, UpliftError, needs_extra
+from uplift.common.files import check_folder, make_folder, remove_stale
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.io.processes import tied_processes
 from uplift.io.texture import exr_file
@@ -131,6 +131,7 @@ converter_for = lru_cache(maxsize=1)(TextureSettings.prepare)
 def run(job: Job, progress: ProgressCallback = ignore_progress) -> Conversion | Failure:
     """Convert the image of a job. Errors are returned, so that one bad image does not stop the others."""
     try:
+        make_folder(job.target.parent)
         return convert(converter_for(job.settings), job.source, job.target, force=job.force, progress=progress)
     except UpliftError as error:
         return Failure(job.source, error)
@@ -223,7 +224,7 @@ def _dask_executor(address: str) -> Iterator[Executor]:
 
 
 def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
-    """Return the jobs that remain, and check that their targets can be written.
+    """Return the jobs that remain, and check that their targets can be written, without creating folders.
 
     Parameters
     ----------
@@ -246,9 +247,16 @@ def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
     jobs = list(jobs)
     remaining = [job for job in jobs if not (resume and _is_up_to_date(job))]
     inputs = [path for job in jobs for path in (job.source, *job.settings.cubes, job.settings.mask)]
-    check_outputs([job.target for job in jobs], inputs=inputs, force=True)
-    check_outputs([job.target for job in remaining if not job.force], inputs=inputs)
+    _check_targets([job.target for job in jobs], inputs, force=True)
+    _check_targets([job.target for job in remaining if not job.force], inputs, force=False)
     return remaining
+
+
+def _check_targets(targets: list[Path], inputs: Iterable[StrPath | None], *, force: bool) -> None:
+    """Check textures by their folders, which `run` creates."""
+    for folder in dict.fromkeys(target.parent for target in targets):
+        names = [target.name for target in targets if target.parent == folder]
+        check_folder(folder, names, inputs=inputs, force=force)
 
 
 def _is_up_to_date(job: Job) -> bool:
