@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import click
@@ -227,14 +228,18 @@ def sensitivity(
     from uplift.lab.chart.measure import perturb_method, select_methods
     from uplift.lab.study.sensitivity import study_sensitivity
     from uplift.lookup import load
-    from uplift.pipeline.rebuild import recorded_atlas
+    from uplift.pipeline.rebuild import recorded_atlas, recorded_files
 
     others = select_methods(methods) if methods else ()
     loaded = load(cube)
-    atlas = recorded_atlas(loaded.data, cube, folders) if cube is not None and entries else None
+    recorded: tuple[Path, ...] = ()
+    atlas = None
+    if cube is not None and entries:
+        recorded = recorded_files(loaded.data, cube, folders)
+        atlas = recorded_atlas(loaded.data, cube, folders)
     if output is not None and atlas is None:
         raise click.UsageError("--output draws the effect of entries: it needs a CUBE with an atlas, and --entries.")
-    folder = None if output is None else check_folder(output, SENSITIVITY_PLOTS)
+    folder = None if output is None else check_folder(output, SENSITIVITY_PLOTS, inputs=recorded)
     with progress_bar("builds") as progress:
         moves, changes = study_sensitivity(loaded, atlas, entries, progress)
     if folder is not None:

@@ -101,6 +101,20 @@ def misuse(run: Run, shown: list[click.ClickException]) -> Callable[..., str]:
     return misuse
 
 
+def commands(group: click.Group, path: str = "") -> dict[str, click.Command]:
+    """Return all commands by their words, subcommands included."""
+    found = {}
+    with click.Context(group) as context:
+        for name in group.list_commands(context):
+            command = group.get_command(context, name)
+            assert command is not None
+            words = f"{path} {name}".strip()
+            found[words] = command
+            if isinstance(command, click.Group):
+                found |= commands(command, words)
+    return found
+
+
 def warning_lines(result: Result) -> list[str]:
     """Return the warnings on standard error, without their prefix."""
     lines = result.stderr.splitlines()

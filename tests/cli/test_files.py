@@ -1,11 +1,16 @@
 """No command replaces a file that it reads, all outputs are checked before any is written, and any name will do."""
 
 import shutil
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from uplift_cli.main import main
+from uplift_cli.options import OutputFile
 
 from tests.io.texture.conftest import planes, write_exr
+
+from .conftest import commands
 
 PALETTE = """
 [lights]
@@ -15,59 +20,125 @@ day = {illuminant = "D65"}
 card = {atlas = "atlas.txt", entry = "blue"}
 paint = {rgb = [0.5, 0.5, 0.5], cube = "cube.uplift"}
 """
-INPUTS = ("atlas.txt", "cube.uplift", "image.exr", "colours.csv", "palette.toml", "scene.toml")
-LINKS = {
-    "link.exr": "image.exr",
-    "atlas.png": "atlas.txt",
-    "colours.pdf": "colours.csv",
-    "cube.svg": "cube.uplift",
-    "palette.png": "palette.toml",
-    "atlas.html": "atlas.txt",
+CONTENT = {
+    "colours.csv": "0.5,0.5,0.5\n",
+    "camera.csv": "380,1,0,0\n550,0,1,0\n780,0,0,1\n",
+    "looks.toml": "",
+    "chart.csv": "",
+    "paint.csv": "",
+    "answers.csv": "",
+    "plan.json": "",
+    "palette.toml": PALETTE,
+    "scene.toml": 'textures = ["image.exr"]\natlases = ["atlas.txt"]\n',
 }
-"""Other names of inputs, with suffixes of outputs."""
+NAMED = {
+    "recorded.uplift": ("macbeth.txt",),
+    "palette.toml": ("atlas.txt", "cube.uplift"),
+    "plan.json": ("image.exr", "atlas.txt"),
+    "scene.toml": ("image.exr", "atlas.txt"),
+    "wood.*.exr": ("wood.1.exr", "wood.2.exr"),
+    "2:paint.csv": ("paint.csv",),
+}
+"""Inputs that other inputs, patterns and texts name."""
+CHART, COMPARE = ("chart.csv", "chart.png", "chart.html"), ("compare-boxes.png", "compare-cost.png", "compare.html")
+BUILD = "build --atlas atlas.txt --library library.txt --look looks.toml --scene image.exr --observer camera.csv"
+LIGHTS_QUERY = "lights query --lights lights.uplift --input colours.csv"
+WRITTEN = [
+    ("advise image.exr wood.*.exr --cube cube.uplift", "--plot x.png", "x.png"),
+    ("atlas atlas.txt library.txt", "-o x.txt", "x.txt"),
+    ("bounds --cube cube.uplift --input colours.csv", "--plot x.pdf", "x.pdf"),
+    ("bounds --cube cube.uplift --input colours.csv", "--html x.html", "x.html"),
+    (BUILD, "-o x.uplift", "x.uplift"),
+    (BUILD, "-o x.uplift --debug", "x.exr"),
+    ("build --plan plan.json", "-o x.uplift", "x.uplift"),
+    ("build --plan plan.json", "", "plan.uplift"),
+    ("chart --from chart.csv --atlas atlas.txt", "-o out", *(f"out/{name}" for name in CHART)),
+    ("compare --atlas atlas.txt --atlas library.txt", "-o out", *(f"out/{name}" for name in COMPARE)),
+    ("compare --atlas atlas.txt --write PF16", "-o out", "out/surfaces.csv", "out/lights.csv"),
+    ("diff cube.uplift cube2.uplift image.exr wood.*.exr", "-o x.html", "x.html"),
+    ("export cube.uplift", "-o x.npz", "x.npz"),
+    ("lights build --atlas atlas.txt", "-o x.uplift", "x.uplift"),
+    ("lights export lights.uplift", "-o x.h", "x.h"),
+    ("lights info lights.uplift", "--plot x.svg", "x.svg"),
+    ("lights info lights.uplift", "--html x.html", "x.html"),
+    (LIGHTS_QUERY, "--plot x.png", "x.png"),
+    ("lights texture image.exr --lights lights.uplift", "-o x.exr", "x.exr"),
+    ("mix #c8342a --atlas atlas.txt --cube cube.uplift", "--plot x.png", "x.png"),
+    ("mix --duntley 2:paint.csv --cube cube.uplift", "--plot x.png", "x.png"),
+    ("mix #c8342a --over image.exr --cube cube.uplift", "-o x.exr", "x.exr"),
+    ("palette palette.toml", "-o x.txt", "x.txt"),
+    ("palette palette.toml", "--plot x.png", "x.png"),
+    ("palette palette.toml", "--plot-spectra x.png", "x.png"),
+    ("palette palette.toml --image image.exr", "--html x.html", "x.html"),
+    ("plan scene.toml", "-o x.json", "x.json"),
+    ("plan scene.toml", "", "scene.plan.json"),
+    ("query --cube cube.uplift --input colours.csv", "--plot x.png", "x.png"),
+    ("relight image.exr wood.*.exr --cube cube.uplift", "-o x.png", "x.png"),
+    ("relight image.exr --atlas atlas.txt --atlas library.txt", "-o x.html", "x.html"),
+    ("relight image.exr --cube cube.uplift", "-o x.exr", "x.exr"),
+    ("report recorded.uplift", "-o x.html", "x.html"),
+    ("report cube2.uplift --atlas atlas.txt", "", "cube2.html"),
+    ("slices cube.uplift", "-o x.exr", "x.exr"),
+    ("slices cube.uplift", "--plot x.png", "x.png"),
+    ("study moments --atlas atlas.txt", "-o out", "out/moments.png", "out/moments-patches.png"),
+    ("study stability --atlas atlas.txt", "-o out", "out/stability.png"),
+    ("study sensitivity recorded.uplift", "-o out", "out/sensitivity-locality.png"),
+    ("texture image.exr --cube cube.uplift --cube cube2.uplift --mask mask.exr", "-o x.exr", "x.exr"),
+    ("texture image.exr wood.*.exr", "-o out", "out/image.exr", "out/wood.2.exr"),
+    ("wavelengths --count 4 --atlas atlas.txt --observer camera.csv", "--plot x.png", "x.png"),
+]
+"""Commands with all their inputs, the outputs that are added, and the files that these are."""
+REPLACES = {"check": "--update replaces the cubes that it checks", "samples": "reads no file of the user"}
+"""Commands without a row, and why."""
 
 
 @pytest.fixture
-def inputs(home, cubes, macbeth):
-    """A file of each kind in the working folder, and links to it."""
-    shutil.copy(macbeth, home / "atlas.txt")
-    shutil.copy(cubes / "moments-8-macbeth.uplift", home / "cube.uplift")
-    write_exr(home / "image.exr", planes(np.full((2, 2, 3), 0.5, np.float32)))
-    (home / "colours.csv").write_text("0.5,0.5,0.5\n")
-    (home / "palette.toml").write_text(PALETTE)
-    (home / "scene.toml").write_text('textures = ["image.exr"]\natlases = ["atlas.txt"]\n')
-    for link, target in LINKS.items():
-        (home / link).symlink_to(target)
-    return {name: (home / name).read_bytes() for name in INPUTS}
+def inputs(home, cubes, macbeth, monkeypatch):
+    """A file of each kind in the working folder, by name with its bytes."""
+    for name in ("atlas.txt", "library.txt", "macbeth.txt"):
+        shutil.copy(macbeth, home / name)
+    for name in ("cube.uplift", "cube2.uplift", "recorded.uplift"):
+        shutil.copy(cubes / "moments-8-macbeth.uplift", home / name)
+    shutil.copy(cubes.parent / "uplift" / "lights" / "emission.uplift", home / "lights.uplift")
+    for name in ("image.exr", "mask.exr", "wood.1.exr", "wood.2.exr"):
+        write_exr(home / name, planes(np.full((2, 2, 3), 0.5, np.float32)))
+    for name, text in CONTENT.items():
+        (home / name).write_text(text)
+    images = SimpleNamespace(paths=("image.exr",))
+    plan = SimpleNamespace(images=images, atlases=("atlas.txt",), build=print)
+    monkeypatch.setattr("uplift.scene.plan.files.read_plan", lambda path: plan)
+    return {path.name: path.read_bytes() for path in home.iterdir()}
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        "atlas atlas.txt -o ./atlas.txt",
-        "build --atlas atlas.txt -o atlas.txt",
-        "build --scene image.exr -o link.exr",
-        "export cube.uplift -o cube.uplift --format csv",
-        "mix #c8342a --over image.exr -o link.exr",
-        "mix black --atlas atlas.txt --plot atlas.png",
-        "palette palette.toml --plot palette.png",
-        "palette palette.toml -o atlas.txt",
-        "palette palette.toml --html atlas.html",
-        "plan scene.toml -o image.exr",
-        "query --cube cube.uplift #c8342a --plot cube.svg",
-        "query --input colours.csv --plot colours.pdf",
-        "report cube.uplift --atlas atlas.html -o atlas.html",
-        "slices cube.uplift -o cube.uplift",
-        "slices cube.uplift --plot cube.uplift",
-        "texture image.exr -o link.exr",
-        "texture image.exr -o .",
-        "wavelengths --count 4 --atlas atlas.txt --plot atlas.png",
-    ],
-)
-def test_inputs_are_not_replaced(refuse, home, inputs, words):
-    assert refuse(*words.split(), "--force").code == "output-is-input"
-    assert {name: (home / name).read_bytes() for name in INPUTS} == inputs
-    assert {path.name for path in home.iterdir()} == {*INPUTS, *LINKS}
+def read_by(words, inputs):
+    """Names of the inputs of a command line, and of those that they name."""
+    named = (name for word in words for name in NAMED.get(word, ()))
+    return {name for name in (*words, *named) if name in inputs}
+
+
+@pytest.mark.parametrize(("line", "output", "files"), [(line, output, files) for line, output, *files in WRITTEN])
+def test_no_output_of_a_command_replaces_an_input(refuse, home, inputs, line, output, files):
+    (home / "out").mkdir()
+    words = line.split()
+    sources = read_by(words, inputs)
+    assert sources
+    for link in (home / file for file in files):
+        for source in sources:
+            link.symlink_to(home / source)
+            assert refuse(*words, *output.split(), "--force").code == "output-is-input", source
+            link.unlink()
+    assert {path.name: path.read_bytes() for path in home.iterdir() if path.is_file()} == inputs
+
+
+def test_every_output_of_every_command_has_a_row():
+    lines = [f"{line} {output}" for line, output, *_ in WRITTEN]
+    for path, command in commands(main).items():
+        of_command = [line for line in lines if line.startswith(f"{path} ")]
+        for param in command.params:
+            if isinstance(param.type, OutputFile) and path not in REPLACES:
+                assert any(set(param.opts) & set(line.split()) for line in of_command), (path, param.opts)
+        if any(param.name in ("force", "update") for param in command.params):
+            assert of_command or path in REPLACES, path
 
 
 @pytest.mark.parametrize(
@@ -75,18 +146,18 @@ def test_inputs_are_not_replaced(refuse, home, inputs, words):
     [
         "palette palette.toml --plot new.png --plot-spectra old.png",
         "slices cube.uplift -o new.exr --plot old.png",
-        "texture image.exr link.exr -o out",
+        "texture image.exr mask.exr -o out",
     ],
 )
 def test_nothing_is_written_if_one_output_exists(refuse, home, inputs, words):
     (home / "old.png").write_text("old")
     folder = home / "out"
     folder.mkdir()
-    (folder / "link.exr").write_text("old")
+    (folder / "mask.exr").write_text("old")
     before = {path.name for path in home.iterdir()}
     assert refuse(*words.split()).code == "file-exists"
     assert {path.name for path in home.iterdir()} == before
-    assert {path.name for path in folder.iterdir()} == {"link.exr"}
+    assert {path.name for path in folder.iterdir()} == {"mask.exr"}
 
 
 def test_outputs_differ(refuse, inputs):

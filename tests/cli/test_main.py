@@ -4,7 +4,6 @@ import errno
 import json
 import time
 import warnings
-from collections.abc import Iterator
 
 import click
 import pytest
@@ -22,7 +21,7 @@ from uplift.common.errors import UpliftError, UpliftWarning
 from uplift.common.progress import Progress
 from uplift.common.text import printable
 
-from .conftest import warning_lines
+from .conftest import commands, warning_lines
 
 
 def test_help_lists_every_command_under_a_heading(run):
@@ -146,26 +145,15 @@ def test_warnings_of_the_library_are_one_line_each_and_others_are_ignored(monkey
     assert warnings.showwarning is before
 
 
-def commands(group: click.Group = main) -> Iterator[click.Command]:
-    """Yield all commands, subcommands included."""
-    with click.Context(group) as context:
-        for name in group.list_commands(context):
-            each = group.get_command(context, name)
-            assert each is not None
-            yield each
-            if isinstance(each, click.Group):
-                yield from commands(each)
-
-
 def test_help_fits_80_columns(monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
-    for command in (main, *commands()):
+    for command in (main, *commands(main).values()):
         with click.Context(command, info_name="uplift lights texture") as context:
             context.meta[HELP_ALL] = True
             assert max(map(len, command.get_help(context).splitlines())) <= 80, command.name
 
 
-OPTIONS = [(command, param) for command in commands() for param in command.params]
+OPTIONS = [(command, param) for command in commands(main).values() for param in command.params]
 NUMERIC = [
     pytest.param(command, option, id=f"{command.name}{option.opts[-1]}")
     for command, option in OPTIONS
