@@ -20,7 +20,7 @@ SHOWN = 4
 @click.argument("images", metavar="IMAGE...", nargs=-1, required=True)
 @options.cube(" with an atlas of at least 8 entries.", required=True)
 @options.light("Illuminant of the scene", "A FL11 HP1")
-@click.option("--count", metavar="N", type=options.WHOLE, default=6, help="Number of swatches, up to 100.")
+@click.option("--count", metavar="N", type=options.Whole(1, 100), default=6, help="Number of swatches.")
 @options.pixels()
 @options.plot("Draw the first 4 images, their expected errors and the swatches")
 @options.output_format("table", "json")
