@@ -151,6 +151,14 @@ def check_page(path: str) -> str:
     return path
 
 
+def check_figure_page(path: str) -> str:
+    """Return the name of a page with figures, which matplotlib draws."""
+    from uplift.viz.figure import matplotlib
+
+    matplotlib()
+    return check_page(path)
+
+
 def check_plot(path: str) -> str:
     """Return the name of a plot, whose suffix must be that of a figure."""
     from uplift.viz.figure import check_suffix

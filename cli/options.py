@@ -16,7 +16,16 @@ from click.shell_completion import CompletionItem
 
 from uplift.common.text import format_value, parse_float, parse_whole
 
-from .inputs import check_light, check_observer, check_page, check_plot, check_rgb_space, check_space, parse_wavelengths
+from .inputs import (
+    check_figure_page,
+    check_light,
+    check_observer,
+    check_page,
+    check_plot,
+    check_rgb_space,
+    check_space,
+    parse_wavelengths,
+)
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
@@ -122,6 +131,7 @@ WAVELENGTHS = Parsed(parse_wavelengths)
 LIGHT, OBSERVER = Parsed(check_light), Parsed(check_observer)
 SPACE, INPUT_SPACE = Parsed(check_rgb_space), Parsed(check_space)
 OUTPUT, PAGE, PLOT = OutputFile(str), OutputFile(check_page), OutputFile(check_plot)
+FIGURE_PAGE = OutputFile(check_figure_page)
 
 
 def completion(*sources: str, files: bool = False) -> Callable[..., list[CompletionItem]]:
@@ -253,9 +263,9 @@ def plot(help: str, option: str = "--plot", name: str = "plot_path") -> Decorato
     return click.option(option, name, metavar="FILE", type=PLOT, help=text)
 
 
-def page(help: str) -> Decorator:
+def page(help: str, type: OutputFile = PAGE) -> Decorator:
     """``--html``. A suffix other than .html is an error at once."""
-    return click.option("--html", metavar="FILE", type=PAGE, help=help)
+    return click.option("--html", metavar="FILE", type=type, help=help)
 
 
 def wavelengths(help: str) -> Decorator:

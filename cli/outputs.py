@@ -24,8 +24,12 @@ def check_outputs(*paths: StrPath | None, inputs: Paths = ()) -> None:
     files.check_outputs(paths, inputs=[*_stated_inputs(), *inputs], force=_is_forced())
 
 
-def check_folder(path: StrPath, names: Iterable[str], inputs: Paths = ()) -> Path:
-    """Check the files of a folder as `check_outputs`; `write_files` creates the folder."""
+def check_folder(path: StrPath, names: Sequence[str], inputs: Paths = ()) -> Path:
+    """Check the files of a folder as `check_outputs`, and that PNG can be drawn; `write_files` creates the folder."""
+    if any(name.endswith(".png") for name in names):
+        from uplift.viz.figure import matplotlib
+
+        matplotlib()
     return files.check_folder(path, names, inputs=[*_stated_inputs(), *inputs], force=_is_forced())
 
 

@@ -24,7 +24,7 @@ from ..outputs import check_outputs
 )
 @click.option("--worst", type=options.Whole(0), default=5, help="Number of worst colours of each set.")
 @options.pixels()
-@options.output(help="HTML page with pictures of where the cubes differ.", type=options.PAGE)
+@options.output(help="HTML page with pictures of where the cubes differ.", type=options.FIGURE_PAGE)
 @options.output_format("table", "json")
 @options.force
 def command(

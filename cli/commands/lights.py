@@ -91,7 +91,7 @@ def build(files: tuple[str, ...], output: str | None, space: str, observer: str,
 @table_argument
 @options.output_format("table", "json")
 @options.plot("Plot colours, expected errors and lamps over u′v′")
-@options.page("Write a page with the plots, answers to random lights, and all lamps.")
+@options.page("Write a page with the plots, answers to random lights, and all lamps.", options.FIGURE_PAGE)
 @options.force
 def info(table_path: str, style: str, plot_path: str | None, html: str | None, force: bool) -> None:
     """Show the contents of an emission table, in words, as a picture or as a page.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .. import options
-from ..inputs import check_page
+from ..inputs import check_figure_page
 from ..output.console import emit, json_text, say
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
@@ -65,7 +65,7 @@ def command(
 
     path = output
     if style == "html":
-        path = check_page(output or f"{Path(cube).stem}.html")
+        path = check_figure_page(output or f"{Path(cube).stem}.html")
     loaded = load(cube)
     recorded = () if files else recorded_files(loaded.data, cube, folders)
     check_outputs(path, inputs=recorded)

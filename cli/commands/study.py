@@ -240,14 +240,16 @@ def sensitivity(
     if output is not None and atlas is None:
         raise click.UsageError("--output draws the effect of entries: it needs a CUBE with an atlas, and --entries.")
     folder = None if output is None else check_folder(output, SENSITIVITY_PLOTS, inputs=recorded)
+    of_methods = []
+    for method in others:
+        of_methods += perturb_method(method, observer.light(NARROW_BAND_LIGHT))
     with progress_bar("builds") as progress:
         moves, changes = study_sensitivity(loaded, atlas, entries, progress)
     if folder is not None:
         from uplift.lab.study.plots import plot_locality
 
         write_files(folder, SENSITIVITY_PLOTS, partial(plot_locality, changes))
-    for method in others:
-        moves += perturb_method(method, observer.light(NARROW_BAND_LIGHT))
+    moves += of_methods
     record = {"moves": moves, "changes": [change.record() for change in changes]}
     _print(style, record, (), moves)
     if style == "table" and changes:

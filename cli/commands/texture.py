@@ -29,6 +29,13 @@ if TYPE_CHECKING:
     from uplift.io.texture.uplifter import PixelEncoding
 
 
+def _check_scheduler(address: str) -> str:
+    from uplift.io.texture.sequence import import_distributed
+
+    import_distributed()
+    return address
+
+
 LARGE = 100.0
 """Megabytes of textures from which the smaller kind is named."""
 image_options = options.stacked(
@@ -44,7 +51,8 @@ image_options = options.stacked(
     click.option(
         "--scheduler",
         metavar="ADDRESS",
-        help="Dask cluster that converts the images; requires spectral-uplift[cluster].",
+        type=options.Parsed(_check_scheduler),
+        help="Dask cluster that converts the images; requires the package distributed.",
     ),
     click.option("--resume", is_flag=True, help="Skip images whose textures are complete and newer."),
     options.force,

@@ -12,7 +12,7 @@ import numpy as np
 from uplift.atlas.atlas import HIGHEST, Atlas, Entry, Header, SkippedEntry, Source
 from uplift.atlas.document import EXPORT, Document, SourceLocation, truncate
 from uplift.common.arrays import Array
-from uplift.common.errors import AtlasError, UpliftWarning, needs_extra
+from uplift.common.errors import AtlasError, UpliftWarning, needs_package
 from uplift.common.text import listed, printable
 
 Measured = Literal["auto", "percent", "fraction"]
@@ -114,7 +114,7 @@ def parsed_by(library: str, kind: str, document: Document) -> Iterator[None]:
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         try:
-            with needs_extra("io", kind, AtlasError):
+            with needs_package(kind, AtlasError):
                 yield
         except (AtlasError, MemoryError):
             raise

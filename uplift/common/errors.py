@@ -161,8 +161,8 @@ def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError
 
 
 @contextlib.contextmanager
-def needs_extra(extra: str, purpose: str, error: type[UpliftError]) -> Iterator[None]:
-    """Import an optional package in the block; ``error`` names the extra of uplift that installs it."""
+def needs_package(purpose: str, error: type[UpliftError]) -> Iterator[None]:
+    """Import an optional package in the block; ``error`` names it if it is missing."""
     try:
         yield
     except ImportError as cause:
@@ -170,5 +170,5 @@ def needs_extra(extra: str, purpose: str, error: type[UpliftError]) -> Iterator[
         raise error(
             f"{purpose} need the module '{name}', which is not installed",
             code="extra-not-installed",
-            hint=f"install it: pip install 'spectral-uplift[{extra}]'",
+            hint=f"install it: pip install {name.replace('_', '-')}",
         ) from cause

@@ -13,7 +13,7 @@ from markupsafe import Markup, escape
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
-from uplift.common.errors import OutputError, needs_extra
+from uplift.common.errors import OutputError, needs_package
 from uplift.common.files import atomic_write
 from uplift.common.text import printable
 
@@ -59,8 +59,8 @@ _IDENTIFIER = re.compile(r'(id="|#)([mp][0-9a-f]{10})(?=["\)])')
 
 
 def matplotlib() -> Any:
-    """Import matplotlib, which the extra ``plots`` installs. Raises `OutputError`."""
-    with needs_extra("plots", "figures", OutputError):
+    """Import matplotlib. Raises `OutputError` if it is not installed."""
+    with needs_package("figures", OutputError):
         import matplotlib
     return matplotlib
 

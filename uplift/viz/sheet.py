@@ -58,10 +58,11 @@ def write_sheet(data: CubeData, path: StrPath, *, force: bool = False) -> None:
 
 
 def check_sheet(path: StrPath) -> None:
-    """Check the suffix of a contact sheet."""
+    """Check the suffix of a contact sheet, which needs matplotlib."""
     if Path(path).suffix.lower() not in (".exr", ".png"):
         problem, hint = "the name of a sheet must end in .exr or .png", "name the file .exr or .png"
         raise OutputError(problem, path=path, hint=hint)
+    matplotlib()
 
 
 def _draw_text(image: Image, labels: tuple["Label", ...]) -> Image:

@@ -1,4 +1,4 @@
-"""Plugins for the spectral variants of Mitsuba 3. Extra: ``spectral-uplift[mitsuba]``.
+"""Plugins for the spectral variants of Mitsuba 3. They need the package mitsuba.
 
 The texture ``uplift``:
 

@@ -11,7 +11,7 @@ import numpy as np
 from uplift.colorimetry.gamut import METHODS, map_to_gamut
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Values
-from uplift.common.errors import ColourError, CubeFileError, OptionError, UpliftError, UpliftWarning, needs_extra
+from uplift.common.errors import ColourError, CubeFileError, OptionError, UpliftError, UpliftWarning, needs_package
 from uplift.io.mitsuba import texels
 from uplift.io.texture.colours import Counts
 from uplift.io.texture.exr_file import is_exr
@@ -42,7 +42,7 @@ def register() -> None:
         Mitsuba is not installed (code ``extra-not-installed``), or the variant is not set, not spectral, or
         polarised.
     """
-    with needs_extra("mitsuba", "plugins", OptionError):
+    with needs_package("plugins", OptionError):
         import mitsuba
     variant = mitsuba.variant()
     if variant is None or "spectral" not in variant or "polarized" in variant:

@@ -9,7 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from uplift.common.errors import OptionError, StrPath, TextureError, UpliftError, needs_extra
+from uplift.common.errors import OptionError, StrPath, TextureError, UpliftError, needs_package
 from uplift.common.files import check_folder, make_folder, remove_stale
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.io.processes import tied_processes
@@ -202,11 +202,17 @@ def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
     )
 
 
+def import_distributed() -> Any:
+    """Import Dask's package for clusters. Raises `OptionError` if it is not installed."""
+    with needs_package("clusters", OptionError):
+        import distributed
+    return distributed
+
+
 @contextlib.contextmanager
 def _dask_executor(address: str) -> Iterator[Executor]:
     """Connect to a cluster. Raises `OptionError`."""
-    with needs_extra("cluster", "clusters", OptionError):
-        import distributed
+    distributed = import_distributed()
     with contextlib.ExitStack() as stack:
         for handler in logging.getLogger("distributed").handlers:  # lost connections are raised as errors
             stack.callback(handler.setLevel, handler.level)

@@ -30,7 +30,7 @@ XYZ_TO_RGB = np.array(
 """From XYZ to linear sRGB, in rgb2spec, the program that fitted the table."""
 AT_ONCE = 4
 """Wavelengths of an evaluation."""
-MITSUBA = "Mitsuba 3: pip install 'spectral-uplift[mitsuba]'"
+MITSUBA = "Mitsuba 3: pip install mitsuba"
 LLVM = "LLVM 19, with which Mitsuba 3.9 works: apt install libllvm19, or name its library by DRJIT_LIBLLVM_PATH"
 """What the methods need."""
 
