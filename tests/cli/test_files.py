@@ -1,5 +1,8 @@
 """No command replaces a file that it reads, all outputs are checked before any is written, and any name will do."""
 
+import contextlib
+import importlib
+import os
 import shutil
 from types import SimpleNamespace
 
@@ -12,6 +15,7 @@ from tests.io.texture.conftest import planes, write_exr
 
 from .conftest import commands
 
+resource = None if os.name == "nt" else importlib.import_module("resource")
 PALETTE = """
 [lights]
 day = {illuminant = "D65"}
@@ -163,3 +167,39 @@ def test_nothing_is_written_if_one_output_exists(refuse, home, inputs, words):
 def test_outputs_differ(refuse, inputs):
     words = "palette palette.toml --plot a.png --plot-spectra ./a.png --force"
     assert refuse(*words.split()).code == "output"
+
+
+@contextlib.contextmanager
+def full_disk():
+    """Files end at a kilobyte, as on a disk without space."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1024, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.skipif(resource is None, reason="no limits of POSIX")
+@pytest.mark.parametrize(
+    "words",
+    [
+        "query #888 --plot x.png",
+        "query #888 --plot x.svg",
+        "query #888 --plot x.pdf",
+        "slices cube.uplift -o x.exr",
+        "slices cube.uplift --plot x.png",
+        "export cube.uplift -o x.npz",
+        "export cube.uplift -o x.csv",
+        "export cube.uplift -o x.h",
+        "relight image.exr --cube cube.uplift -o x.html",
+        "texture image.exr --wavelengths 400:700:1 -o x.exr",
+        "atlas atlas.txt -o x.csv",
+        "lights export lights.uplift -o x.glsl",
+    ],
+)
+def test_a_full_disk_is_an_error_of_the_output(refuse, home, inputs, words):
+    with full_disk():
+        error = refuse(*words.split())
+    assert error.code == "output"
+    assert {path.name for path in home.iterdir()} == {*inputs}

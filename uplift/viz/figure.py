@@ -115,8 +115,15 @@ def write_png(figure: Any, path: str | os.PathLike[str], *, force: bool = False)
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     # Without this entry matplotlib writes its name and version, and files would differ between versions.
+    content = io.BytesIO()
+    FigureCanvasAgg(figure).print_png(content, metadata={"Software": "uplift"})
+    _write(content, path, force)
+
+
+def _write(content: io.BytesIO, path: str | os.PathLike[str], force: bool) -> None:
+    """Write a drawn file: matplotlib itself would fail in other ways on a full disk."""
     with atomic_write(path, force=force) as temporary:
-        FigureCanvasAgg(figure).print_png(temporary, metadata={"Software": "uplift"})
+        temporary.write_bytes(content.getvalue())
 
 
 def check_suffix(path: str | os.PathLike[str]) -> str:
@@ -138,11 +145,13 @@ def write_figure(figure: Any, path: str | os.PathLike[str], *, force: bool = Fal
     if suffix == ".png":
         write_png(figure, path, force=force)
         return
-    with atomic_write(path, force=force) as temporary, styled():
+    content = io.BytesIO()
+    with styled():
         if suffix == ".svg":
-            FigureCanvasSVG(figure).print_svg(temporary, metadata=_NO_METADATA)
+            FigureCanvasSVG(figure).print_svg(content, metadata=_NO_METADATA)
         else:
-            FigureCanvasPdf(figure).print_pdf(temporary, metadata={"CreationDate": None, "Producer": None})
+            FigureCanvasPdf(figure).print_pdf(content, metadata={"CreationDate": None, "Producer": None})
+    _write(content, path, force)
 
 
 def to_svg(figure: Any, label: str = "") -> Markup:
