@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 import uplift
+from tests.cube.cube_files import forge
 from tests.helpers import raises
 from uplift.colorimetry import observer
 from uplift.colorimetry.camera import CAMERA
-from uplift.common.errors import ColourError
+from uplift.common.errors import ColourError, CubeFileError
 from uplift.cube import digest
 from uplift.io.export.coeff import write_coeff
 from uplift.lookup.query import query, query_xyz
@@ -43,6 +44,23 @@ def test_a_stored_cube_is_read_and_rebuilt_without_its_file(cube, table, tmp_pat
     assert stored.data.sensor.matrix.tobytes() == cube.data.sensor.matrix.tobytes()
     assert digest(stored.data) == digest(cube.data)
     assert digest(rebuild(stored, path).data) == digest(cube.data)
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("sensitivities", lambda channels: channels[:, [0, 0, 2]]),
+        ("sensitivities", lambda channels: channels * [1, 0, 1]),
+        ("cmfs", lambda channels: channels[:, [1, 1, 1]]),
+        ("cmfs", lambda channels: channels * 0),
+    ],
+)
+def test_forged_channels_that_depend_on_each_other_are_refused(cube, tmp_path, name, change):
+    def forged(tensors, metadata):
+        tensors[f"sensor.{name}"] = change(tensors[f"sensor.{name}"])
+
+    with raises(CubeFileError, "cube-file"):
+        uplift.load(forge(cube.data, tmp_path / "forged.uplift", forged))
 
 
 def test_answers_have_the_raw_values_and_xyz_of_the_spectrum(cube):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
-from uplift.common.arrays import Indices
+from uplift.common.arrays import Array, Indices
 from uplift.cube.container import (
     Kind,
     Stored,
