@@ -248,7 +248,8 @@ def _check(data: CubeData) -> None:
     looks = tuple(look["name"] for look in data.provenance.get("looks", ()))
     with np.errstate(all="ignore"):
         basis = data.model.basis(sensor.wavelengths)
-        white, condition = sensor.matrix.sum(axis=1), np.linalg.cond(sensor.xyz_to_rgb)
+        white = sensor.matrix.sum(axis=1)
+        regular = all(map(_has_three_channels, (sensor.xyz_to_rgb, sensor.light.xyz, sensor.matrix)))
     has_basis = basis.shape == (len(sensor.wavelengths), data.model.count) and bool(np.isfinite(basis).all())
     for condition_met, problem in (
         (len(set(names)) == len(names), "the names of entries must be unique"),
@@ -258,11 +259,16 @@ def _check(data: CubeData) -> None:
         ((nodes[0], nodes[-1]) == (0, 1), "the nodes must run from 0 to 1"),
         (data.points.entry.max(initial=-1) < len(atlas.names), "every entry must be in the atlas table"),
         ((np.abs(white - 1) <= 1e-6).all(), "the perfect reflector must have RGB (1, 1, 1)"),
-        (condition < MAX_CONDITION, "the RGB space must have three primaries"),
+        (regular, "observer, RGB space and camera must have three independent channels"),
         ((np.diff(sensor.wavelengths) > 0).all(), "the wavelengths of the sensor must ascend"),
         ((np.diff(sensor.decoding) >= 0).all(), "the decoding of 8-bit codes must not decrease"),
     ):
         require(bool(condition_met), problem)
+
+
+def _has_three_channels(matrix: Array) -> bool:
+    """Return whether the rows (3, …) of a matrix are independent of each other."""
+    return bool(np.isfinite(matrix).all()) and bool(np.linalg.cond(matrix) < MAX_CONDITION)
 
 
 def _expand(points: PointTable, numbers: Indices, lattice: Lattice) -> PointTable:
