@@ -145,11 +145,15 @@ def _is_private(group: int) -> bool:
     return False
 
 
-def remove_compiled_code() -> None:
-    """Remove the compiled code that `enable_jit_cache` keeps: JAX never replaces an entry that it cannot read."""
-    for folder in _CACHES:
-        for entry in folder.glob("*-cache"):
-            entry.unlink(missing_ok=True)
+def remove_compiled_code() -> bool:
+    """Remove the compiled code that `enable_jit_cache` keeps, and return whether there was any.
+
+    JAX never replaces an entry, also if it cannot read it, or if it is the code of another function.
+    """
+    entries = [entry for folder in _CACHES for entry in folder.glob("*-cache")]
+    for entry in entries:
+        entry.unlink(missing_ok=True)
+    return bool(entries)
 
 
 def use_one_blas_thread() -> None:

@@ -3,6 +3,7 @@
 import contextlib
 import os
 import signal
+import sys
 import warnings
 from collections.abc import Iterable
 from pathlib import Path
@@ -94,7 +95,10 @@ def _internal_error(cause: BaseException) -> UpliftError:
     where = "".join(f" in {Path(frame.filename).name}:{frame.lineno}" for frame in place)
     detail = " ".join(str(cause).split())[:MAX_DETAIL]
     problem = f"internal error, please report it: {type(cause).__name__}{where}" + (f": {detail}" if detail else "")
-    return UpliftError(problem, code="internal-error", hint="'uplift --traceback COMMAND …' shows more")
+    hint = "'uplift --traceback COMMAND …' shows more"
+    if "jax" in sys.modules and remove_compiled_code():
+        hint = f"try again first: compiled code, which may have been damaged, was removed; {hint}"
+    return UpliftError(problem, code="internal-error", hint=hint)
 
 
 def error_object(error: UpliftError) -> dict[str, Any]:

@@ -243,6 +243,20 @@ def test_compiled_code_that_cannot_be_read_is_removed(tmp_path):
     assert b"damaged" not in [entry.read_bytes() for entry in entries]
 
 
+def test_an_error_by_exchanged_compiled_code_comes_once(tmp_path):
+    codes = []
+    for number in range(3):
+        done = shell(f"{BUILD} {tmp_path}/cube.uplift", XDG_CACHE_HOME=str(tmp_path), UPLIFT_TRACEBACK="")
+        codes.append(done.returncode)
+        entries = sorted(tmp_path.glob("uplift/*-cache"))
+        if number == 0:
+            first, *_, last = entries
+            content = first.read_bytes()
+            first.write_bytes(last.read_bytes())
+            last.write_bytes(content)
+    assert codes == [0, 70, 0]
+
+
 @needs_modes
 def test_compiled_code_of_users_whose_files_their_group_can_write_is_kept(tmp_path):
     found = []
