@@ -14,6 +14,7 @@ from uplift.common.files import check_regular
 from uplift.common.text import format_value, parse_float
 
 from .output.diagnostics import warn
+from .startup import hide_drawing_notes
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
@@ -163,6 +164,7 @@ def check_plot(path: str) -> str:
     """Return the name of a plot, whose suffix must be that of a figure."""
     from uplift.viz.figure import check_suffix
 
+    hide_drawing_notes()
     check_suffix(path)
     return path
 

@@ -39,8 +39,10 @@ def prepare_process() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("PJRT_NPROC", "1")
     os.environ["MPLBACKEND"] = "agg"  # which needs no display
+    os.environ["MATPLOTLIBRC"] = os.devnull  # figures do not depend on settings of the user
     os.environ["PYTHONSAFEPATH"] = "1"  # worker processes load no module from the working folder
     if os.path.lexists("matplotlibrc"):  # matplotlib would obey it
+        hide_drawing_notes()
         with contextlib.chdir(os.sep), contextlib.suppress(ImportError):
             import matplotlib  # noqa: F401
     sys.warnoptions.append("ignore:resource_tracker:UserWarning")  # of multiprocessing, about a process that was ended

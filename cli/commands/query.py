@@ -20,7 +20,6 @@ from ..output.answers import coordinates, describe_coordinates, format_rgb, hex_
 from ..output.console import emit, has_colours, print_csv, print_json, print_json_answers, say
 from ..output.diagnostics import warn
 from ..outputs import check_outputs
-from ..startup import hide_drawing_notes
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Light
@@ -188,7 +187,6 @@ def command(
     if plot_path is not None:
         from uplift.viz.plots import plot_spectra
 
-        hide_drawing_notes()
         results = list(results)
         plot_spectra(answers.cube, results, plot_path, force=force)
     if style == "json":

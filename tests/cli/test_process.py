@@ -170,14 +170,19 @@ def test_no_module_of_the_working_folder_is_loaded_by_a_command_of_a_module(stra
     subprocess.run(command, cwd=strange_folder, check=True, capture_output=True, timeout=SECONDS)
 
 
-def test_settings_of_matplotlib_in_the_working_folder_are_not_obeyed(tmp_path):
-    for name, text in (("plain", ""), ("strange", "figure.dpi: 20\nsavefig.dpi: 20\naxes.facecolor: red\n")):
-        (tmp_path / name).mkdir()
-        if text:
-            (tmp_path / name / "matplotlibrc").write_text(text)
-        command = [sys.executable, "-m", "uplift_cli", "query", "0.1", "0.2", "0.3", "--plot", "plot.png"]
-        subprocess.run(command, cwd=tmp_path / name, check=True, capture_output=True, timeout=SECONDS)
-    assert (tmp_path / "strange" / "plot.png").read_bytes() == (tmp_path / "plain" / "plot.png").read_bytes()
+@pytest.mark.parametrize(
+    "settings", [b"figure.dpi: 20\nsavefig.dpi: 20\naxes.facecolor: red\n", b"no colon", b"\xff\xfe"]
+)
+def test_settings_of_matplotlib_are_neither_obeyed_nor_remarked_on(tmp_path, settings):
+    command = [sys.executable, "-m", "uplift_cli", "query", "0.1", "0.2", "0.3", "--plot"]
+    for name, text in (("plain", b""), ("strange", settings)):
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "matplotlibrc").write_bytes(text)
+        places = {"MPLCONFIGDIR": str(folder)}  # the folder of the user, and the working folder
+        done = subprocess.run([*command, "a.png"], cwd=folder, env=os.environ | places, check=True, capture_output=True)
+        assert done.stderr == b""
+    assert (tmp_path / "strange" / "a.png").read_bytes() == (tmp_path / "plain" / "a.png").read_bytes()
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from tests.helpers import raises
-from tests.io.texture.conftest import planes, write_exr
+from tests.io.texture.conftest import planes, write_exr, write_image
 from tests.io.texture.exr_bytes import attribute, exr_bytes
 from uplift.common import machine
 from uplift.common.errors import OutputError, TextureError
@@ -45,7 +45,7 @@ def test_a_disk_that_is_too_small_is_reported_at_the_first_rows(spectral, source
 
 
 @pytest.mark.parametrize("name", ["in.exr", "in.png", "in.jpg", "in.tif"])
-def test_a_damaged_image_raises_and_leaves_nothing(name, spectral, source, colours, tmp_path):
+def test_a_damaged_image_raises_and_leaves_nothing(name, spectral, source, colours, tmp_path, capfd):
     if name != "in.exr":
         source.unlink()
         source = tmp_path / name
@@ -54,9 +54,9 @@ def test_a_damaged_image_raises_and_leaves_nothing(name, spectral, source, colou
     source.write_bytes(data[: len(data) // 2])
     with pytest.raises(TextureError) as caught:
         texture.convert(spectral, source, tmp_path / "out.exr")
-    assert caught.value.code in ("file-unreadable", "file-unreadable")
-    assert caught.value.path == source
+    assert (caught.value.code, caught.value.path) == ("file-unreadable", source)
     assert list(tmp_path.iterdir()) == [source]
+    assert capfd.readouterr() == ("", "")  # nor does a library print
 
 
 def test_an_interruption_leaves_nothing(spectral, source, tmp_path):
@@ -153,3 +153,13 @@ def test_files_of_no_known_format_are_not_tried_by_all_decoders(tmp_path):
         file.truncate(20 << 30)  # sparse
     with raises(TextureError, "texture"), open_image(tmp_path / "a.exr"):
         pass
+
+
+@pytest.mark.parametrize("change", [lambda data: data.swapcase(), lambda data: data.replace(b"IDAT", b"XDAT")])
+def test_changed_png_is_refused_without_a_line_by_libpng(tmp_path, capfd, change):
+    content = write_image(tmp_path / "whole.png", np.full((4, 4, 3), 100, np.uint8)).read_bytes()
+    start = content.index(b"IDAT")
+    (tmp_path / "damaged.png").write_bytes(content[:start] + change(content[start:]))
+    with raises(TextureError, "file-unreadable"), open_image(tmp_path / "damaged.png"):
+        pass
+    assert capfd.readouterr() == ("", "")

@@ -17,7 +17,7 @@ from uplift.common.arrays import StrPath, Values
 from uplift.common.errors import ColourError, TextureError, UpliftError
 from uplift.common.files import check_regular
 from uplift.common.machine import check_memory
-from uplift.io.texture import exr_file
+from uplift.io.texture import exr_file, png_file
 from uplift.io.texture.colour_profile import Profile, read_profile
 
 FORMATS = ("openexr", "hdr", "png", "jpeg", "tiff")
@@ -28,8 +28,7 @@ UINT32_SCALE = 2**32 - 1
 MAX_EXACT_INTEGER = 1 << 24
 """Integers up to this number pass through 32-bit floats."""
 UNKNOWN_PROBLEM = "the image cannot be read"
-PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
-SIGNATURES = (exr_file.MAGIC, b"#?", PNG_SIGNATURE, b"\xff\xd8", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+SIGNATURES = (exr_file.MAGIC, b"#?", png_file.SIGNATURE, b"\xff\xd8", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 """First bytes of the formats."""
 PNG_INTERLACE = 28
 """Offset of the byte that marks an interlaced PNG file, which can only be decoded in one piece."""
@@ -173,6 +172,8 @@ def open_image(path: StrPath) -> Iterator[Image]:
         start = _read_start(path)
         if start.startswith(exr_file.MAGIC):
             exr_file.check_size(path)
+        elif start.startswith(png_file.SIGNATURE):
+            png_file.check_chunks(path)
         handle = OpenImageIO.ImageInput.open(utf8_name(path, TextureError), config)
         if handle is None:
             problem = read_error(OpenImageIO) or UNKNOWN_PROBLEM
@@ -182,7 +183,7 @@ def open_image(path: StrPath) -> Iterator[Image]:
             for name in (part.name, *part.channels):
                 if not _is_text(name):
                     raise TextureError(f"names of parts and channels must be UTF-8, got {name!a}", hint="rename it")
-            is_interlaced = start.startswith(PNG_SIGNATURE) and start[PNG_INTERLACE:] == b"\1"
+            is_interlaced = start.startswith(png_file.SIGNATURE) and start[PNG_INTERLACE:] == b"\1"
             rows = part.window.height if is_interlaced else min(part.rows_per_block, part.window.height)
             need = rows * part.window.width * len(part.channels) * 4
             check_memory(need, f"a block of {rows} rows, decoded together,", TextureError, MEMORY_HINT)
