@@ -25,7 +25,7 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.common.arrays import Array
-    from uplift.io.texture import Conversion, Failure
+    from uplift.io.texture.sequence import Outcome
     from uplift.io.texture.uplifter import PixelEncoding
 
 
@@ -54,7 +54,7 @@ image_options = options.stacked(
         type=options.Parsed(_check_scheduler),
         help="Dask cluster that converts the images; requires the package distributed.",
     ),
-    click.option("--resume", is_flag=True, help="Skip images whose textures are complete and newer."),
+    click.option("--resume", is_flag=True, help="Skip images whose textures are complete."),
     options.force,
     options.quiet,
 )
@@ -144,22 +144,19 @@ def convert(
     """Convert images, on as many threads as the processes leave; see `TextureSettings` and `image_options`."""
     enable_jit_cache()
     from uplift.io import texture
-    from uplift.io.texture.sequence import converter_for
+    from uplift.io.texture.sequence import converter_for, run
 
     pairs = _texture_paths(sources, target)
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
     settings = texture.TextureSettings(cubes, pixel_encoding, threads=max(cores // count, 1), **given)
-    jobs = [texture.Job(settings, source.absolute(), path.absolute(), force) for source, path in pairs]
-    pending = texture.pending(jobs, resume=resume)
+    jobs = [texture.Job(settings, source.absolute(), path.absolute(), force, resume) for source, path in pairs]
+    pending = texture.pending(jobs)
     converter_for(settings)  # reports invalid options once, not once per image
     begin = time.perf_counter()
     if scheduler is None and len(jobs) == 1:
         with progress_bar("rows", quiet=quiet) as progress:
-            results: list[Conversion | Failure] = [
-                texture.convert(converter_for(job.settings), job.source, job.target, force=job.force, progress=progress)
-                for job in pending
-            ]
+            results = [run(job, progress) for job in pending]
     else:
         outcomes = texture.convert_all(pending, processes=count, scheduler=scheduler)
         results = _collect(outcomes, len(pending), quiet=quiet)
@@ -167,7 +164,8 @@ def convert(
     for conversion in converted:
         warn(conversion.warnings)
     if not quiet:
-        skipped = f", {len(jobs) - len(pending)} skipped" if len(jobs) > len(pending) else ""
+        count = len(jobs) - len(pending) + sum(isinstance(one, texture.Skipped) for one in results)
+        skipped = f", {count} skipped" if count else ""
         pixels = sum(one.counts.pixels for one in converted)
         size = sum(one.target.stat().st_size for one in converted) / 1e6
         spaces = ", ".join(dict.fromkeys(space for one in converted for space in one.spaces))
@@ -221,7 +219,7 @@ def as_tuple(wavelengths: Array | None) -> tuple[float, ...] | None:
     return None if wavelengths is None else tuple(wavelengths.tolist())
 
 
-def _collect(results: Generator[Conversion | Failure], total: int, *, quiet: bool) -> list[Conversion | Failure]:
+def _collect(results: Generator[Outcome], total: int, *, quiet: bool) -> list[Outcome]:
     collected = []
     try:
         with contextlib.closing(results), progress_bar("images", quiet=quiet) as progress:

@@ -37,6 +37,7 @@ HINTS = {
     "not-an-emission-table": "build one with 'uplift lights build', or use 'uplift query' and the like for a cube",
     "rgb-out-of-gamut": "map it inside with --out-of-gamut, or use --encoded for 8-bit codes",
     "sparse-cube": "use --fill-missing where the command has it, or a cube built without --scene",
+    "texture-differs": "use --resume with --force to convert the image again, or choose another name",
     "unknown-illuminant": "{} 'uplift help lights' lists all names",
 }
 """Hints in place of the library's, {}, which name parameters of Python, by the code of an error or a warning."""

@@ -71,36 +71,61 @@ def test_missing_dask_raises(monkeypatch):
         list(texture.convert_all([], scheduler="tcp://here:1"))
 
 
-def test_resume_leaves_out_complete_newer_textures(jobs):
+def test_resume_leaves_out_complete_textures(jobs):
     run(jobs[0])
     target = jobs[0].target
-    assert texture.pending([jobs[0]], resume=True) == []
+    resumed = replace(jobs[0], resume=True)
+    forced = replace(resumed, force=True)
+    assert texture.pending([resumed]) == texture.pending([forced]) == []
+    assert texture.pending([replace(jobs[0], force=True)])
     with raises(OutputError, "file-exists"):
         texture.pending([jobs[0]])
-    forced = [replace(jobs[0], force=True)]
-    assert texture.pending(forced, resume=True) == []
-    assert texture.pending(forced) == forced
 
     data = target.read_bytes()
     middle = bytes([data[len(data) // 2] ^ 1])
-    for damaged in (data[:-100], data[: len(data) // 2] + middle + data[len(data) // 2 + 1 :]):
+    for damaged in (data[:-100], data[: len(data) // 2] + middle + data[len(data) // 2 + 1 :], b"no texture"):
         target.write_bytes(damaged)
-        assert texture.pending(forced, resume=True) == forced
-    target.write_bytes(data)
-    assert texture.pending(forced, resume=True) == []
-
-    later = target.stat().st_mtime + 10
-    os.utime(jobs[0].source, (later, later))
-    assert texture.pending(forced, resume=True) == forced
+        with raises(OutputError, "texture-differs"):
+            texture.pending([resumed])
+        assert texture.pending([forced]) == [forced]
 
 
 @pytest.mark.parametrize(
     "change", [{"depth": "half"}, {"encoding": "linear"}, {"pixel_encoding": texture.Multipliers()}, {"cubes": (None,)}]
 )
-def test_resume_repeats_textures_of_other_settings(jobs, change):
+def test_textures_of_other_settings_are_no_textures_to_resume_from(jobs, change):
     run(jobs[0])
-    other = replace(jobs[0], settings=replace(jobs[0].settings, **change), force=True)
-    assert texture.pending([other], resume=True) == [other]
+    other = replace(jobs[0], settings=replace(jobs[0].settings, **change), resume=True)
+    with raises(OutputError, "texture-differs"):
+        texture.pending([other])
+    assert len(texture.pending([replace(other, force=True)])) == 1
+
+
+def test_an_image_that_an_older_one_has_replaced_is_converted_again(jobs):
+    run(jobs[0])
+    resumed = replace(jobs[0], resume=True)
+    content = jobs[0].source.read_bytes()
+    jobs[0].source.write_bytes(jobs[2].source.read_bytes())
+    os.utime(jobs[0].source, (0, 0))
+    with raises(OutputError, "texture-differs"):
+        texture.pending([resumed])
+    jobs[0].source.write_bytes(content)  # newer than the texture
+    assert texture.pending([resumed]) == []
+
+
+def test_two_processes_that_resume_at_once_share_the_work(jobs, monkeypatch):
+    first, second = (replace(jobs[number], resume=True) for number in (0, 2))
+    assert texture.pending([first, second]) == [first, second]
+    run(jobs[0])  # by the other process
+    assert run(first) == texture.Skipped(first.source)
+
+    def convert(*arguments, **options):
+        monkeypatch.undo()
+        run(jobs[2])  # as this process begins with the image
+        return texture.convert(*arguments, **options)
+
+    monkeypatch.setattr("uplift.io.texture.sequence.convert", convert)
+    assert run(second) == texture.Skipped(second.source)
 
 
 def test_two_images_with_one_target_raise(jobs):

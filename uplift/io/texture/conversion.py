@@ -1,7 +1,8 @@
 """Conversion of one image, a band of rows at a time, so that memory does not grow with its height."""
 
+import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,12 +10,15 @@ import numpy as np
 
 from uplift.common.arrays import StrPath, Values
 from uplift.common.errors import TextureError, UpliftWarning
-from uplift.common.files import check_output
+from uplift.common.files import check_output, file_digest
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
 from uplift.io.texture.colours import ColourChannels, Counts, colour_channels_by_part, source_space, space_warnings
 from uplift.io.texture.image import Image, Part, open_image
 from uplift.io.texture.uplifter import Converter, ConvertRows, ReadColours
 from uplift.io.texture.writer import OutputPart, Writer, open_writer
+
+SOURCE = "uplift.source"
+"""Attribute with the size and the SHA-256 digest of the image that a texture was made of."""
 
 
 @dataclass(frozen=True)
@@ -88,8 +92,10 @@ def convert(
     """
     begin = time.perf_counter()
     check_output(target, inputs=[source], force=force)
+    made_of = {SOURCE: source_stamp(source)}
     with open_image(source) as image, converter.opened(image) as convert_rows:
-        layouts = [_layout(converter, image, part, colours) for part, colours in colour_channels_by_part(image)]
+        parts = colour_channels_by_part(image)
+        layouts = [_layout(converter, image, part, colours, made_of) for part, colours in parts]
         total = sum(layout.part.window.height for layout in layouts)
         counts, done = Counts(), 0
         with open_writer(target, [each.output for each in layouts], force=force) as writer:
@@ -103,6 +109,12 @@ def convert(
     warnings = (*counts.warnings(converter.out_of_gamut, source), *notes)
     spaces = tuple(dict.fromkeys(_space_name(converter, each.part) for each in layouts if each.colours))
     return Conversion(Path(source), Path(target), counts, warnings, time.perf_counter() - begin, spaces)
+
+
+def source_stamp(source: StrPath) -> str:
+    """Return the attribute `SOURCE` of textures of an image. Raises `TextureError`."""
+    digest = file_digest(source, TextureError)
+    return f"{os.stat(source).st_size} {digest}"
 
 
 def _space_name(converter: Converter, part: Part) -> str:
@@ -127,7 +139,9 @@ class _Layout:
     output: OutputPart
 
 
-def _layout(converter: Converter, image: Image, part: Part, found: ColourChannels | None) -> _Layout:
+def _layout(
+    converter: Converter, image: Image, part: Part, found: ColourChannels | None, made_of: Mapping[str, str]
+) -> _Layout:
     colours = None if found is None else converter.colour_channels(found)
     rgb = () if colours is None else colours.rgb
     others = tuple(index for index in range(len(part.channels)) if index not in rgb)
@@ -142,7 +156,7 @@ def _layout(converter: Converter, image: Image, part: Part, found: ColourChannel
             )
         names, types = (*converted, *names), (*(converter.depth,) * len(converted), *types)
     modified = time.strftime("%Y:%m:%d %H:%M:%S", time.gmtime(image.path.stat().st_mtime))  # as EXIF writes it
-    header = {**part.metadata, **converter.header, **converter.part_header(part)}
+    header = {**part.metadata, **converter.header, **converter.part_header(part), **made_of}
     output = OutputPart(part.name, part.window, names, types, header, part.date or modified)
     return _Layout(part, colours, others, converter.decoder(part), output)
 

@@ -2,6 +2,7 @@
 
 import contextlib
 import logging
+import os
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, as_completed
 from dataclasses import dataclass, field
@@ -9,12 +10,12 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from uplift.common.errors import OptionError, StrPath, TextureError, UpliftError, needs_package
+from uplift.common.errors import OptionError, OutputError, StrPath, TextureError, UpliftError, needs_package
 from uplift.common.files import check_folder, make_folder, remove_stale
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.io.processes import tied_processes
 from uplift.io.texture import exr_file
-from uplift.io.texture.conversion import Conversion, convert
+from uplift.io.texture.conversion import SOURCE, Conversion, convert, source_stamp
 from uplift.io.texture.image import open_image
 from uplift.io.texture.lights import prepare_lights
 from uplift.io.texture.mask import prepare_masked
@@ -100,12 +101,15 @@ class Job:
         The image to read and the file to write.
     force : bool
         Whether to replace an existing file.
+    resume : bool
+        Whether to leave out an image whose texture is complete.
     """
 
     settings: TextureSettings
     source: Path
     target: Path
     force: bool = False
+    resume: bool = False
 
 
 @dataclass(frozen=True)
@@ -124,24 +128,49 @@ class Failure:
     error: UpliftError
 
 
+@dataclass(frozen=True)
+class Skipped:
+    """An image whose texture another process has completed meanwhile.
+
+    Parameters
+    ----------
+    source : Path
+        The image.
+    """
+
+    source: Path
+
+
+Outcome = Conversion | Failure | Skipped
+"""What becomes of a job."""
 converter_for = lru_cache(maxsize=1)(TextureSettings.prepare)
 """The converter of settings, which each process prepares once."""
 
 
-def run(job: Job, progress: ProgressCallback = ignore_progress) -> Conversion | Failure:
+def run(job: Job, progress: ProgressCallback = ignore_progress) -> Outcome:
     """Convert the image of a job. Errors are returned, so that one bad image does not stop the others."""
     try:
-        make_folder(job.target.parent)
-        return convert(converter_for(job.settings), job.source, job.target, force=job.force, progress=progress)
+        return _run(job, progress)
     except UpliftError as error:
         return Failure(job.source, error)
     except MemoryError:
         return Failure(job.source, TextureError("not enough memory", path=job.source, hint="use fewer processes"))
 
 
-def convert_all(
-    jobs: Iterable[Job], *, processes: int = 1, scheduler: str | None = None
-) -> Generator[Conversion | Failure]:
+def _run(job: Job, progress: ProgressCallback) -> Outcome:
+    """Convert the image of a job, unless another process does so while it is to resume."""
+    make_folder(job.target.parent)
+    if job.resume and is_complete(job):
+        return Skipped(job.source)
+    try:
+        return convert(converter_for(job.settings), job.source, job.target, force=job.force, progress=progress)
+    except OutputError as error:
+        if job.resume and error.code == "file-exists" and is_complete(job):
+            return Skipped(job.source)
+        raise
+
+
+def convert_all(jobs: Iterable[Job], *, processes: int = 1, scheduler: str | None = None) -> Generator[Outcome]:
     """Convert images one after the other, in several processes, or on a Dask cluster.
 
     An exception and closing the iterator end the conversions. Unfinished files are removed, also when this process
@@ -158,7 +187,7 @@ def convert_all(
 
     Yields
     ------
-    Conversion or Failure
+    Conversion, Failure or Skipped
         Outcomes in order of completion.
 
     Raises
@@ -229,31 +258,30 @@ def _dask_executor(address: str) -> Iterator[Executor]:
                 client.close(timeout=DASK_CLOSE_SECONDS)
 
 
-def pending(jobs: Iterable[Job], *, resume: bool = False) -> list[Job]:
+def pending(jobs: Iterable[Job]) -> list[Job]:
     """Return the jobs that remain, and check that their targets can be written, without creating folders.
 
     Parameters
     ----------
     jobs : iterable of Job
         All jobs.
-    resume : bool
-        Whether to leave out images whose textures agree with their checksums, are newer than the image, and of the
-        same settings.
 
     Returns
     -------
     list of Job
-        The remaining jobs.
+        The jobs but those that resume and whose textures are complete: these agree with their checksums, and are of
+        the same cube, settings and image.
 
     Raises
     ------
     OutputError
         A target cannot be written, exists, or is an image or the cube of any job, or two images have the same target.
+        A texture from which a job could resume was written otherwise (``texture-differs``).
     """
     jobs = list(jobs)
-    remaining = [job for job in jobs if not (resume and _is_up_to_date(job))]
     inputs = [path for job in jobs for path in (job.source, *job.settings.cubes, job.settings.mask)]
     _check_targets([job.target for job in jobs], inputs, force=True)
+    remaining = [job for job in jobs if not (job.resume and is_complete(job))]
     _check_targets([job.target for job in remaining if not job.force], inputs, force=False)
     return remaining
 
@@ -265,14 +293,33 @@ def _check_targets(targets: list[Path], inputs: Iterable[StrPath | None], *, for
         check_folder(folder, names, inputs=inputs, force=force)
 
 
-def _is_up_to_date(job: Job) -> bool:
-    """Return whether the texture is intact, newer than its image, and of the same cube and settings."""
-    try:
-        if job.target.stat().st_mtime < job.source.stat().st_mtime:
-            return False
-        header = converter_for(job.settings).header
-        with open_image(job.target) as image:
-            equal = all(image.header_text(name) == header[name] for name in ("uplift.cube", "uplift.texture"))
-    except (OSError, TextureError):
+def is_complete(job: Job) -> bool:
+    """Return whether the texture of a job is there, intact, and of the same cube, settings and image.
+
+    Raises `OutputError` (``texture-differs``) if another file is there that the job may not replace.
+    """
+    if not os.path.lexists(job.target):
         return False
-    return equal and exr_file.is_intact(job.target)
+    problem = _difference(job)
+    if problem and not job.force:
+        hint = "pass force=True to convert the image again, or choose another name"
+        raise OutputError(f"exists, but {problem}", code="texture-differs", path=job.target, hint=hint)
+    return not problem
+
+
+def _difference(job: Job) -> str:
+    """Return how a file differs from the texture of a job; empty if it does not."""
+    header = converter_for(job.settings).header
+    names = (SOURCE, "uplift.cube", "uplift.texture")
+    try:
+        with open_image(job.target) as image:
+            source, cube, settings = (image.header_text(name) for name in names)
+    except TextureError:
+        return "is not a complete texture"
+    if cube != header["uplift.cube"]:
+        return "is a texture of another cube"
+    if settings != header["uplift.texture"]:
+        return "was written with other options"
+    if source != source_stamp(job.source):
+        return "is a texture of another image, or of one that has changed"
+    return "" if exr_file.is_intact(job.target) else "is not a complete texture"
