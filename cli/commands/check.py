@@ -48,8 +48,8 @@ def command(
     atlas has changed, its cube has failed: the entries that were added, removed or moved are listed, by ΔE00.
     --update replaces every failed cube that can be rebuilt.
 
-    Atlases are identified by name and content. They are searched for in --atlas-dir, the cube's folder, 'atlases'
-    in these, and the shipped atlases.
+    The first atlas of the recorded name counts, in --atlas-dir, in the cube's folder, and in 'atlases' in these. A
+    shipped atlas replaces it only where there is none and the contents are equal.
     """
     enable_jit_cache()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
@@ -81,25 +81,27 @@ def _check(
     from uplift.report.regression import compare_rebuilt
 
     rebuilt = comparison = error = None
-    changed: list[UpliftWarning] = []
+    noted: list[UpliftWarning] = []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", UpliftWarning)
         try:
             stored = load(path)
             rebuilt = rebuild(stored, path, folders, progress=progress)
-            changed = [each.message for each in caught if isinstance(each.message, UpliftWarning)]
+            noted = [each.message for each in caught if isinstance(each.message, UpliftWarning)]
             comparison = compare_rebuilt(path, stored.data, rebuilt.data)
         except UpliftError as cause:
             error = cause
-    codes = [error.code] if error else [each.code for each in changed]
+    changed = [note.problem for note in noted if note.code == "atlas-changed"]
+    codes = [error.code] if error else ["atlas-changed"] if changed else []
     failures = [*(comparison.failures if comparison else ()), *codes]
     record = {
         "cube": str(path),
         "passed": not failures,
-        "failures": list(dict.fromkeys(failures)),
+        "failures": failures,
         "measures": comparison.measures if comparison else {},
         "status": {"stored": comparison.stored_counts, "rebuilt": comparison.rebuilt_counts} if comparison else {},
-        "atlas_changed": [] if error else [each.problem for each in changed],
+        "atlas_changed": changed,
+        "notes": [note.problem for note in noted if note.problem not in changed],
         "entries": [asdict(entry) for entry in comparison.entries] if comparison else [],
         "error": error_object(error) if error else None,
     }
@@ -126,7 +128,7 @@ def _print_table(records: Sequence[dict[str, Any]]) -> None:
     table.add_row("limit", *(f"{limit:.0e}" for limit in LIMITS.values()), "same", "", style="dim")
     show(table)
     for record in records:
-        for problem in record["atlas_changed"]:
+        for problem in (*record["atlas_changed"], *record["notes"]):
             say(f"{record['cube']}: {problem}")
         for entry in record["entries"]:
             by = "" if entry["delta_e"] is None else f", ΔE00 {entry['delta_e']:.2g}"

@@ -6,7 +6,7 @@ import shutil
 import pytest
 
 import uplift
-from tests.helpers import raises, warns
+from tests.helpers import quiet_build, raises, warns
 from uplift.common.errors import CubeFileError
 from uplift.cube import digest
 from uplift.lookup import Cube
@@ -84,26 +84,37 @@ def test_a_recorded_observer_opens_no_file(tiny_cube, home, monkeypatch):
     assert not opened
 
 
-def test_a_shipped_atlas_is_found_by_its_digest_in_any_folder(tiny_cube, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "macbeth.txt").write_text("Entry ID: other\n", encoding="utf-8")
+def test_a_shipped_atlas_of_the_recorded_content_replaces_a_missing_file(tiny_cube, tmp_path):
     assert digest(rebuild(tiny_cube, tmp_path / "cube.uplift").data) == digest(tiny_cube.data)
-    (tmp_path / "macbeth.txt").unlink()
-    cube = with_provenance(tiny_cube, atlases=[{"name": "macbeth.txt", "digest": "0" * 64}])
-    rebuild_error("atlas-not-found", cube, tmp_path / "cube.uplift")
+    (source,) = tiny_cube.data.provenance["atlases"]
+    renamed = with_provenance(tiny_cube, atlases=[{**source, "name": "mine.txt"}])
+    with warns("shipped-atlas"):
+        assert recorded_atlas(renamed.data, tmp_path / "cube.uplift").names[0] == "dark skin"
+    unknown = with_provenance(tiny_cube, atlases=[{**source, "digest": "0" * 64}])
+    rebuild_error("atlas-not-found", unknown, tmp_path / "cube.uplift")
 
 
-def test_a_changed_atlas_is_used_with_a_warning(tiny_cube, repository, home):
+def test_the_first_file_of_the_recorded_name_decides(tiny_cube, repository, tmp_path):
+    """The recorded content in a later folder or among the shipped atlases does not hide that a file has changed."""
     text = (repository / "atlases" / "macbeth.txt").read_text(encoding="utf-8")
-    (home / "macbeth.txt").write_text(text + "\n", encoding="utf-8")
-    with warns("atlas-changed") as caught:
-        rebuild(tiny_cube, home / "cube.uplift")
-    assert str(home / "macbeth.txt") in caught[0].problem
-    with raises(CubeFileError, "atlas-changed"):
-        recorded_atlas(tiny_cube.data, home / "cube.uplift")
-    # It does not hide the recorded one.
-    again = rebuild(tiny_cube, home / "cube.uplift", [home, repository / "atlases"])
-    assert digest(again.data) == digest(tiny_cube.data)
+    (tmp_path / "macbeth.txt").write_text(text + "\n", encoding="utf-8")
+    path, folder = tmp_path / "cube.uplift", repository / "atlases"
+    for folders in ((), [tmp_path, folder]):
+        with warns("atlas-changed") as caught:
+            rebuild(tiny_cube, path, folders)
+        assert str(tmp_path / "macbeth.txt") in caught[0].problem
+        with raises(CubeFileError, "atlas-changed"):
+            recorded_atlas(tiny_cube.data, path, folders)
+    assert digest(rebuild(tiny_cube, path, [folder]).data) == digest(tiny_cube.data)
+
+
+def test_two_recorded_files_may_have_one_name(tmp_path):
+    folders = [tmp_path / "first", tmp_path / "second"]
+    for folder, value in zip(folders, (0.2, 0.6), strict=True):
+        folder.mkdir()
+        (folder / "mine.csv").write_text(f"name,400,700\n{folder.name},{value},{value}\n", encoding="utf-8")
+    cube = quiet_build([folder / "mine.csv" for folder in folders], dim=3, coefficients=4)
+    assert recorded_atlas(cube.data, tmp_path / "cube.uplift", folders).names == ("first", "second")
 
 
 OPTIONS = [{"progress": None}, {"model": "spline"}, {"lights": ["D65", "D66"]}, {"lights": [3]}, {"dim": 1}]

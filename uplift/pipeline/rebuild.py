@@ -2,7 +2,7 @@
 
 import os
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence, Set
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,16 @@ from uplift.pipeline.options import CUSTOM, Options, recorded_options
 
 REBUILD = "build the cube again"
 """Hint for cubes whose build cannot be repeated."""
+SEARCH = "pass the folder that contains it, or build the cube again"
+"""Hint for atlases that are missing or have changed."""
+
+
+@dataclass(frozen=True)
+class RecordedFile:
+    """A file that a cube recorded, with a warning if it has another content, or is a shipped atlas of another name."""
+
+    path: Path
+    warning: UpliftWarning | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +67,13 @@ def rebuild(
         raise CubeFileError(
             "was filled from another cube and cannot be rebuilt", path=path, hint="rebuild the cube that was filled"
         )
-    atlases, libraries = (_find_all(stored.data, path, kind, folders) for kind in ("atlases", "libraries"))
-    for error in filter(None, (*atlases.values(), *libraries.values())):
-        warnings.warn(UpliftWarning(error.problem, code=error.code, path=path), stacklevel=2)
-    atlas, library = _read(stored.data, atlases), tuple(libraries)
+    atlases = _find_all(stored.data, path, "atlases", folders)
+    libraries = _find_all(stored.data, path, "libraries", folders)
+    for file in (*atlases, *libraries):
+        if file.warning:
+            warnings.warn(file.warning, stacklevel=2)
+    atlas = _read(stored.data, atlases)
+    library = tuple(file.path for file in libraries)
     scene = StoredScene(stored.data) if "scene" in stored.data.provenance else None
     given = asdict(options)
     sensor = stored.data.sensor
@@ -80,61 +93,86 @@ def rebuild(
 def recorded_atlas(data: CubeData, path: StrPath, folders: Sequence[StrPath] = ()) -> Atlas | None:
     """Read the atlas that a cube, read from ``path``, was built from; None for a cube without one.
 
-    The files are those of `recorded_files`. Warnings are not repeated.
+    The files are those of `recorded_files`. Warnings of the build are not repeated. A shipped atlas of another name
+    gives the `UpliftWarning` ``shipped-atlas``.
     """
-    return _read(data, recorded_files(data, path, folders))
+    files = _unchanged_files(data, path, folders)
+    for file in files:
+        if file.warning:
+            warnings.warn(file.warning, stacklevel=2)
+    return _read(data, files)
 
 
 def recorded_files(data: CubeData, path: StrPath, folders: Sequence[StrPath] = ()) -> tuple[Path, ...]:
     """Find the files of the atlas that a cube, read from ``path``, was built from.
 
-    The files are searched by name and digest in ``folders``, in the folder of the cube, and in folders ``atlases`` in
-    these, and by digest among the shipped atlases. A recorded name never opens a file elsewhere. Raises
-    `CubeFileError` if the cube does not record its atlas, or a file is missing or has changed.
+    The first file of the recorded name decides, in ``folders``, in the folder of the cube, and in folders ``atlases``
+    in these. Where there is none, a shipped atlas of the recorded content counts. A recorded name never opens a file
+    elsewhere. Raises `CubeFileError` if the cube does not record its atlas, or a file is missing or has changed.
     """
+    return tuple(file.path for file in _unchanged_files(data, path, folders))
+
+
+def _unchanged_files(data: CubeData, path: StrPath, folders: Sequence[StrPath]) -> list[RecordedFile]:
+    """Find the files of the atlas of a cube; raise `CubeFileError` for one that has changed."""
     files = _find_all(data, path, "atlases", folders)
-    for error in filter(None, files.values()):
-        raise error
-    return tuple(files)
+    for file in files:
+        if file.warning and file.warning.code == "atlas-changed":
+            raise CubeFileError(file.warning.problem, code="atlas-changed", path=path, hint=SEARCH)
+    return files
 
 
-def _read(data: CubeData, files: Iterable[Path]) -> Atlas | None:
+def _read(data: CubeData, files: Sequence[RecordedFile]) -> Atlas | None:
     """Read the recorded atlas from its files."""
     scales = [source.get("measured", "auto") for source in data.provenance["atlases"]]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UpliftWarning)
-        atlases = [read_atlas(file, measured=scale) for file, scale in zip(files, scales, strict=True)]
+        atlases = [read_atlas(file.path, measured=scale) for file, scale in zip(files, scales, strict=True)]
     return merge(atlases) if atlases else None
 
 
-def _find_all(data: CubeData, path: StrPath, kind: str, folders: Sequence[StrPath]) -> dict[Path, CubeFileError | None]:
-    """Find the recorded files of a kind, each with an error if it has changed."""
+def _find_all(data: CubeData, path: StrPath, kind: str, folders: Sequence[StrPath]) -> list[RecordedFile]:
+    """Find the recorded files of a kind. Only a plain name is searched in folders, no path on any system."""
     if kind == "atlases" and kind not in data.provenance:
         raise _missing_provenance(path)
     roots = [*map(Path, folders), Path(path).resolve().parent]
     searched = [folder for root in roots for folder in (root, root / "atlases")]
     sources = data.provenance.get(kind, ())
-    return dict(_find(path, source["name"], source["digest"], searched) for source in sources)
+    # Files of one name in two folders may both be recorded.
+    digests = {source["digest"] for source in sources}
+    files = []
+    for source in sources:
+        name, digest = source["name"], source["digest"]
+        is_plain = not set(name) & set("/\\:")
+        named = [folder / name for folder in searched if is_plain and os.path.isfile(folder / name)]
+        file = _first_of_name(path, named, digest, digests - {digest}) or _shipped(path, name, digest)
+        if file is None:
+            raise CubeFileError(f"its atlas '{name}' was not found", code="atlas-not-found", path=path, hint=SEARCH)
+        files.append(file)
+    return files
 
 
-def _find(path: StrPath, name: str, digest: str, folders: Sequence[Path]) -> tuple[Path, CubeFileError | None]:
-    """Return the file of a name and digest, or one of the name with an error.
+def _first_of_name(path: StrPath, named: Sequence[Path], digest: str, others: Set[str]) -> RecordedFile | None:
+    """Return the first file whose content is not one of the ``others``."""
+    for file in named:
+        content = read_document(file).digest
+        if content == digest:
+            return RecordedFile(file)
+        if content not in others:
+            problem = f"its atlas '{file.name}' has changed ({file})"
+            return RecordedFile(file, UpliftWarning(problem, code="atlas-changed", path=path))
+    return None
 
-    Only a plain name is searched in folders, no path on any system.
-    """
-    plain = not set(name) & set("/\\:")
-    candidates = [folder / name for folder in folders if plain and os.path.isfile(folder / name)]
-    for candidate in candidates:
-        if read_document(candidate).digest == digest:
-            return candidate, None
-    for shipped in shipped_atlases():
-        if shipped.digest == digest:
-            return shipped.path, None
-    hint = "pass the folder that contains it, or build the cube again"
-    if candidates:
-        problem = f"its atlas '{name}' has changed ({candidates[0]})"
-        return candidates[0], CubeFileError(problem, code="atlas-changed", path=path, hint=hint)
-    raise CubeFileError(f"its atlas '{name}' was not found", code="atlas-not-found", path=path, hint=hint)
+
+def _shipped(path: StrPath, name: str, digest: str) -> RecordedFile | None:
+    """Return the shipped atlas of a content."""
+    atlas = next((atlas for atlas in shipped_atlases() if atlas.digest == digest), None)
+    if atlas is None:
+        return None
+    if atlas.path.name == name:
+        return RecordedFile(atlas.path)
+    problem = f"its atlas '{name}' was not found; the shipped atlas '{atlas.name}' has its content"
+    return RecordedFile(atlas.path, UpliftWarning(problem, code="shipped-atlas", path=path))
 
 
 def _read_options(data: CubeData, path: StrPath) -> Options:
