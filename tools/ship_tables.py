@@ -9,13 +9,11 @@ from typing import Any
 import colour
 import numpy as np
 
-from uplift.colorimetry.tables import PATH, SPECTRA, TABLES, WAVELENGTHS
+from uplift.colorimetry.tables import PATH, SPECTRA, TABLES, WAVELENGTHS, aligned
 
 
 def tables() -> dict[str, np.ndarray]:
     """Return the arrays of the file by name."""
-    first, last, step = WAVELENGTHS
-    shape = colour.SpectralShape(first, last, step)
     arrays = {
         "version": np.array(colour.__version__),
         "bradford": colour.adaptation.CHROMATIC_ADAPTATION_TRANSFORMS["Bradford"],
@@ -25,7 +23,7 @@ def tables() -> dict[str, np.ndarray]:
         arrays[f"{kind}: names"] = np.array(list(found))
         arrays[f"{kind}: stated"] = np.array([each.name for each in found.values()])
         if kind in SPECTRA:
-            arrays[f"{kind}: samples"] = np.array([each.copy().align(shape).values for each in found.values()])
+            arrays[f"{kind}: samples"] = np.array([aligned(kind, each, *WAVELENGTHS).values for each in found.values()])
     spaces = colour.RGB_COLOURSPACES
     arrays["RGB space: primaries"] = np.array([each.primaries for each in spaces.values()], dtype=float)
     arrays["RGB space: whitepoint"] = np.array([each.whitepoint for each in spaces.values()], dtype=float)

@@ -6,6 +6,7 @@ import colour
 import numpy as np
 import pytest
 
+from uplift.colorimetry import observer
 from uplift.colorimetry.delta_e import delta_e_2000, lab, lab_to_xyz
 from uplift.colorimetry.dominant import GREY, dominant_wavelength
 
@@ -38,8 +39,10 @@ def test_lab_agrees_with_colour_science_and_is_invertible(name):
     np.testing.assert_allclose(lab_to_xyz(lab(xyz, white), white), xyz, atol=1e-14)
 
 
-def test_spectral_colours_and_their_tints(sensor):
+@pytest.mark.parametrize("name", [observer.DEFAULT_OBSERVER, "CIE 2015 2 Degree Standard Observer"])
+def test_spectral_colours_and_their_tints(name):
     """A mixture of white and one wavelength has that wavelength, and the purity of the distances in x, y."""
+    sensor = observer.sensor(observer=name)
     for wavelength in (440, 480, 520, 560, 600, 640):
         pure = sensor.cmfs[list(sensor.wavelengths).index(wavelength)]
         tint = pure / pure.sum() + 2 * sensor.light.white / sensor.light.white.sum()

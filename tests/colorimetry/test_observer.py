@@ -51,6 +51,26 @@ def test_colours_agree_with_colour_science(sensor):
     np.testing.assert_allclose(sensor.decoding, decoding, rtol=1e-14)  # powers differ between instruction sets
 
 
+@pytest.mark.parametrize("kind", ["observer", "camera", "illuminant"])
+@pytest.mark.parametrize("range_", [tables.WAVELENGTHS, (300.0, 900.0, 5.0)])
+def test_a_response_is_0_outside_its_table_and_a_light_keeps_its_last_value(kind, range_):
+    start, end, step = range_
+    wavelengths = np.arange(start, end + step / 2, step)
+    for name in tables.names(kind):
+        first, *_, last = tables.look_up(kind, name).wavelengths
+        samples = tables.samples(kind, name, *range_)
+        inside = (wavelengths >= first) & (wavelengths <= last)
+        below, above = samples[wavelengths < first], samples[wavelengths > last]
+        if kind == "illuminant":
+            ends = samples[inside][[0, -1]]
+            assert (below == ends[0]).all(), name
+            assert (above == ends[1]).all(), name
+        else:
+            assert not below.any(), name
+            assert not above.any(), name
+            assert samples[inside].any(axis=1).mean() > 0.7, name
+
+
 @pytest.mark.parametrize("dim", [2, 3, 8, 16, 33, 128])
 def test_srgb_nodes_agree_with_colour_science(dim):
     expected = colour.models.eotf_sRGB(np.linspace(0, 1, dim))
@@ -80,8 +100,8 @@ def test_other_ranges_agree_with_colour_science(limits, sensor):
     assert found.range == limits
     np.testing.assert_allclose(found.rgb(np.ones(len(found.wavelengths))), 1, rtol=0, atol=1e-14)
     steep = colour.SpectralDistribution(np.linspace(0.1, 0.9, len(found.wavelengths)), found.wavelengths)
-    shape, named = colour.SpectralShape(*limits), (("observer", sensor.observer), ("illuminant", sensor.illuminant))
-    aligned = (tables.look_up(*each).copy().align(shape) for each in named)
+    named = ("observer", sensor.observer), ("illuminant", sensor.illuminant)
+    aligned = (tables.aligned(kind, tables.look_up(kind, name), *limits) for kind, name in named)
     expected = colour.sd_to_XYZ(steep, *aligned, method="Integration") / 100
     np.testing.assert_allclose(found.xyz(found.rgb(steep.values)), expected, rtol=1e-9)
     displays = observer.display_sensors(["D65", "A", "D65"], sensor.observer, *limits)

@@ -37,8 +37,10 @@ def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
     colour = np.asarray(xyz, dtype=float)
     if not colour.sum() > 0:
         return GREY
-    # x, y of white, and from there to the spectrum locus and the line of purples around it (N + 1, 2)
-    curves = np.concatenate([sensor.light.white[None], sensor.cmfs, sensor.cmfs[:1]])
+    responds = sensor.cmfs.any(axis=1)
+    wavelengths, locus = sensor.wavelengths[responds], sensor.cmfs[responds]
+    # x, y of white, and from there to the spectrum locus and the line of purples around it (n + 1, 2)
+    curves = np.concatenate([sensor.light.white[None], locus, locus[:1]])
     xy = curves[:, :2] / curves.sum(axis=1, keepdims=True)
     white, outline = xy[0], xy[1:] - xy[0]
     direction = colour[:2] / colour.sum() - white
@@ -49,7 +51,7 @@ def dominant_wavelength(xyz: ArrayLike, sensor: Sensor) -> DominantWavelength:
     complementary = edge == len(outline) - 2
     if complementary:
         edge, fraction, _ = crossing(outline[:-1], -direction)
-    first, second = sensor.wavelengths[edge : edge + 2]
+    first, second = wavelengths[edge : edge + 2]
     return DominantWavelength(float(first + fraction * (second - first)), bool(complementary), float(1 / distance))
 
 

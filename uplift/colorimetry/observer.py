@@ -1,6 +1,7 @@
 """Sensors, lights and observers by name, from the tables of colour-science.
 
-Tables are sampled from ``start`` to ``end`` every ``step`` nm; outside their range values are extrapolated as constant.
+Tables are sampled from ``start`` to ``end`` every ``step`` nm. Outside their tables lights keep their last value, and
+observers are 0.
 Names that are unknown raise `UnknownNameError`, whose hint gives the nearest ones.
 """
 

@@ -32,6 +32,8 @@ TABLES = {
     "RGB space": "RGB_COLOURSPACES",
 }
 """All tables of colour-science that are used."""
+RESPONSES = ("observer", "camera")
+"""Kinds that are 0 outside their tables: a wavelength without a value adds nothing. Others keep their last value."""
 SHORT_NAMES = {
     "ap0": "ACES2065-1", "ap1": "ACEScg", "p3": "Display P3", "prophoto": "ProPhoto RGB",
     "rec709": "ITU-R BT.709", "bt709": "ITU-R BT.709", "rec2020": "ITU-R BT.2020", "bt2020": "ITU-R BT.2020",
@@ -84,8 +86,9 @@ def stated_name(kind: str, name: str) -> str:
 
 @functools.cache
 def samples(kind: str, name: str, start: float = START, end: float = END, step: float = STEP) -> Array:
-    """Sample spectra by name, with constant extrapolation; the result is read-only. Shape (N,) or (N, 3).
+    """Sample spectra by name; the result is read-only. Shape (N,) or (N, 3).
 
+    Outside its table a spectrum keeps its last value, as CIE 15 has it for lights, and one of `RESPONSES` is 0.
     ``kind`` is one of the keys of `TABLES`, such as ``"display"`` for the power of the primaries of a display.
     """
     name, kelvin = lights.standard_name(name) if kind == "illuminant" else (name, None)
@@ -94,10 +97,17 @@ def samples(kind: str, name: str, start: float = START, end: float = END, step: 
     elif kind in SPECTRA and (start, end, step) == WAVELENGTHS and name in names(kind):
         values = _file()[f"{kind}: samples"][names(kind).index(name)]
     else:
-        shape = colour_science().SpectralShape(start, end, step)
-        values = np.array(look_up(kind, name).copy().align(shape).values, dtype=float)
+        values = np.array(aligned(kind, look_up(kind, name), start, end, step).values, dtype=float)
     values.setflags(write=False)
     return values
+
+
+def aligned(kind: str, spectra: Any, start: float, end: float, step: float) -> Any:
+    """Return a copy of spectra of colour-science on a range, see `samples`."""
+    shape = colour_science().SpectralShape(start, end, step)
+    outside = 0 if kind in RESPONSES else None
+    extrapolation = {"method": "Constant", "left": outside, "right": outside}
+    return spectra.copy().align(shape, extrapolator_kwargs=extrapolation)
 
 
 def rgb_space(name: str) -> RgbSpace | None:

@@ -20,7 +20,7 @@ import numpy as np
 
 from uplift.colorimetry import Sensor
 from uplift.colorimetry.observer import END, START, STEP
-from uplift.colorimetry.tables import look_up
+from uplift.colorimetry.tables import aligned, look_up
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
 from uplift.lab.chart import mitsuba3
@@ -34,10 +34,10 @@ OTSU_GRID = (380.0, 730.0, 10.0)
 
 def prepare_one_by_one(task: Task, name: str, grid: tuple[float, float, float] = (START, END, STEP)) -> PreparedMethod:
     """Prepare a function of colour-science from one XYZ, an observer and an illuminant to a spectrum."""
-    recovery, shape = colour_science().recovery, colour_science().SpectralShape(*grid)
+    recovery = colour_science().recovery
     convert = getattr(recovery, name)
     named = ("observer", task.sensor.observer), ("illuminant", task.sensor.illuminant)
-    cmfs, light = (look_up(*each).copy().align(shape) for each in named)
+    cmfs, light = (aligned(kind, look_up(kind, title), *grid) for kind, title in named)
 
     def uplift(rgb: Array, wavelengths: Array) -> Array:
         spectra = (convert(xyz, cmfs, light) for xyz in published_srgb().xyz(rgb))
