@@ -18,6 +18,7 @@ TYPES = {"F64": "<f8", "F32": "<f4", "U8": "|u1", "I32": "<i4", "I16": "<i2", "U
 GREY = (0, 1e-10, 1e-8, 1e-6, 1e-4)  # weights of grey, until the moments have a spectrum
 LEAST, SLOPE, MOST = 3e-4, 0.03, 0.01  # distance from 0 and 1 of the mixtures that are moved
 MAX_SIZE, EDGE = 500, 1e-6  # of multipliers that are mixed without their own colour; of entries from the edge
+FEATURES = {"debug", "errors", "left-out", "camera", "sparse", "outside", "outside-measured"}
 TERMS = {"none": [], "vision": [(1, 0.0072, 538)], "colour": [(1, 0.0263, 480), (1.066, 0.0227, 578)]}
 
 
@@ -40,6 +41,8 @@ class Cube:
             found.update(f"{name} {array.dtype.str} {array.shape}".encode() + array.tobytes())
         if (self.meta["format"], found.hexdigest()) != ("uplift cube", digest):
             raise ValueError("not a cube file, or damaged")
+        if not set(self.meta["features"]) <= FEATURES:
+            raise ValueError("a feature that this reader does not know")
         self.sigmoid = self.meta["model"]["name"] == "sigmoid"
         self.nodes, self.threshold = self.arrays["nodes"], self.meta["threshold"]
         self.entries = self.arrays.get("atlas.entry_coefficients", self.arrays["atlas.coefficients"])

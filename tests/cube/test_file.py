@@ -136,6 +136,18 @@ def test_the_error_names_both_format_versions(data, tmp_path, version):
     assert str(VERSION) in error.problem
 
 
+@pytest.mark.parametrize("provenance", [{"uplift": "9.8.7"}, {}, {"uplift": 3}, None])
+def test_an_unknown_feature_is_refused_with_the_version_that_wrote_it(data, tmp_path, provenance):
+    def change(tensors, metadata):
+        metadata["features"] += ["polarised"]
+        metadata["provenance"] = provenance
+
+    path = forge(data, tmp_path / "cube", change)
+    error = refused(path, "cube-feature")
+    assert "polarised" in error.problem
+    assert ("9.8.7" in error.hint) == (provenance == {"uplift": "9.8.7"})
+
+
 @pytest.mark.parametrize("name", STORED)
 def test_arrays_that_are_missing_or_of_another_form_are_refused(data, tmp_path, name):
     def remove(tensors, metadata):

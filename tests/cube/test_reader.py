@@ -11,6 +11,7 @@ import pytest
 
 import uplift
 from tests.conftest import ROOT
+from tests.cube.cube_files import forge
 from uplift.lookup.cube import PACKAGED, Cube
 
 READER = ROOT / "docs" / "reader.py"
@@ -30,6 +31,13 @@ def compare(cube, path, rgb, within):
 def test_all_colours_of_acescg_those_that_are_moved_too():
     compare(uplift.load("acescg"), PACKAGED["acescg"], COLOURS, 1e-8)
     compare(uplift.load(), PACKAGED["srgb"], COLOURS[::9], 1e-13)
+
+
+def test_unknown_features_are_refused(tmp_path):
+    data = uplift.load().data
+    path = forge(data, tmp_path / "cube", lambda tensors, metadata: metadata["features"].append("polarised"))
+    with pytest.raises(ValueError, match="feature"):
+        reader.Cube(path)
 
 
 @pytest.mark.parametrize("name", ["moments-8-macbeth", "sigmoid-8-macbeth"])

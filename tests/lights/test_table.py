@@ -57,6 +57,7 @@ def spoil(name, value):
         ("cube-file", lambda tensors, _: tensors.pop("error")),
         ("cube-file", lambda _, metadata: metadata.update(entries=["A"] * 5)),
         ("cube-version", lambda _, metadata: metadata.update(version=2)),
+        ("cube-feature", lambda _, metadata: metadata.update(features=["polarised"])),
     ],
 )
 def test_invalid_content_is_refused(tmp_path, data, code, change):

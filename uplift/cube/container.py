@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from uplift.common.errors import CubeFileError, OutputError, UpliftError
 from uplift.common.files import atomic_write, check_regular
-from uplift.common.text import format_value, parse_json
+from uplift.common.text import format_value, parse_json, printable
 
 KEY = "uplift"
 """The only metadata entry: safetensors does not keep the order of several."""
@@ -33,13 +33,14 @@ Content = TypeVar("Content")
 class Kind(NamedTuple):
     """A kind of file: the text that names it in the metadata, versions that are read, the noun of messages.
 
-    ``foreign`` is the code of the error for files of another kind.
+    ``foreign`` is the code of the error for files of another kind, ``features`` are the optional parts that are read.
     """
 
     format: str
     readable: tuple[int, ...]
     noun: str
     foreign: str
+    features: tuple[str, ...] = ()
 
 
 class Stored(NamedTuple):
@@ -82,7 +83,7 @@ def save(
 
 
 def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Content]) -> Content:
-    """Read a file: check its kind, version and digest, then ``decode`` its arrays and metadata.
+    """Read a file: check its kind, version, features and digest, then ``decode`` its arrays and metadata.
 
     Every error that the content causes is a `CubeFileError` about the file.
     """
@@ -99,18 +100,11 @@ def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Con
     except (SafetensorError, ValueError, TypeError, OSError, MemoryError) as error:
         problem = f"is not a {kind.noun} file, or is truncated ({str(error)[:200]})"
         raise CubeFileError(problem, code=kind.foreign, path=path, hint=again) from error
-    found = metadata.get("format") if isinstance(metadata, dict) else None
-    if found != kind.format:
-        got = "" if found is None else f", got {format_value(found)}"
+    stated = metadata.get("format") if isinstance(metadata, dict) else None
+    if stated != kind.format:
+        got = "" if stated is None else f", got {format_value(stated)}"
         raise CubeFileError(f"must be an {kind.format}{got}", code=kind.foreign, path=path, hint=again)
-    if metadata.get("version") not in kind.readable:
-        versions, version = " or ".join(map(str, kind.readable)), format_value(metadata.get("version"))
-        raise CubeFileError(
-            f"must have format version {versions}, got {version}",
-            code="cube-version",
-            path=path,
-            hint=f"{again}, or use the version of uplift that wrote it",
-        )
+    _check_readable(metadata, kind, path)
     if metadata.pop("digest", None) != content_digest(tensors, metadata):
         problem = "is damaged: the content does not match its digest"
         raise CubeFileError(problem, path=path, hint=again)
@@ -121,6 +115,23 @@ def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Con
         reason = error.problem if isinstance(error, CubeFileError) else f"{type(error).__name__}: {str(error)[:200]}"
         problem = f"is not a valid {kind.noun}: {reason}"
         raise CubeFileError(problem, path=path, hint=again) from error
+
+
+def _check_readable(metadata: dict[str, Any], kind: Kind, path: Path) -> None:
+    """Raise `CubeFileError` for a version or a feature of later, or much earlier, versions of uplift."""
+    provenance = metadata.get("provenance")
+    writer = provenance.get("uplift") if isinstance(provenance, dict) else None
+    version = f"version {printable(writer)[:40]} of uplift" if isinstance(writer, str) else "the version of uplift"
+    hint = f"build the {kind.noun} again, or use {version} that wrote it"
+    if metadata.get("version") not in kind.readable:
+        versions, version = " or ".join(map(str, kind.readable)), format_value(metadata.get("version"))
+        problem = f"must have format version {versions}, got {version}"
+        raise CubeFileError(problem, code="cube-version", path=path, hint=hint)
+    features = metadata.get("features")
+    for feature in features if isinstance(features, list) else ():
+        if isinstance(feature, str) and feature not in kind.features:
+            problem = f"features must be of {', '.join(kind.features) or 'none'}, got {format_value(feature)}"
+            raise CubeFileError(problem, code="cube-feature", path=path, hint=hint)
 
 
 def content_digest(tensors: Tensors, metadata: Mapping[str, Any]) -> str:

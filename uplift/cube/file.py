@@ -26,10 +26,10 @@ from uplift.models import from_description
 
 FORMAT = "uplift cube"
 VERSION = 4
-KIND = Kind(FORMAT, (3, VERSION), "cube", foreign="not-a-cube")
-"""Versions that are read. The entries of version 3 have as many coefficients as the nodes."""
 FEATURES = ("debug", "errors", "left-out", "camera", "sparse", "outside", "outside-measured")
-"""Optional parts of a file, in the order in which the metadata list them."""
+"""Optional parts of a file, in the order in which the metadata list them. Earlier readers refuse a new one."""
+KIND = Kind(FORMAT, (3, VERSION), "cube", "not-a-cube", FEATURES)
+"""Versions that are read. The entries of version 3 have as many coefficients as the nodes."""
 MAX_POINTS = 1 << 27
 """Nodes of the largest lattice of a sparse file, as a small file must not claim all memory."""
 MAX_CONDITION = 1e6
