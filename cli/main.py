@@ -9,10 +9,10 @@ from typing import Any
 import click
 
 from uplift.common.errors import UpliftWarning
-from uplift.common.version import VERSION
+from uplift.common.version import version
 
 from .options import OUTPUT_FORMAT
-from .output.console import flush_stdout
+from .output.console import emit, flush_stdout
 from .output.diagnostics import BAD_INPUT, INTERNAL_ERROR, CommandFailure, show_usage_error, show_warning
 from .startup import hide_drawing_notes
 
@@ -124,12 +124,25 @@ class LazyGroup(click.Group):
             return result
 
 
+def _show_version(ctx: click.Context, _: click.Parameter, is_asked: bool) -> None:
+    if is_asked:
+        emit(f"uplift {version()}")
+        ctx.exit()
+
+
 @click.command(
     cls=LazyGroup,
     commands=[click.Command(name) for name in (*COMMANDS, "help")],
     context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
 )
-@click.version_option(version=VERSION, message="uplift %(version)s")
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_show_version,
+    help="Show the version and exit.",
+)
 @click.option("--traceback", is_flag=True, envvar="UPLIFT_TRACEBACK", help="Show the traceback of an internal error.")
 def main(traceback: bool) -> None:
     """Convert RGB colours to reflectance spectra that agree with measured ones.

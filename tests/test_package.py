@@ -5,11 +5,12 @@ from pathlib import Path
 
 import pytest
 
-import uplift
 from tests.examples import ELSEWHERE, build_wheel, examples, run_lines, source_files, unpack
+from uplift.common.version import UNKNOWN, VERSION
 
 FOLDERS = {"uplift": "uplift", "cli": "uplift_cli", "atlases": "uplift_atlases"}
-INFO = f"spectral_uplift-{uplift.__version__}.dist-info"
+INFO = f"spectral_uplift-{VERSION}{UNKNOWN}.dist-info"
+"""The copy that the wheel is built from is no clone."""
 FEW = (
     "uplift samples",
     "uplift relight wood.png -o wood.html",
@@ -61,6 +62,8 @@ def test_data_and_licence_are_in_it_and_nothing_else(wheel, repository):
 def test_examples_run_as_written_in_an_empty_folder(path, tmp_path):
     assert set(FEW) | ELSEWHERE <= set(examples())
     (tmp_path / "empty").mkdir()
-    for outcome in run_lines(FEW, unpack(path, tmp_path / "package"), tmp_path / "empty"):
+    outcomes = run_lines([*FEW, "uplift --version"], unpack(path, tmp_path / "package"), tmp_path / "empty")
+    for outcome in outcomes:
         assert outcome["code"] == 0, outcome["line"] + outcome["stderr"]
         assert "error: " not in outcome["stderr"]
+    assert outcomes[-1]["stdout"] == f"uplift {VERSION}{UNKNOWN}\n"

@@ -86,7 +86,7 @@ _HOMES = {name: module for module, names in _EXPORTS.items() for name in names}
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
-        return importlib.import_module("uplift.common.version").VERSION
+        return importlib.import_module("uplift.common.version").version()
     if name in _MODULES:
         return importlib.import_module(_MODULES[name])
     if name not in __all__:

@@ -49,7 +49,8 @@ def command(
     --update replaces every failed cube that can be rebuilt.
 
     The first atlas of the recorded name counts, in --atlas-dir, in the cube's folder, and in 'atlases' in these. A
-    shipped atlas replaces it only where there is none and the contents are equal.
+    shipped atlas replaces it only where there is none and the contents are equal. A note names the version that
+    wrote a cube, if it is older than this one.
     """
     enable_jit_cache()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:

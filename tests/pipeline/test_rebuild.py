@@ -108,6 +108,12 @@ def test_the_first_file_of_the_recorded_name_decides(tiny_cube, repository, tmp_
     assert digest(rebuild(tiny_cube, path, [folder]).data) == digest(tiny_cube.data)
 
 
+def test_a_cube_of_an_earlier_version_is_noted(tiny_cube, repository):
+    with warns("older-version") as caught:
+        rebuild(with_provenance(tiny_cube, uplift="0.2.0"), "cube.uplift", [repository / "atlases"])
+    assert "0.2.0" in caught[0].problem
+
+
 def test_two_recorded_files_may_have_one_name(tmp_path):
     folders = [tmp_path / "first", tmp_path / "second"]
     for folder, value in zip(folders, (0.2, 0.6), strict=True):

@@ -1,4 +1,70 @@
-"""Version, read from the source: the package index has another project `uplift`."""
+"""Version of uplift: that of a release, or on the way to one, which moves with every commit."""
 
-VERSION = "0.2.0"
-"""Version of this source; `pyproject.toml` reads it."""
+import functools
+import re
+from pathlib import Path
+
+VERSION = "0.3.0.dev"
+"""Version of this source. After ``.dev`` follows the number of commits; a release has no such suffix."""
+UNKNOWN = "0"
+"""In place of the number of commits: neither git nor a distribution tells it."""
+DISTRIBUTION = "spectral-uplift"
+"""Name on a package index, which has another project `uplift`."""
+ROOT = Path(__file__).parents[2]
+"""Folder of a clone or a source distribution, or that of installed packages."""
+
+
+@functools.cache
+def version() -> str:
+    """Return the version: in a clone that of its commit, in a distribution that of its build.
+
+    `pyproject.toml` calls this for a build. It is not computed on import, as git takes some milliseconds.
+    """
+    if not VERSION.endswith(".dev"):
+        return VERSION
+    if (ROOT / ".git").exists():
+        return VERSION + _count_commits()
+    if (ROOT / "PKG-INFO").is_file():
+        stated = re.search("^Version: (.+)$", (ROOT / "PKG-INFO").read_text(encoding="utf-8"), re.MULTILINE)
+        return stated[1] if stated else VERSION + UNKNOWN
+    if (ROOT / "pyproject.toml").is_file():
+        return VERSION + UNKNOWN
+    from importlib import metadata
+
+    try:
+        return metadata.version(DISTRIBUTION)
+    except metadata.PackageNotFoundError:
+        return VERSION + UNKNOWN
+
+
+def _count_commits() -> str:
+    """Count the commits of the clone. A shallow one does not have them all."""
+    import subprocess
+
+    def git(*arguments: str) -> str:
+        command = ["git", f"--git-dir={ROOT / '.git'}", *arguments]
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+    try:
+        is_shallow = git("rev-parse", "--is-shallow-repository") == "true"
+        return UNKNOWN if is_shallow else git("rev-list", "--count", "HEAD")
+    except (OSError, subprocess.CalledProcessError):
+        return UNKNOWN
+
+
+def is_older(first: str, second: str) -> bool:
+    """Return whether a version comes before another; False where that is unknown.
+
+    >>> is_older("0.2.0", "0.3.0.dev0"), is_older("0.3.0.dev7", "0.3.0.dev12"), is_older("0.3.0.dev0", "0.3.0.dev12")
+    (True, True, False)
+    """
+    return _order(first) < _order(second)
+
+
+def _order(version: str) -> tuple[float, ...]:
+    """Return numbers in the order of versions: a release follows its commits, and NaN is neither below nor above."""
+    match = re.fullmatch(r"([0-9]{1,9})\.([0-9]{1,9})\.([0-9]{1,9})(?:\.dev([0-9]{1,9}))?", version)
+    if match is None:
+        return (float("nan"),)
+    *release, commits = match.groups(default="inf")
+    return *map(float, release), float("nan" if commits == UNKNOWN else commits)

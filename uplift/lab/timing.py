@@ -10,14 +10,14 @@ import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from importlib.metadata import version
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
 from pydantic_core import to_jsonable_python
 
 from uplift.common.csv import csv_text
-from uplift.common.version import VERSION
+from uplift.common.version import version
 
 PACKAGES = ("numpy", "scipy", "jax", "colour-science", "safetensors")
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
@@ -108,7 +108,7 @@ def environment() -> dict[str, str]:
     with contextlib.suppress(OSError):
         lines = Path("/proc/cpuinfo").read_text().splitlines()
         cpu = next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), cpu)
-    packages = ", ".join([*(f"{name} {version(name)}" for name in PACKAGES), f"uplift {VERSION}"])
+    packages = ", ".join([*(f"{name} {metadata.version(name)}" for name in PACKAGES), f"uplift {version()}"])
     return {
         "machine": f"{cpu}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}",
         "versions": f"Python {sys.version.split()[0]}, {packages}",

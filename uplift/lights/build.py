@@ -17,7 +17,7 @@ from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.machine import single_threaded_blas
 from uplift.common.text import format_value
-from uplift.common.version import VERSION
+from uplift.common.version import version
 from uplift.lights.discs import Lamps, lamp_entries
 from uplift.lights.fit import locus_lattice, mix_with_locus, nearest_lights
 from uplift.lights.lamps import SAME_LAMP, known_lamps, read_lamps
@@ -131,7 +131,7 @@ def build_emission(
             error=_expected_error(left_out_errors, prior, lattice),
             entries=entries,
             provenance={
-                "uplift": VERSION,
+                "uplift": version(),
                 "options": {"knots": int(knots), "rings": int(rings), "without": sorted(without)},
                 "atlases": [_record(source) for source in sources],
                 "left_out": [name for name, _ in duplicates],

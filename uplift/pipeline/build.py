@@ -20,7 +20,7 @@ from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.text import format_value
-from uplift.common.version import VERSION
+from uplift.common.version import version
 from uplift.cube import CubeData
 from uplift.fit import growth, growth_coarse, growth_outward, growth_thesis, seeds
 from uplift.fit.base import learn_base
@@ -344,7 +344,7 @@ def build_stages(
         standard, bound = prior.errors.radii
         learnt["error_bound"] = bound / standard
     provenance = {
-        "uplift": VERSION,
+        "uplift": version(),
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
         "atlases": [
             {"name": source.name, "digest": source.digest}

@@ -15,6 +15,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import CubeFileError, LookError, OptionError, UnknownNameError, UpliftWarning
 from uplift.common.progress import ProgressCallback, ignore_progress
+from uplift.common.version import is_older, version
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
 from uplift.lookup import Cube
@@ -59,8 +60,8 @@ def rebuild(
     """Build a cube, read from ``path``, again. Warnings of the first build are not repeated.
 
     Atlas files are searched as by `recorded_files`. A file that has changed is used, with the `UpliftWarning`
-    ``atlas-changed``. Raises `CubeFileError` if the cube does not record its options, was filled from another cube, or
-    an atlas file is missing.
+    ``atlas-changed``. A cube of an earlier version of uplift gives the `UpliftWarning` ``older-version``. Raises
+    `CubeFileError` if the cube does not record its options, was filled from another cube, or an atlas file is missing.
     """
     options = _read_options(stored.data, path)
     if "filled" in stored.data.provenance:
@@ -69,6 +70,10 @@ def rebuild(
         )
     atlases = _find_all(stored.data, path, "atlases", folders)
     libraries = _find_all(stored.data, path, "libraries", folders)
+    writer = stored.data.provenance.get("uplift", "")
+    if is_older(writer, version()):
+        problem = f"was written by version {writer} of uplift, older than this one, {version()}"
+        warnings.warn(UpliftWarning(problem, code="older-version", path=path), stacklevel=2)
     for file in (*atlases, *libraries):
         if file.warning:
             warnings.warn(file.warning, stacklevel=2)

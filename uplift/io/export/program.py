@@ -17,7 +17,7 @@ import numpy as np
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OptionError, UpliftWarning, unknown_name
 from uplift.common.files import atomic_write, check_output, write_text
-from uplift.common.version import VERSION
+from uplift.common.version import version
 from uplift.cube import CubeData, digest
 from uplift.io.export.table import COLUMNS, MODES, Table, check_complete, make_table, rounding_error
 
@@ -133,7 +133,7 @@ def compose(kind: str, table: Table, style: str, stem: str, form: str, words: di
     text = re.sub(r"\bUP_", f"{name.upper()}_", text)
     constants = (f"#define {name.upper()}_{key} {literal(value)}" for key, value in table.constants.items())
     shared = {
-        "version": VERSION,
+        "version": version(),
         "stem": comment(stem),
         "width": language.width,
         "constants": "\n".join(constants),

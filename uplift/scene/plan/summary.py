@@ -9,7 +9,7 @@ from typing import Any
 
 from uplift.common.errors import OutputError
 from uplift.common.files import file_digest
-from uplift.common.version import VERSION
+from uplift.common.version import version
 from uplift.io.texture import Spectrum
 from uplift.scene.plan.candidates import INDEX, Candidate, Cost, cheapest_first
 from uplift.scene.plan.files import FORMAT, SUFFIX, SceneFile, cube_name
@@ -106,7 +106,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
     check_path(scene, path)
     return {
         "format": FORMAT,
-        "uplift": VERSION,
+        "uplift": version(),
         "scene": {
             "file": scene.path.name,
             **{key: getattr(scene, key) for key in SCENE_KEYS},
