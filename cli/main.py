@@ -124,8 +124,8 @@ class LazyGroup(click.Group):
             return result
 
 
-def _show_version(ctx: click.Context, _: click.Parameter, is_asked: bool) -> None:
-    if is_asked:
+def _show_version(ctx: click.Context, _: click.Parameter, is_requested: bool) -> None:
+    if is_requested:
         emit(f"uplift {version()}")
         ctx.exit()
 

@@ -10,7 +10,7 @@ from uplift.common.version import UNKNOWN, VERSION
 
 FOLDERS = {"uplift": "uplift", "cli": "uplift_cli", "atlases": "uplift_atlases"}
 INFO = f"spectral_uplift-{VERSION}{UNKNOWN}.dist-info"
-"""The copy that the wheel is built from is no clone."""
+"""The wheel is built from a copy, which is not a clone."""
 FEW = (
     "uplift samples",
     "uplift relight wood.png -o wood.html",

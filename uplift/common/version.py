@@ -7,7 +7,7 @@ from pathlib import Path
 VERSION = "0.3.0.dev"
 """Version of this source. After ``.dev`` follows the number of commits; a release has no such suffix."""
 UNKNOWN = "0"
-"""In place of the number of commits: neither git nor a distribution tells it."""
+"""In place of the number of commits, where neither git nor a distribution has it."""
 DISTRIBUTION = "spectral-uplift"
 """Name on a package index, which has another project `uplift`."""
 ROOT = Path(__file__).parents[2]
