@@ -58,6 +58,11 @@ def test_settings_of_jax_numpy_and_warnings_are_unchanged():
     assert run_python(code) == "set()\nfloat32"
 
 
+@pytest.mark.parametrize("code", ["import uplift", "import uplift.bulk", "from uplift import bulk; import uplift"])
+def test_bulk_is_a_module_and_an_attribute(code):
+    assert run_python(f"{code}\nprint(uplift.bulk.spectra.__name__)") == "spectra"
+
+
 def test_dir_lists_the_interface():
     assert set(dir(uplift)) == {*uplift.__all__, "__version__"}
     assert uplift.__all__ == sorted(uplift.__all__)

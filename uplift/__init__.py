@@ -19,6 +19,7 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from uplift import bulk
     from uplift.atlas import Atlas, Entry, read_atlas, write_atlas
     from uplift.common.errors import (
         AtlasError,
@@ -37,7 +38,7 @@ if TYPE_CHECKING:
     )
     from uplift.lights.build import build_emission
     from uplift.lights.lookup import EmissionTable, load_emission
-    from uplift.lookup import Cube, bulk, load
+    from uplift.lookup import Cube, load
     from uplift.pipeline.build import build
     from uplift.pipeline.look import Look, read_looks
 
@@ -78,17 +79,14 @@ _EXPORTS = {
     "uplift.pipeline.build": ("build",),
     "uplift.pipeline.look": ("Look", "read_looks"),
 }
-_MODULES = {"bulk": "uplift.lookup.bulk"}
-"""Subpackages reached by a short name."""
-
 _HOMES = {name: module for module, names in _EXPORTS.items() for name in names}
 
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
         return importlib.import_module("uplift.common.version").version()
-    if name in _MODULES:
-        return importlib.import_module(_MODULES[name])
+    if name == "bulk":
+        return importlib.import_module("uplift.bulk")
     if name not in __all__:
         raise AttributeError(f"module 'uplift' has no attribute '{name}'")
     return getattr(importlib.import_module(_HOMES.get(name, "uplift.common.errors")), name)

@@ -3,15 +3,6 @@
 The first call compiles. For a few thousand colours `uplift.Cube` is faster. This is `uplift.lookup.interpolate` in JAX:
 geometry is float64, as entry boxes may be small, values and weights are float32. Functions raise `OptionError` for
 invalid arguments.
-
-Examples
---------
->>> import numpy as np
->>> import uplift
->>> sample = uplift.bulk.spectra(uplift.load(), [450, 550, 650])
->>> image = np.full((2, 4, 3), 0.5)
->>> sample(image).shape
-(2, 4, 3)
 """
 
 from dataclasses import dataclass

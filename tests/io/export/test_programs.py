@@ -8,7 +8,7 @@ import pytest
 
 import uplift
 from tests.io.export import run_program
-from tests.parts import CC, SANITIZED, SANITIZERS, need
+from tests.parts import CC, CLANG, SANITIZED, SANITIZERS, need
 from uplift.common.errors import UpliftWarning
 from uplift.io.export import LANGUAGES, write_program
 
@@ -149,10 +149,10 @@ int main(void)
 ROW = (np.arange(63, dtype=np.float32) * 7 % 33 / 32).reshape(21, 3)
 
 
-def run_c(code, folder, *options):
-    need(CC)
+def run_c(code, folder, *options, compiler="cc"):
+    need({"cc": CC, "clang": CLANG}[compiler])
     (folder / "main.c").write_text(code)
-    subprocess.run(["cc", *run_program.STRICT, *options, "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
+    subprocess.run([compiler, *run_program.STRICT, *options, "main.c", "-o", "main", "-lm"], cwd=folder, check=True)
     return subprocess.run([folder / "main"], cwd=folder, capture_output=True, check=True).stdout
 
 
@@ -163,6 +163,13 @@ def test_many_colours_at_any_number_of_wavelengths_and_stored_multipliers(small_
     found = np.frombuffer(run_c(MANY, tmp_path, *SANITIZED), np.float32).reshape(count, 21, 21)
     expected = small_cube.reflectance(ROW, 400 + 15.0 * np.arange(21), mode=mode)
     np.testing.assert_allclose(found, [expected] * count, rtol=0, atol=WITHIN)
+
+
+@pytest.mark.parametrize("level", ["-O0", "-O1", "-Og", "-O2", "-Os", "-Oz", "-O3"])
+def test_clang_is_silent_at_every_level(sigmoid_cube, tmp_path, level):
+    """It reports loops that it was asked to vectorise and did not."""
+    write_program(sigmoid_cube.data, tmp_path / "cube.h")
+    assert len(run_c(MANY, tmp_path, level, compiler="clang")) == 2 * 21 * 21 * 4
 
 
 def test_names_in_a_cube_cannot_end_a_comment(small_cube, check):
