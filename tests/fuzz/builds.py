@@ -26,6 +26,7 @@ from tests.fuzz.commands import KEPT
 from tests.fuzz.fuzzing import Random, choose
 from tests.fuzz.programs import c_reflectances
 from uplift.atlas.sources import write_atlas
+from uplift.colorimetry import tables
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
@@ -38,7 +39,7 @@ from uplift.lab.timing import environment
 from uplift.lattice import Lattice
 from uplift.lookup import MODES
 
-SPACES = ("sRGB", "Display P3", "ITU-R BT.2020", "ACEScg", "ProPhoto RGB", "ACES2065-1", "Adobe RGB (1998)", "camera")
+SPACES = (*tables.names("RGB space"), *["camera"] * 12)
 OBSERVERS = ("CIE 1931 2 Degree Standard Observer", "CIE 1964 10 Degree Standard Observer")
 CAMERAS = ("Nikon 5100 (NPL)", "Sigma SDMerill (NPL)")
 SHAPES = ("smooth", "equal", "dark", "black", "white", "spiky")

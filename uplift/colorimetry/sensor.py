@@ -84,7 +84,7 @@ class Sensor:
         XYZ under the illuminant, where white has Y = 1, to linear RGB, where white is (1, 1, 1). For a camera, an
         approximation, for distances between colours only.
     decoding : ndarray, shape (256,)
-        Linear value of each 8-bit code of the space.
+        Linear value of each 8-bit code of the space. Those of log curves begin below 0 and end above 1.
     sensitivities : ndarray, shape (N, 3), optional
         Spectral sensitivities of a camera, whose raw values the RGB are. By default RGB are a linear map of XYZ.
     """
@@ -189,6 +189,6 @@ class Sensor:
         Returns
         -------
         ndarray
-            Linear values in [0, 1], of the same shape.
+            Linear values, of the same shape.
         """
         return np.interp(np.asarray(codes, dtype=float), np.arange(256), self.decoding)

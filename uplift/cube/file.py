@@ -55,7 +55,7 @@ SENSOR = {
     "cmfs": Stored("N 3"),
     "power": Stored("N", low=0),
     "xyz_to_rgb": Stored("3 3"),
-    "decoding": Stored("256", low=0),
+    "decoding": Stored("256"),
     "sensitivities": Stored("N 3", low=0, feature="camera"),
 }
 ENTRY_COEFFICIENTS = "entry_coefficients"

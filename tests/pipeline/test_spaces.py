@@ -1,0 +1,37 @@
+"""Every RGB space by name: small cubes are built, stored, read, looked up and exported."""
+
+import numpy as np
+import pytest
+
+import uplift
+from tests.fuzz.builds import little_work
+from tests.fuzz.programs import c_reflectances
+from tests.parts import CC, need
+from uplift.colorimetry import tables
+from uplift.cube import digest
+
+SPACES = sorted({tables.stated_name("RGB space", name) for name in tables.names("RGB space")})
+COLOURS = np.random.default_rng(0).random((24, 3), dtype=np.float32).astype(float)
+AT = np.array([385.0, 450.0, 525.0, 600.0, 675.0, 775.0])
+DEEP = 1e-4  # inside the solid, so that spectra are not steps
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _little_work():
+    with little_work():
+        yield
+
+
+@pytest.mark.parametrize("space", SPACES)
+def test_a_cube_of_the_space_works(space, tmp_path):
+    cube = uplift.build(dim=2, space=space, prior="smooth")
+    cube.save(tmp_path / "cube.uplift")
+    assert digest(uplift.load(tmp_path / "cube.uplift").data) == digest(cube.data)
+    sensor = cube.data.sensor
+    rgb = COLOURS[cube.data.solid.signed_distance(COLOURS) < -DEEP]
+    assert len(rgb)
+    np.testing.assert_allclose(sensor.rgb(cube.reflectance(rgb)), rgb, rtol=0, atol=1e-5)
+    np.testing.assert_allclose(cube.decode(cube.encode(rgb)), rgb, rtol=0, atol=1e-12)
+    need(CC)
+    exported = c_reflectances(cube.data, "spectra", rgb, AT)
+    np.testing.assert_allclose(exported, cube.reflectance(rgb, AT), rtol=0, atol=1e-4)
