@@ -42,6 +42,7 @@ JPEG_WIDTH, JPEG_QUALITY = 1500, 88
 DIM = 32
 SESSION = (
     "uplift samples",
+    "cd uplift-samples",
     "uplift relight -o relit.html",
     "uplift build --atlas macbeth --dim 32",
     "uplift query --cube macbeth-32.uplift '#da7b2a' --wavelengths 400:700:50 --plot orange.png",
@@ -88,8 +89,12 @@ def session() -> list[dict[str, str]]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         package = unpack(build_wheel(folder / "wheel"), folder / "package")
-        outcomes = [run_lines([line], package, folder)[0] for line in SESSION]
-    return [{"command": each["line"], "output": (each["stderr"] + each["stdout"]).strip("\n")} for each in outcomes]
+        outputs = []
+        for line in SESSION:
+            outputs.append("".join(each["stderr"] + each["stdout"] for each in run_lines([line], package, folder)))
+            if line.startswith("cd "):
+                folder /= line.removeprefix("cd ")
+    return [{"command": line, "output": output.strip("\n")} for line, output in zip(SESSION, outputs, strict=True)]
 
 
 def colours(lamps: list[Light]) -> tuple[list[dict[str, Array]], Array]:

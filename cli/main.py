@@ -11,9 +11,9 @@ import click
 from uplift.common.errors import UpliftWarning
 from uplift.common.version import version
 
-from .options import OUTPUT_FORMAT
+from .options import OUTPUT_FORMAT, Group
 from .output.console import emit, flush_stdout
-from .output.diagnostics import BAD_INPUT, INTERNAL_ERROR, CommandFailure, show_usage_error, show_warning
+from .output.diagnostics import BAD_INPUT, FAILED_CHECK, INTERNAL_ERROR, CommandFailure, show_usage_error, show_warning
 from .startup import hide_drawing_notes
 
 GROUPS = {
@@ -54,11 +54,9 @@ GROUPS = {
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)
 QUICK = ("build", "query", "help")
 """Commands that start without what drawing needs."""
-CLOSED_PIPE = 1
-"""Exit code of a command whose reader closed the pipe."""
 
 
-class LazyGroup(click.Group):
+class LazyGroup(Group):
     """Commands in groups, each imported when it is needed."""
 
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
@@ -78,11 +76,7 @@ class LazyGroup(click.Group):
                 formatter.write_dl([(f"{name:<{width}}", summary) for name, summary in names.items()])
 
     def main(self, *args: Any, **options: Any) -> Any:
-        """Run the command line and exit.
-
-        The exit code is 0 for success, 1 for a failed check or a closed pipe, 2 for bad input, 70 for an internal
-        error, 130 after Ctrl-C, and 128 and its number after another signal.
-        """
+        """Run the command line and exit with one of the codes of `uplift help exit-codes`."""
         code: Any
         try:
             code = super().main(*args, **options | {"standalone_mode": False})
@@ -96,7 +90,7 @@ class LazyGroup(click.Group):
         except click.Abort as interrupt:
             raise KeyboardInterrupt from interrupt
         except BrokenPipeError:
-            code = CLOSED_PIPE
+            code = FAILED_CHECK  # a closed pipe has the same code
         except OSError as error:
             CommandFailure(error).show()
             code = BAD_INPUT
@@ -134,6 +128,18 @@ def _show_version(ctx: click.Context, _: click.Parameter, is_requested: bool) ->
     cls=LazyGroup,
     commands=[click.Command(name) for name in (*COMMANDS, "help")],
     context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
+    help="""Convert RGB colours to reflectance spectra that agree with measured ones.
+
+    \b
+    Examples:
+      uplift relight
+      uplift build --atlas macbeth --dim 32
+      uplift query --cube macbeth-32.uplift '#cc3319'
+      uplift query 0.8 0.2 0.1 --format json
+      uplift check macbeth-32.uplift
+
+    'uplift help COMMAND' describes a command, and 'uplift help' lists further topics.
+    """,
 )
 @click.option(
     "--version",
@@ -145,15 +151,4 @@ def _show_version(ctx: click.Context, _: click.Parameter, is_requested: bool) ->
 )
 @click.option("--traceback", is_flag=True, envvar="UPLIFT_TRACEBACK", help="Show the traceback of an internal error.")
 def main(traceback: bool) -> None:
-    """Convert RGB colours to reflectance spectra that agree with measured ones.
-
-    \b
-    Examples:
-      uplift relight
-      uplift build --atlas macbeth --dim 32
-      uplift query --cube macbeth-32.uplift '#cc3319'
-      uplift query 0.8 0.2 0.1 --format json
-      uplift check macbeth-32.uplift
-
-    'uplift COMMAND --help' describes a command, and 'uplift help' lists further topics.
-    """
+    """Hold the subcommands."""

@@ -6,6 +6,7 @@ Commands import this module and write ``@options.cube``.
 import inspect
 import math
 import re
+import sys
 from collections.abc import Callable, Collection
 from functools import partial, reduce
 from importlib import import_module
@@ -68,6 +69,21 @@ class Command(click.Command):
         records = (each.get_help_record(ctx) for each in (*shown, help_all, help_option))
         with formatter.section("Options"):
             formatter.write_dl([record for record in records if record is not None])
+
+
+class Group(click.Group):
+    """Commands under one name, which alone prints the help."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse ``--help`` in place of no arguments."""
+        return super().parse_args(ctx, args or ["--help"])
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write names and first sentences, which click would cut to one line."""
+        commands = ((name, self.get_command(ctx, name)) for name in self.list_commands(ctx))
+        records = [(name, command.get_short_help_str(limit=sys.maxsize)) for name, command in commands if command]
+        with formatter.section("Commands"):
+            formatter.write_dl(records)
 
 
 class Number(click.ParamType):  # type: ignore[type-arg]
@@ -176,7 +192,7 @@ atlas = partial(repeatable, "--atlas", "files", metavar="FILE", shell_complete=c
 LAMPS = ", such as led, 3200K or FL11"
 named_lights = partial(repeatable, metavar="NAME", type=LIGHT, shell_complete=complete_light)
 light = partial(named_lights, "--light", "lights", examples=LAMPS)
-"""Why its defaults differ is in `uplift help lights`."""
+"""Why its defaults differ is in `uplift help illuminants`."""
 tolerance = partial(click.option, "--tolerance", metavar="ΔE00", type=NUMBER)
 output = partial(click.option, "-o", "--output", metavar="FILE", type=OUTPUT)
 OF_PACKAGE = ", or ACEScg for the packaged ACEScg cube{}. [default: the packaged sRGB cube]"

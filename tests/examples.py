@@ -48,7 +48,7 @@ def page_examples(text: str) -> Iterator[str]:
     """Yield the examples of a page: lines that begin with ``uplift`` or ``mkdir -p`` in its code blocks."""
     for language, block in BLOCKS.findall(text):
         for line in block.replace("\\\n", " ").splitlines() if language in SHELLS else ():
-            if match := re.match(r"(?:\$ )?((?:uplift|mkdir -p) .*)", line):
+            if match := re.match(r"(?:\$ )?((?:uplift|mkdir -p|cd) .*)", line):
                 yield " ".join(match[1].partition("    #")[0].split())
 
 

@@ -1,7 +1,8 @@
 """Run command lines one after the other in this process and folder, as a shell would.
 
 Standard input is a JSON list of lines, standard output a JSON list of outcomes. Knows quotes, patterns, ``> FILE``,
-``mkdir -p FOLDER`` and ``| jq .KEY``, which checks for the key. The package must come from the folder UPLIFT_FROM.
+``mkdir -p FOLDER``, ``cd FOLDER`` and ``| jq .KEY``, which checks for the key. The package must come from the folder
+UPLIFT_FROM.
 """
 
 import glob
@@ -29,6 +30,9 @@ def main() -> None:
         words, target, key = parse(line)
         if words[0] == "mkdir":
             Path(words[-1]).mkdir(exist_ok=True)
+            continue
+        if words[0] == "cd":
+            os.chdir(words[1])
             continue
         result = CliRunner().invoke(uplift_cli.main.main, words[1:], prog_name="uplift")
         if target is not None:

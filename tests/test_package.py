@@ -13,6 +13,7 @@ INFO = f"spectral_uplift-{VERSION}{UNKNOWN}.dist-info"
 """The wheel is built from a copy, which is not a clone."""
 FEW = (
     "uplift samples",
+    "cd uplift-samples",
     "uplift relight wood.png -o wood.html",
     "uplift build --atlas macbeth --dim 32",
     "uplift query --cube macbeth-32.uplift --input colours.csv --format csv --mode refined > spectra.csv",

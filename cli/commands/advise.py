@@ -16,7 +16,22 @@ SHOWN = 4
 """Images of a picture."""
 
 
-@click.command("advise")
+@click.command(
+    "advise",
+    help="""Estimate the errors of the colours of images, and name the swatches whose measurement lowers them most.
+
+    \b
+    Examples:
+      uplift advise wood.png --cube macbeth-32.uplift
+      uplift advise wood.png --cube macbeth-32.uplift --plot advice.png
+      uplift advise wood.png --cube macbeth-32.uplift --count 12 --format json
+
+    Errors are standard errors, ΔE00 under each --light, averaged over the area of the images. A swatch is a colour of
+    the images: measure a material that has it, add it to the atlas, and build the cube again. Its gain is by how much
+    the mean of the errors is expected to fall, after the swatches above it. It supposes that all of a colour is one
+    material, and that colours close to it are like it as far as those of the atlas are.
+    """,
+)
 @click.argument("images", metavar="IMAGE...", nargs=-1, required=True)
 @options.cube(" with an atlas of at least 8 entries.", required=True)
 @options.light("Illuminant of the scene", "A FL11 HP1")
@@ -35,19 +50,6 @@ def command(
     force: bool,
     **pixels: Any,
 ) -> None:
-    """Estimate the errors of the colours of images, and name the swatches whose measurement lowers them most.
-
-    \b
-    Examples:
-      uplift advise wood.png --cube macbeth-32.uplift
-      uplift advise wood.png --cube macbeth-32.uplift --plot advice.png
-      uplift advise wood.png --cube macbeth-32.uplift --count 12 --format json
-
-    Errors are standard errors, ΔE00 under each --light, averaged over the area of the images. A swatch is a colour of
-    the images: measure a material that has it, add it to the atlas, and build the cube again. Its gain is by how much
-    the mean of the errors is expected to fall, after the swatches above it. It supposes that all of a colour is one
-    material, and that colours close to it are like it as far as those of the atlas are.
-    """
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
     from uplift.colorimetry.observer import light
     from uplift.colorimetry.srgb import hex_codes

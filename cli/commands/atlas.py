@@ -23,15 +23,9 @@ SOURCE = ("name", "digest", "format", "measured", "notes")
 """Fields of the source of an atlas in JSON."""
 
 
-@click.command("atlas")
-@click.argument("files", metavar="[FILE]...", nargs=-1, shell_complete=options.complete_atlas)
-@options.scale
-@options.sensor
-@options.output_format("table", "json", "csv")
-@options.output(help="Write all entries to FILE instead of a list.")
-@options.force
-def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, force: bool, **camera: Any) -> None:
-    """List the entries of atlas files, and how the files were understood.
+@click.command(
+    "atlas",
+    help="""List the entries of atlas files, and how the files were understood.
 
     Without FILE, lists the atlases that are installed with uplift, with source and licence. Their names are valid
     wherever an atlas file is: where no file of the name exists, the shipped atlas is read.
@@ -48,7 +42,15 @@ def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, 
       uplift atlas chart.ti3 paints.cxf
       uplift atlas dark.csv --scale percent
       uplift atlas paints.csv -o paints.txt
-    """
+    """,
+)
+@click.argument("files", metavar="[FILE]...", nargs=-1, shell_complete=options.complete_atlas)
+@options.scale
+@options.sensor
+@options.output_format("table", "json", "csv")
+@options.output(help="Write all entries to FILE instead of a list.")
+@options.force
+def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, force: bool, **camera: Any) -> None:
     from uplift.atlas import read_atlas, write_atlas
     from uplift.colorimetry.observer import sensor
 
@@ -146,6 +148,8 @@ def _print_table(
     for row in rows:
         for warning in row["warnings"]:
             paragraph(f"{row['name']}: {warning}")
+    for entry in atlas.skipped:
+        paragraph(f"{entry.name}: skipped: {entry.reason}")
     for source in atlas.sources:
         paragraph("; ".join((f"{source.name}: {source.format}", *source.notes)))
     outside = [row["name"] for row in rows if not row["in_gamut"]]

@@ -26,17 +26,11 @@ DIVISIONS, SINGLE_DIVISIONS = 2, 3
 """Density of the directions of bounds: 162 of each of many colours, 642 of a single one."""
 
 
-@click.command("bounds", cls=options.Command, everyday=("cube_path", "encoded", "lights", "style", "plot_path", "html"))
-@colour_options
-@options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
-@options.output_format("table", "json", "csv")
-@options.plot("Plot the bounds")
-@options.page("Write a page on which the colour under each --light is dragged within its bounds, for a file of looks.")
-@options.force
-def command(
-    lights: tuple[str, ...], style: str, plot_path: str | None, html: str | None, force: bool, **colours: Any
-) -> None:
-    """Compute the bounds of all reflectances of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
+@click.command(
+    "bounds",
+    cls=options.Command,
+    everyday=("cube_path", "encoded", "lights", "style", "plot_path", "html"),
+    help="""Compute the bounds of all reflectances of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
 
     RGB does not identify a material: others of the same colour may differ under another light. Under each --light, the
     bounds are the largest ΔE00 of any reflectance of the colour from the answer of the cube, and the ranges of L*, a*
@@ -51,7 +45,17 @@ def command(
 
     The page of --html shows the bounds of one colour and a spectrum for every choice in them; it writes the TOML for
     'uplift build --look'.
-    """
+    """,
+)
+@colour_options
+@options.light("Illuminant under which the bounds are shown", "A FL11 HP1")
+@options.output_format("table", "json", "csv")
+@options.plot("Plot the bounds")
+@options.page("Write a page on which the colour under each --light is dragged within its bounds, for a file of looks.")
+@options.force
+def command(
+    lights: tuple[str, ...], style: str, plot_path: str | None, html: str | None, force: bool, **colours: Any
+) -> None:
     import numpy as np
 
     from uplift.colorimetry.lights import RELIGHT_LIGHTS

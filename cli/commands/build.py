@@ -17,7 +17,9 @@ from uplift.common.text import format_value, parse_float
 
 from .. import options
 from ..inputs import expand_patterns
-from ..output.console import say
+from ..output.console import paragraph, say
+from ..output.diagnostics import warn
+from ..output.notes import build_quietly, print_notes
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 from ..startup import enable_jit_cache
@@ -41,7 +43,44 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     return start, end
 
 
-@click.command("build", cls=options.Command, everyday=("files", "output", "dim", "space", "coefficients", "force"))
+@click.command(
+    "build",
+    cls=options.Command,
+    everyday=("files", "output", "dim", "space", "coefficients", "force"),
+    help="""Build an uplifting cube constrained by measured spectra.
+
+    \b
+    Examples:
+      uplift build --atlas macbeth --dim 32
+      uplift build --atlas paints.csv --atlas fabrics.csv -o book.uplift
+      uplift build --atlas paints.csv --dim auto
+      uplift build --atlas macbeth --space ACEScg
+    \f
+
+    \b
+    More examples:
+      uplift build --atlas paints.csv --dim auto --tolerance 1 --coefficients 17
+      uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*'
+      uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
+      uplift build --atlas macbeth --look looks.toml -o looks.uplift
+      uplift build --atlas paints.csv --range 360:830 --step 1 -o range.uplift
+      uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
+      uplift build --observer 'Nikon 5100 (NPL)' --space camera --dim 16
+      uplift build --plan kitchen.plan.json
+
+    Warnings name the entries that were left out, clipped or crowded. Colours without measurements get the
+    spectra that real materials of such colours are expected to have.
+
+    Looks state colours under other lights, such as rgb = "#8a2a20" and HP1 = "#70392a" (docs/looks.md). They
+    become entries. A look that no reflectance meets gets the nearest colour, and a warning.
+
+    Entries have their own values in the --range as far as they were measured, and continue as constants. So does the
+    learnt prior, from 380 and 780 nm.
+
+    With --scene the cube is sparse: it is smaller and faster to build, and gives the same spectra for colours of the
+    images. Other colours are errors, unless 'query' and 'texture' are given --fill-missing.
+    """,
+)
 @options.atlas("Measured spectra")
 @options.scale
 @options.output(help="Cube to write. [default: named after atlas and dim, in the current folder]")
@@ -133,39 +172,6 @@ def command(
     verbose: bool,
     **settings: Any,
 ) -> None:
-    """Build an uplifting cube constrained by measured spectra.
-
-    \b
-    Examples:
-      uplift build --atlas macbeth --dim 32
-      uplift build --atlas paints.csv --atlas fabrics.csv -o book.uplift
-      uplift build --atlas paints.csv --dim auto
-      uplift build --atlas macbeth --space ACEScg
-    \f
-
-    \b
-    More examples:
-      uplift build --atlas paints.csv --dim auto --tolerance 1 --coefficients 17
-      uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*'
-      uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
-      uplift build --atlas macbeth --look looks.toml -o looks.uplift
-      uplift build --atlas paints.csv --range 360:830 --step 1 -o range.uplift
-      uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
-      uplift build --observer 'Nikon 5100 (NPL)' --space camera --dim 16
-      uplift build --plan kitchen.plan.json
-
-    Warnings name the entries that were left out, clipped or crowded. Colours without measurements get the
-    spectra that real materials of such colours are expected to have.
-
-    Looks state colours under other lights, such as rgb = "#8a2a20" and HP1 = "#70392a" (docs/looks.md). They
-    become entries. A look that no reflectance meets gets the nearest colour, and a warning.
-
-    Entries have their own values in the --range as far as they were measured, and continue as constants. So does the
-    learnt prior, from 380 and 780 nm.
-
-    With --scene the cube is sparse: it is smaller and faster to build, and gives the same spectra for colours of the
-    images. Other colours are errors, unless 'query' and 'texture' are given --fill-missing.
-    """
     enable_jit_cache()
     context = click.get_current_context()
     given = {
@@ -204,16 +210,19 @@ def command(
     check_outputs(path, slices, inputs=inputs)
     begin = time.perf_counter()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
-        cube = make(progress=progress)
+        cube, notes = build_quietly(partial(make, progress=progress))
     cube.save(path, force=force)
     if slices is not None:
         from uplift.io.exr import write_slices
 
         write_slices(cube.data, slices, force=force)
-    if not quiet:
-        _print_summary(cube, path, time.perf_counter() - begin)
-        if slices is not None:
-            say(f"{slices}: {cube.data.lattice.dim} blue slices")
+    if quiet:
+        warn(notes)
+        return
+    _print_summary(cube, path, time.perf_counter() - begin)
+    if slices is not None:
+        say(f"{slices}: {cube.data.lattice.dim} blue slices")
+    print_notes(cube, notes)
 
 
 def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]) -> str:
@@ -232,24 +241,21 @@ def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], settings: d
 
 
 def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
-    from uplift.lattice import Status
+    from uplift.viz.format import pluralise
 
     data, counts = cube.data, cube.data.points.counts()
-    size, unfitted, unrealisable = data.lattice.size, counts["unfitted"], counts["unrealisable"]
-    nodes = f"{size} nodes"
+    measured, looks = data.atlas.measured_count, data.atlas.looks
+    facts = [f"{data.lattice.dim}³ nodes"]
     if data.complete_cells is not None:
         count = int(data.points.present.sum())
-        nodes = f"{count} of {size} nodes ({count / size:.1%})"
-    accuracy = f"{unfitted} EXCEED the threshold {data.threshold:g}" if unfitted else f"all within {data.threshold:g}"
-    if unrealisable:
-        accuracy += f" except {unrealisable} unrealisable ones, stored with less chroma"
-    worst = data.points.distance[data.points.status != Status.UNREALISABLE].max(initial=0)
-    measured, looks = data.atlas.measured_count, data.atlas.looks
-    entries = f"{measured} atlas entries, " if data.provenance["atlases"] else ""
-    entries += f"{looks} look{'s' * (looks != 1)}, " if looks else ""
-    steps = data.provenance["improvements"]
-    improved = f"{sum(step['mended'] for step in steps)} of {steps[0]['tried']} improved" if steps else "0 improved"
-    say(
-        f"{path}: {nodes}, {entries}{accuracy} (worst {worst:.1e}), "
-        f"{improved}, {path.stat().st_size / 1e6:.1f} MB, {seconds:.1f} s"
-    )
+        facts = [f"{count} of {data.lattice.size} nodes ({count / data.lattice.size:.1%})"]
+    if data.provenance["atlases"]:
+        facts.append(pluralise(measured, "atlas entry", "atlas entries"))
+    if looks:
+        facts.append(pluralise(looks, "look"))
+    facts += [f"{path.stat().st_size / 1e6:.1f} MB", f"{seconds:.1f} s"]
+    paragraph(f"{path}: {', '.join(facts)}")
+    if unrealisable := counts["unrealisable"]:
+        paragraph(f"{pluralise(unrealisable, 'node')} whose colour no reflectance has: stored with less chroma")
+    if unfitted := counts["unfitted"]:
+        paragraph(f"{pluralise(unfitted, 'node')} EXCEED the threshold {data.threshold:g}: 'uplift report' shows where")

@@ -24,7 +24,29 @@ COLOURS = 2000
 FILES = ("chart.csv", "chart.png", "chart.html")
 
 
-@click.command("chart")
+@click.command(
+    "chart",
+    help="""Measure speed and accuracy of spectral upsampling methods, of this package and from the literature.
+
+    Every method processes the same colours and measured spectra, with 1, 1000, 65536 and a million colours per call.
+    The table has these times, time and size of the build, the error of round trips at 1 nm with the white and matrix
+    that the method states, ΔE00 of unseen materials under A, FL2, FL7, FL11 and LED-B3, and the error of their spectra.
+    Odd entries of every atlas build the cubes, even entries test them. Methods with wrong results are listed but not
+    timed, as are those that are not installed.
+
+    Writes chart.csv, chart.png and chart.html, and prints the Pareto fronts.
+
+    \b
+    Examples:
+      uplift chart --quick
+      uplift chart --atlas paints.csv -o paints
+      uplift chart --method 'moments9-32-*' --method mallett2019 -o few
+      uplift chart --recommend
+      uplift chart --recommend --time-ns 500
+      uplift chart --recommend --tolerance 0.5 --light FL11 --atlas-materials
+      uplift chart --recommend --from paints/chart.csv --tolerance 1
+    """,
+)
 @options.output(help="Folder to write to.", metavar="DIR", default="chart")
 @options.repeatable("--method", "patterns", "Methods by name, with '*' as a wildcard", metavar="PATTERN")
 @options.atlas("Measured spectra", DEFAULT_ATLASES)
@@ -57,26 +79,6 @@ def command(
     force: bool,
     **required: Any,
 ) -> None:
-    """Measure speed and accuracy of spectral upsampling methods, of this package and from the literature.
-
-    Every method processes the same colours and measured spectra, with 1, 1000, 65536 and a million colours per call.
-    The table has these times, time and size of the build, the error of round trips at 1 nm with the white and matrix
-    that the method states, ΔE00 of unseen materials under A, FL2, FL7, FL11 and LED-B3, and the error of their spectra.
-    Odd entries of every atlas build the cubes, even entries test them. Methods with wrong results are listed but not
-    timed, as are those that are not installed.
-
-    Writes chart.csv, chart.png and chart.html, and prints the Pareto fronts.
-
-    \b
-    Examples:
-      uplift chart --quick
-      uplift chart --atlas paints.csv -o paints
-      uplift chart --method 'moments9-32-*' --method mallett2019 -o few
-      uplift chart --recommend
-      uplift chart --recommend --time-ns 500
-      uplift chart --recommend --tolerance 0.5 --light FL11 --atlas-materials
-      uplift chart --recommend --from paints/chart.csv --tolerance 1
-    """
     enable_jit_cache()
     use_one_blas_thread()
     if recommend:

@@ -23,17 +23,9 @@ if TYPE_CHECKING:
     from uplift.lookup import Cube
 
 
-@click.command("check")
-@click.argument("files", metavar="CUBE...", nargs=-1, required=True, shell_complete=options.complete_cube)
-@options.atlas_folders
-@click.option("--update", is_flag=True, help="Replace the cubes that differ by the rebuilt ones.")
-@options.output_format("table", "json")
-@options.quiet
-@options.verbose
-def command(
-    files: tuple[str, ...], folders: tuple[str, ...], update: bool, style: str, quiet: bool, verbose: bool
-) -> None:
-    """Rebuild stored cubes from their recorded options and compare the results.
+@click.command(
+    "check",
+    help="""Rebuild stored cubes from their recorded options and compare the results.
 
     \b
     Examples:
@@ -51,7 +43,17 @@ def command(
     The first atlas of the recorded name counts, in --atlas-dir, in the cube's folder, and in 'atlases' in these. A
     shipped atlas replaces it only where there is none and the contents are equal. A note names the version that
     wrote a cube, if it is older than this one.
-    """
+    """,
+)
+@click.argument("files", metavar="CUBE...", nargs=-1, required=True, shell_complete=options.complete_cube)
+@options.atlas_folders
+@click.option("--update", is_flag=True, help="Replace the cubes that differ by the rebuilt ones.")
+@options.output_format("table", "json")
+@options.quiet
+@options.verbose
+def command(
+    files: tuple[str, ...], folders: tuple[str, ...], update: bool, style: str, quiet: bool, verbose: bool
+) -> None:
     enable_jit_cache()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
         results = [_check(Path(file), folders, progress) for file in dict.fromkeys(files)]

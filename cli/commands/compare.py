@@ -23,7 +23,34 @@ FILES = ("compare-boxes.png", "compare-cost.png", "compare.html")
 SPECTRA = ("surfaces.csv", "lights.csv")
 
 
-@click.command("compare")
+@click.command(
+    "compare",
+    help="""Compare representations of spectra for a renderer's lights and surfaces, by colour error and cost.
+
+    Every light is multiplied with every reflectance of the atlases. The table has ΔE00 to the products of densely
+    sampled spectra, the number of floats stored, and the time of a product, for representations that no other beats
+    in floats and error. --light replaces the default lights, a smooth and a spiky set.
+
+    Representations: point samples (PS, filtered PF), Riemann sums (RS, enhanced RE), Sun's composite model (CS),
+    Gaussian quadrature (GQ), trigonometric moments (TM), the sigmoid (SG), linear models (LM), hero wavelengths (HW).
+    Fitted to the scene: wavelengths (FW), Bergner's factor model (BF), moments as cubes have them (CM).
+
+    --tolerance prints the cheapest sufficient representation for each set of lights. The cheapest stores the fewest
+    floats per surface, then per light. --output writes box plots, a plot of error over cost, and a page.
+
+    --write writes spectra at 1 nm that have the colours of a representation or filter: surfaces.csv can be the --atlas
+    of other commands, lights.csv the lamps of uplift lights build.
+
+    \b
+    Examples:
+      uplift compare --quick
+      uplift compare --quick --all
+      uplift compare --tolerance 1.0
+      uplift compare --atlas paints.csv --light LED-B3 --light HP1 --tolerance 0.5
+      uplift compare --filters --output filters --force
+      uplift compare --atlas paints.csv --light FL11 --write PF16 -o filtered
+    """,
+)
 @options.atlas("Surfaces", DEFAULT_ATLASES)
 @options.light("Illuminant", "A, B, C, and FL2, FL7, FL11")
 @options.tolerance(help="Print the cheapest representation with 97.5 % of errors below this value.")
@@ -53,31 +80,6 @@ def command(
     style: str,
     force: bool,
 ) -> None:
-    """Compare representations of spectra for a renderer's lights and surfaces, by colour error and cost.
-
-    Every light is multiplied with every reflectance of the atlases. The table has ΔE00 to the products of densely
-    sampled spectra, the number of floats stored, and the time of a product, for representations that no other beats
-    in floats and error. --light replaces the default lights, a smooth and a spiky set.
-
-    Representations: point samples (PS, filtered PF), Riemann sums (RS, enhanced RE), Sun's composite model (CS),
-    Gaussian quadrature (GQ), trigonometric moments (TM), the sigmoid (SG), linear models (LM), hero wavelengths (HW).
-    Fitted to the scene: wavelengths (FW), Bergner's factor model (BF), moments as cubes have them (CM).
-
-    --tolerance prints the cheapest sufficient representation for each set of lights. The cheapest stores the fewest
-    floats per surface, then per light. --output writes box plots, a plot of error over cost, and a page.
-
-    --write writes spectra at 1 nm that have the colours of a representation or filter: surfaces.csv can be the --atlas
-    of other commands, lights.csv the lamps of uplift lights build.
-
-    \b
-    Examples:
-      uplift compare --quick
-      uplift compare --quick --all
-      uplift compare --tolerance 1.0
-      uplift compare --atlas paints.csv --light LED-B3 --light HP1 --tolerance 0.5
-      uplift compare --filters --output filters --force
-      uplift compare --atlas paints.csv --light FL11 --write PF16 -o filtered
-    """
     use_one_blas_thread()
     from uplift.lab.comparison.compare import check_target
 

@@ -13,7 +13,20 @@ from ..output.progress import progress_bar
 from ..outputs import check_outputs
 
 
-@click.command("diff")
+@click.command(
+    "diff",
+    help="""Compare two cubes: ΔE00 of their answers at nodes, atlas entries, and the colours of images.
+
+    \b
+    Examples:
+      uplift diff macbeth-32.uplift fabrics.uplift
+      uplift diff macbeth-32.uplift fabrics.uplift wood.png -o wood-diff.html
+      uplift diff macbeth-32.uplift fabrics.uplift --tolerance 50 --format json
+
+    The cubes may have different lattices, models, atlases and ranges, in one RGB space. Entries are compared by name.
+    Without --tolerance the exit code is 0.
+    """,
+)
 @click.argument("first", metavar="CUBE", shell_complete=options.complete_cube)
 @click.argument("second", metavar="CUBE", shell_complete=options.complete_cube)
 @click.argument("images", metavar="[IMAGE]...", nargs=-1)
@@ -39,17 +52,6 @@ def command(
     force: bool,
     **pixels: Any,
 ) -> None:
-    """Compare two cubes: ΔE00 of their answers at nodes, atlas entries, and the colours of images.
-
-    \b
-    Examples:
-      uplift diff macbeth-32.uplift fabrics.uplift
-      uplift diff macbeth-32.uplift fabrics.uplift wood.png -o wood-diff.html
-      uplift diff macbeth-32.uplift fabrics.uplift --tolerance 50 --format json
-
-    The cubes may have different lattices, models, atlases and ranges, in one RGB space. Entries are compared by name.
-    Without --tolerance the exit code is 0.
-    """
     from uplift.colorimetry.lights import SCENE_LIGHTS
     from uplift.common.errors import OptionError
     from uplift.common.files import write_text

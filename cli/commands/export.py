@@ -37,35 +37,9 @@ APPLIES = {
 """Formats by the options that apply to them alone."""
 
 
-@click.command("export")
-@options.cube_argument
-@options.output(help="File to write. [default: CUBE's name in the current folder]")
-@click.option(
-    "--format",
-    "style",
-    type=click.Choice(tuple(SUFFIXES)),
-    metavar="FORMAT",
-    help="Format to write. [default: by the suffix of --output]",
-)
-@click.option(
-    "--res",
-    type=options.WHOLE,
-    help="Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier 33, film 192]",
-)
-@click.option("--light", metavar="NAME", help="Illuminant of a cube, clf or film table.")
-@click.option(
-    "--adapt/--no-adapt", default=None, help="Show the white of the light as white, or tinted. [default: adapt]"
-)
-@click.option(
-    "--mode",
-    type=click.Choice(("spectra", "moments")),
-    help="What programs interpolate: spectra, with exact colours, or coefficients. [default: spectra]",
-)
-@options.table
-@options.fill
-@options.force
-def command(cube: str, output: str | None, style: str | None, fill_missing: bool, force: bool, **given: Any) -> None:
-    """Write a cube in a format that other tools read.
+@click.command(
+    "export",
+    help="""Write a cube in a format that other tools read.
 
     \b
     c, cuda, glsl, hlsl
@@ -99,7 +73,35 @@ def command(cube: str, output: str | None, style: str | None, fill_missing: bool
       uplift export three.uplift -o fourier.png
       uplift export macbeth-32.uplift -o film.npy
       uplift export macbeth-32.uplift --format csv
-    """
+    """,
+)
+@options.cube_argument
+@options.output(help="File to write. [default: CUBE's name in the current folder]")
+@click.option(
+    "--format",
+    "style",
+    type=click.Choice(tuple(SUFFIXES)),
+    metavar="FORMAT",
+    help="Format to write. [default: by the suffix of --output]",
+)
+@click.option(
+    "--res",
+    type=options.WHOLE,
+    help="Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier 33, film 192]",
+)
+@click.option("--light", metavar="NAME", help="Illuminant of a cube, clf or film table.")
+@click.option(
+    "--adapt/--no-adapt", default=None, help="Show the white of the light as white, or tinted. [default: adapt]"
+)
+@click.option(
+    "--mode",
+    type=click.Choice(("spectra", "moments")),
+    help="What programs interpolate: spectra, with exact colours, or coefficients. [default: spectra]",
+)
+@options.table
+@options.fill
+@options.force
+def command(cube: str, output: str | None, style: str | None, fill_missing: bool, force: bool, **given: Any) -> None:
     suffix = "" if output is None else Path(output).suffix.lower()
     style = style or {SUFFIXES[name]: name for name in SUFFIXES}.get(".cuh" if suffix == ".cu" else suffix)
     if style is None:

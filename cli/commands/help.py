@@ -1,80 +1,115 @@
-"""``uplift help``: topics that concern several commands, from the documentation of the code."""
+"""``uplift help``: the help of commands, and topics that concern several of them."""
 
-import inspect
-import re
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Iterable, Mapping
 
 import click
 
-from ..output.console import paragraph, print_fields, say
+from ..output.console import emit, paragraph, print_fields, say
+from ..output.diagnostics import BAD_INPUT, EXIT_CODES, FAILED_CHECK, INTERNAL_ERROR
 
+EXIT_CODE_MEANINGS = {
+    "0": "success, or help was shown",
+    f"{FAILED_CHECK}": "a check failed, or the reader of the output closed the pipe",
+    f"{BAD_INPUT}": "bad input: a file, a value, an option, or an output that cannot be written",
+    f"{INTERNAL_ERROR}": "an error of uplift itself: please report it",
+    f"{EXIT_CODES['interrupted']}": "interrupted by Ctrl-C",
+    "128 + N": "ended by signal N",
+}
+MODE_MEANINGS = {
+    "spectra": "interpolate spectra, with exact colours",
+    "moments": "interpolate coefficients, with nearly exact colours",
+    "refined": "interpolate coefficients, and move them to the exact colour",
+    "nearest": "the spectrum of the nearest node, of another colour",
+}
+GAMUT_MEANINGS = {
+    "error": "refuse the colour",
+    "clip": "clip each component, which changes chromaticity, hue and luminance",
+    "scale": "move towards white at constant luminance until no component is negative, then divide by the largest",
+    "desaturate": "move towards white at constant luminance and dominant wavelength",
+    "desaturate-oklab": "move towards grey at constant lightness and hue of Oklab, which keeps the hue of reds and "
+    "yellows better",
+}
+TEMPERATURES = """
+Temperatures such as 3200K are names too. From 4000K to 25000K they are CIE daylight of this nominal temperature, as D65
+is 6500K; below, from 1000K, black bodies.
+"""
 DEFAULT_LIGHTS = """
 Without --light, 'relight', 'bounds' and 'advise' take A, FL11 and HP1, under which RGB goes wrong most. 'build' and
 'diff' take the lights of ordinary scenes, D65, A, FL2, FL11 and LED-B3, and 'report' adds FL7, which builds do not use.
 'compare' has a smooth set and a spiky one, 'wavelengths' the illuminant of sRGB, and 'query' none: errors cost time.
 """
+Part = str | Mapping[str, str]
+"""A paragraph, or a table of names and their meanings."""
 
 
-@click.command("help")
-@click.argument("topic", required=False)
-def command(topic: str | None) -> None:
-    """Explain a topic. Without TOPIC, list the topics. 'uplift COMMAND --help' explains a command.
+@click.command(
+    "help",
+    help="""Explain a topic or a command. Without either, list the topics.
 
     \b
     Examples:
       uplift help
-      uplift help modes
-    """
-    if topic is None:
+      uplift help exit-codes
+      uplift help query
+      uplift help lights build
+    """,
+)
+@click.argument("words", metavar="[TOPIC|COMMAND]", nargs=-1)
+def command(words: tuple[str, ...]) -> None:
+    if not words:
         print_fields({name: summary for name, (summary, _) in TOPICS.items()})
-    elif topic not in TOPICS:
-        raise click.UsageError(f"No such topic '{topic}'. 'uplift help' lists the topics.")
+        say()
+        paragraph("'uplift help TOPIC' explains a topic, and 'uplift help COMMAND' a command.")
+    elif words[0] in TOPICS and len(words) == 1:
+        _, parts = TOPICS[words[0]]
+        _print_parts(parts())
     else:
-        for part in TOPICS[topic][1]().split("\n\n"):
-            paragraph(" ".join(part.replace("`", "").split()))
+        emit(_find_context(words).get_help())
+
+
+def _find_context(names: Iterable[str]) -> click.Context:
+    """Return the context of a command by its name, or of a subcommand by two."""
+    context = click.get_current_context().find_root()
+    for name in names:
+        group = context.command
+        command = group.get_command(context, name) if isinstance(group, click.Group) else None
+        if command is None:
+            problem = f"'{' '.join(names)}' is neither a topic nor a command."
+            raise click.UsageError(f"{problem} 'uplift help' lists the topics, and 'uplift' the commands.")
+        context = click.Context(command, info_name=name, parent=context)
+    return context
+
+
+def _print_parts(parts: Iterable[Part]) -> None:
+    """Print paragraphs and tables, with a blank line between them."""
+    for number, part in enumerate(parts):
+        if number:
             say()
+        if isinstance(part, str):
+            paragraph(" ".join(part.split()))
+        else:
+            print_fields(part)
 
 
-def _modes() -> str:
-    from uplift.lookup import Cube
+def _illuminants() -> list[Part]:
+    from uplift.colorimetry.lights import COMMON_NAMES, DESCRIPTIONS
 
-    documentation = inspect.getdoc(Cube.reflectance) or ""
-    found = re.search(r"^mode : .*\n((?: +.*\n)+)", documentation, re.MULTILINE)
-    return inspect.cleandoc(found[1]) if found else ""
-
-
-def _gamut() -> str:
-    from uplift.colorimetry.gamut import MAPPINGS
-
-    summaries = ((inspect.getdoc(mapping) or "").split("\n\n")[0] for mapping in MAPPINGS.values())
-    return "\n\n".join(f"{name}: {summary}" for name, summary in zip(MAPPINGS, summaries, strict=True))
+    words = ", ".join(f"{name} ({illuminant})" for name, illuminant in COMMON_NAMES.items())
+    return [DESCRIPTIONS, f"Names in words: {words}. {TEMPERATURES}", DEFAULT_LIGHTS, *_names("illuminant")]
 
 
-def _lights() -> str:
-    from uplift.colorimetry import lights
-
-    return f"{inspect.getdoc(lights)}\n\n{DEFAULT_LIGHTS}\n\n{_names('illuminant')}"
-
-
-def _names(kind: str) -> str:
+def _names(kind: str) -> list[Part]:
     from uplift.colorimetry.tables import names
 
-    return f"Every {kind} of colour-science:\n\n" + ", ".join(names(kind))
+    return [f"Every {kind} of colour-science:", ", ".join(names(kind))]
 
 
-def _exit_codes() -> str:
-    from ..main import LazyGroup
-
-    return inspect.getdoc(LazyGroup.main) or ""
-
-
-TOPICS: dict[str, tuple[str, Callable[[], str]]] = {
-    "exit-codes": ("what a script can test", _exit_codes),
-    "gamut": ("colours outside [0, 1]: --out-of-gamut", _gamut),
-    "lights": ("names of illuminants: --light, --illuminant", _lights),
-    "modes": ("ways to interpolate a cube: query --mode", _modes),
-    "observers": ("names of standard observers: --observer", partial(_names, "observer")),
-    "spaces": ("names of RGB spaces: --space, --input-space", partial(_names, "RGB space")),
+TOPICS: dict[str, tuple[str, Callable[[], list[Part]]]] = {
+    "exit-codes": ("what a script can test", lambda: [EXIT_CODE_MEANINGS]),
+    "gamut": ("colours outside [0, 1]: --out-of-gamut", lambda: [GAMUT_MEANINGS]),
+    "illuminants": ("names of lights: --light, --illuminant", _illuminants),
+    "modes": ("ways to interpolate a cube: query --mode", lambda: [MODE_MEANINGS]),
+    "observers": ("names of standard observers: --observer", lambda: _names("observer")),
+    "spaces": ("names of RGB spaces: --space, --input-space", lambda: _names("RGB space")),
 }
-"""Summary and text by topic."""
+"""Summary and parts by topic. No topic has the name of a command."""

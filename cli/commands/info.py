@@ -8,17 +8,19 @@ from .. import options
 from ..output.console import print_fields, print_json, say
 
 
-@click.command("info")
-@click.argument("cube", metavar="[CUBE]", required=False, shell_complete=options.complete_cube)
-@options.output_format("table", "json")
-def command(cube: str | None, style: str) -> None:
-    """Show the contents and provenance of a cube file. CUBE defaults to the packaged cube.
+@click.command(
+    "info",
+    help="""Show the contents and provenance of a cube file. CUBE defaults to the packaged cube.
 
     \b
     Examples:
       uplift info macbeth-32.uplift
       uplift info macbeth-32.uplift --format json | jq .status
-    """
+    """,
+)
+@click.argument("cube", metavar="[CUBE]", required=False, shell_complete=options.complete_cube)
+@options.output_format("table", "json")
+def command(cube: str | None, style: str) -> None:
     from uplift.cube import summarise
     from uplift.lookup import load
 

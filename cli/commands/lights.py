@@ -39,9 +39,10 @@ table_option = click.option(
 )
 
 
-@click.group("lights")
-def command() -> None:
-    """Give lights of any brightness the spectral powers that lamps of their colour are expected to have.
+@click.group(
+    "lights",
+    cls=options.Group,
+    help="""Give lights of any brightness the spectral powers that lamps of their colour are expected to have.
 
     Spectra of lights are in emission tables. The packaged one, named emission, is for linear sRGB.
 
@@ -52,10 +53,22 @@ def command() -> None:
       uplift lights build -o lights.uplift
       uplift lights export -o lights.h
       uplift lights info
-    """
+    """,
+)
+def command() -> None:
+    """Hold the subcommands."""
 
 
-@command.command("build")
+@command.command(
+    "build",
+    help="""Build an emission table. Lamps of --atlas are exact at their colours; tables of power need no scale.
+
+    \b
+    Examples:
+      uplift lights build -o lights.uplift
+      uplift lights build --space ACEScg -o acescg-lights.uplift
+    """,
+)
 @options.atlas("Spectral powers of lamps")
 @options.output(help="Table to write. [default: ATLAS-emission.uplift]")
 @options.space()
@@ -63,13 +76,6 @@ def command() -> None:
 @options.force
 @options.quiet
 def build(files: tuple[str, ...], output: str | None, space: str, observer: str, force: bool, quiet: bool) -> None:
-    """Build an emission table. Lamps of --atlas are exact at their colours; tables of power need no scale.
-
-    \b
-    Examples:
-      uplift lights build -o lights.uplift
-      uplift lights build --space ACEScg -o acescg-lights.uplift
-    """
     from uplift.lights.build import build_emission
 
     stem = "+".join(Path(file).stem for file in files)
@@ -87,21 +93,23 @@ def build(files: tuple[str, ...], output: str | None, space: str, observer: str,
         )
 
 
-@command.command("info")
-@table_argument
-@options.output_format("table", "json")
-@options.plot("Plot colours, expected errors and lamps over u′v′")
-@options.page("Write a page with the plots, answers to random lights, and all lamps.", options.FIGURE_PAGE)
-@options.force
-def info(table_path: str, style: str, plot_path: str | None, html: str | None, force: bool) -> None:
-    """Show the contents of an emission table, in words, as a picture or as a page.
+@command.command(
+    "info",
+    help="""Show the contents of an emission table, in words, as a picture or as a page.
 
     \b
     Examples:
       uplift lights info
       uplift lights info --plot lights.png --html lights.html
       uplift lights info lights.uplift --format json
-    """
+    """,
+)
+@table_argument
+@options.output_format("table", "json")
+@options.plot("Plot colours, expected errors and lamps over u′v′")
+@options.page("Write a page with the plots, answers to random lights, and all lamps.", options.FIGURE_PAGE)
+@options.force
+def info(table_path: str, style: str, plot_path: str | None, html: str | None, force: bool) -> None:
     from uplift.lights.lookup import find_table, load_emission
     from uplift.lights.table import summarise
 
@@ -120,13 +128,9 @@ def info(table_path: str, style: str, plot_path: str | None, html: str | None, f
     print_facts(table_path, summarise(table.data), style)
 
 
-@command.command("export")
-@table_argument
-@options.output(help="Program to write, as .h or .glsl.", required=True)
-@options.table
-@options.force
-def export(table_path: str, output: str, table: str | None, force: bool) -> None:
-    """Write an emission table as a program that looks up colours, in C or GLSL.
+@command.command(
+    "export",
+    help="""Write an emission table as a program that looks up colours, in C or GLSL.
 
     Names in the program start with the file's.
 
@@ -134,7 +138,13 @@ def export(table_path: str, output: str, table: str | None, force: bool) -> None
     Examples:
       uplift lights export -o lights.h
       uplift lights export lights.uplift -o mine.glsl
-    """
+    """,
+)
+@table_argument
+@options.output(help="Program to write, as .h or .glsl.", required=True)
+@options.table
+@options.force
+def export(table_path: str, output: str, table: str | None, force: bool) -> None:
     from uplift.io.export import write_light_program
     from uplift.lights.lookup import load_emission
 
@@ -150,15 +160,9 @@ def export(table_path: str, output: str, table: str | None, force: bool) -> None
     say(f"{path}: {knots * rings} nodes, {len(data.entries.names)} lamps, {size:.1f} MB{tables}")
 
 
-@command.command("texture")
-@image_options
-@table_option
-@options.output_wavelengths
-@options.depth
-@options.encoding
-@options.input_space("the images", name="space")
-def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) -> None:
-    """Convert images of lights, such as environment maps, to spectral power and write OpenEXR textures.
+@command.command(
+    "texture",
+    help="""Convert images of lights, such as environment maps, to spectral power and write OpenEXR textures.
 
     Pixels have any brightness. The unit of power is that of the equal-energy light of luminance 1; RGB (1, 1, 1) has
     luminance 1. Only colours outside the spectral locus change.
@@ -167,7 +171,15 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
     Examples:
       uplift lights texture sky.exr -o sky-spectral.exr --wavelengths 400:700:10
       uplift lights texture sky.exr -o half.exr --depth half
-    """
+    """,
+)
+@image_options
+@table_option
+@options.output_wavelengths
+@options.depth
+@options.encoding
+@options.input_space("the images", name="space")
+def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) -> None:
     from uplift.io.texture import Spectrum
     from uplift.lights.lookup import find_table, load_emission
 
@@ -178,7 +190,21 @@ def texture(table_path: str | None, wavelengths: Array | None, **settings: Any) 
     convert((table,), Spectrum(as_tuple(wavelengths)), emission=True, **settings)
 
 
-@command.command("query", cls=options.Command, everyday=("table_path", "encoded", "wavelengths", "style", "plot_path"))
+@command.command(
+    "query",
+    cls=options.Command,
+    everyday=("table_path", "encoded", "wavelengths", "style", "plot_path"),
+    help="""Query the spectral power of a light by its COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
+
+    Numbers are linear RGB of any size, negative ones included. A power of 1 at all wavelengths has luminance 1.
+
+    \b
+    Examples:
+      uplift lights query 30 22 9
+      uplift lights query 30 22 9 --wavelengths 400:700:10 --format json
+      uplift lights query --xyz 0.95 1 1.09 --plot white.png
+    """,
+)
 @options.colours("where white of the table's space has Y = 1", "that of the table")
 @table_option
 @options.output_wavelengths
@@ -199,16 +225,6 @@ def query(
     force: bool,
     **colours: Any,
 ) -> None:
-    """Query the spectral power of a light by its COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
-
-    Numbers are linear RGB of any size, negative ones included. A power of 1 at all wavelengths has luminance 1.
-
-    \b
-    Examples:
-      uplift lights query 30 22 9
-      uplift lights query 30 22 9 --wavelengths 400:700:10 --format json
-      uplift lights query --xyz 0.95 1 1.09 --plot white.png
-    """
     import numpy as np
 
     from uplift.colorimetry.observer import sensor

@@ -29,6 +29,30 @@ if TYPE_CHECKING:
     "mix",
     cls=options.Command,
     everyday=("kind", "thickness", "ground", "cube_path", "files", "plot_path", "over", "output"),
+    help="""Mix colours as spectra. A cube converts each colour to a spectrum, and the mixture has its illuminant.
+
+    A COLOUR is '#rrggbb', 'r,g,b' in linear RGB, 'white', 'black', or an entry of the cube's atlas or of --atlas.
+    'A/B' is a paint whose layer of thickness 1 has colour A on white and colour B on black. Other paints are opaque by
+    default, and --thickness is in units of about one scattering event.
+
+    \b
+    Examples:
+      uplift mix --pigment 2:'#005fa0' 1:'#ffd200'
+      uplift mix blue yellow --cube macbeth-32.uplift --plot ramp.png
+      uplift mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
+    \f
+
+    \b
+    More examples:
+      uplift mix --dye '#d03060' 3:'#f0c000' --refractive-index 1.5 --thickness 2
+      uplift mix '#e8c070' --surface-reflectance 0.04 --internal-reflectance 0.6
+      uplift mix --dye '#d03060' --refractive-index 1.5 --plate transmitted
+      uplift mix --duntley 2:duntley.csv --thickness 0.5 --ground black
+      uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5
+      uplift mix --additive '#ff0000' 0.5:'#00ff00'
+      uplift mix '#c8342a/#601810' --thickness 0.4 --over painting.exr -o coat.exr
+      uplift mix --theories '#005fa0' '#ffd200'
+    """,
 )
 @click.argument("words", metavar="[PARTS:]COLOUR...", nargs=-1, required=True)
 @click.option(
@@ -120,30 +144,6 @@ def command(
     input_space: str | None,
     force: bool,
 ) -> None:
-    """Mix colours as spectra. A cube converts each colour to a spectrum, and the mixture has its illuminant.
-
-    A COLOUR is '#rrggbb', 'r,g,b' in linear RGB, 'white', 'black', or an entry of the cube's atlas or of --atlas.
-    'A/B' is a paint whose layer of thickness 1 has colour A on white and colour B on black. Other paints are opaque by
-    default, and --thickness is in units of about one scattering event.
-
-    \b
-    Examples:
-      uplift mix --pigment 2:'#005fa0' 1:'#ffd200'
-      uplift mix blue yellow --cube macbeth-32.uplift --plot ramp.png
-      uplift mix '#c8342a' --thickness 0.5 --ground '#f0e8d8' --format json
-    \f
-
-    \b
-    More examples:
-      uplift mix --dye '#d03060' 3:'#f0c000' --refractive-index 1.5 --thickness 2
-      uplift mix '#e8c070' --surface-reflectance 0.04 --internal-reflectance 0.6
-      uplift mix --dye '#d03060' --refractive-index 1.5 --plate transmitted
-      uplift mix --duntley 2:duntley.csv --thickness 0.5 --ground black
-      uplift mix --filter 2:'#ff8000' 1:0.5,0.5,0.5
-      uplift mix --additive '#ff0000' 0.5:'#00ff00'
-      uplift mix '#c8342a/#601810' --thickness 0.4 --over painting.exr -o coat.exr
-      uplift mix --theories '#005fa0' '#ffd200'
-    """
     import numpy as np
 
     from uplift.atlas import Atlas, read_atlas

@@ -27,7 +27,27 @@ if TYPE_CHECKING:
 LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of the model. * designed"
 
 
-@click.command("palette")
+@click.command(
+    "palette",
+    help="""Design the unknown spectra of a palette of lights and materials, and print the matrix of their colours.
+
+    SPEC.toml lists lights and materials, given or to be designed, and the colours that materials must have.
+    Several cells may share one colour that is free (docs/palette.md).
+
+    A cell of the matrix shows the requested colour, the colour of the designed spectra and the colour of the factor
+    model, with ΔE00 between the first and the second and between the second and the third. Goals that no spectra can
+    meet are listed with the requirements to relax. JSON output has all spectra, and the factor model: its basis, the
+    dual that encodes other reflectances, and light_dual for powers.
+
+    \b
+    Examples:
+      uplift palette metamers.toml
+      uplift palette metamers.toml --plot matrix.png --plot-spectra spectra.png
+      uplift palette metamers.toml -o designed.txt
+      uplift palette engine.toml --html engine.html
+      uplift palette vanish.toml --format json > vanish.json
+    """,
+)
 @click.argument("spec", metavar="SPEC.toml", type=click.Path())
 @options.output(help="Write the designed materials as an atlas; CSV if FILE ends in .csv.")
 @options.plot("Plot the matrix of colours")
@@ -52,24 +72,6 @@ def command(
     style: str,
     force: bool,
 ) -> None:
-    """Design the unknown spectra of a palette of lights and materials, and print the matrix of their colours.
-
-    SPEC.toml lists lights and materials, given or to be designed, and the colours that materials must have.
-    Several cells may share one colour that is free (docs/palette.md).
-
-    A cell of the matrix shows the requested colour, the colour of the designed spectra and the colour of the factor
-    model, with ΔE00 between the first and the second and between the second and the third. Goals that no spectra can
-    meet are listed with the requirements to relax. JSON output has all spectra, and the factor model: its basis, the
-    dual that encodes other reflectances, and light_dual for powers.
-
-    \b
-    Examples:
-      uplift palette metamers.toml
-      uplift palette metamers.toml --plot matrix.png --plot-spectra spectra.png
-      uplift palette metamers.toml -o designed.txt
-      uplift palette engine.toml --html engine.html
-      uplift palette vanish.toml --format json > vanish.json
-    """
     from uplift.common.files import write_text
     from uplift.design.palette import design, matrix, read_palette, standard_model, unmet_goals, write_designed
     from uplift.design.palette.picture import cutaway

@@ -11,14 +11,9 @@ from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 
-@click.command("plan")
-@click.argument("scene", metavar="SCENE.toml", type=click.Path())
-@options.output(help="Plan to write. [default: SCENE.plan.json in the folder of the scene]")
-@click.option("--quick", is_flag=True, help="Fewer candidates, and fewer pixels.")
-@options.output_format("table", "json")
-@options.force
-def command(scene: str, output: str | None, quick: bool, style: str, force: bool) -> None:
-    """Search the cheapest cube, texture format and wavelengths that keep a scene's colours within a tolerance.
+@click.command(
+    "plan",
+    help="""Search the cheapest cube, texture format and wavelengths that keep a scene's colours within a tolerance.
 
     SCENE.toml lists textures and, optionally, atlases, lights, the tolerated ΔE00, the fraction of pixels that must
     stay within it, what to minimise (balance, memory, time or samples), and limits:
@@ -42,7 +37,14 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
     Candidates that may be on the Pareto front of memory, time, samples and error are measured on pixels of the
     textures and on the entries of the atlases. The cheapest sufficient one is confirmed on other pixels: RGB without
     spectra, a list of spectra, or a cube, which 'uplift build --plan' builds.
-    """
+    """,
+)
+@click.argument("scene", metavar="SCENE.toml", type=click.Path())
+@options.output(help="Plan to write. [default: SCENE.plan.json in the folder of the scene]")
+@click.option("--quick", is_flag=True, help="Fewer candidates, and fewer pixels.")
+@options.output_format("table", "json")
+@options.force
+def command(scene: str, output: str | None, quick: bool, style: str, force: bool) -> None:
     enable_jit_cache()
     from uplift.common.files import write_text
     from uplift.scene.plan import plan, read_scene_file, summary

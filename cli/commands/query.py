@@ -127,27 +127,10 @@ class Answers:
 
 
 @click.command(
-    "query", cls=options.Command, everyday=("cube_path", "encoded", "wavelengths", "lights", "style", "plot_path")
-)
-@colour_options
-@options.light("Illuminant under which colour and standard error are shown", "none")
-@options.output_format("table", "json", "csv")
-@options.plot("Plot the spectra")
-@click.option("--check", "stored", metavar="FILE", help="Compare answers that --format csv has stored; exit code 1.")
-@click.option(
-    "--tolerance", type=options.NUMBER, default=1e-4, help="Largest difference in reflectance that --check accepts."
-)
-@options.force
-def command(
-    lights: tuple[str, ...],
-    style: str,
-    plot_path: str | None,
-    stored: str | None,
-    tolerance: float,
-    force: bool,
-    **colours: Any,
-) -> None:
-    """Query the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
+    "query",
+    cls=options.Command,
+    everyday=("cube_path", "encoded", "wavelengths", "lights", "style", "plot_path"),
+    help="""Query the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
 
     Numbers are linear RGB from 0 to 1 in the cube's space, or in that of --input-space. Hex colours, and numbers with
     --encoded, are encoded by the transfer function of the space.
@@ -175,7 +158,26 @@ def command(
 
     Lines of files and of standard input are answered in blocks as they come. An error in a later block follows the
     answers to earlier ones.
-    """
+    """,
+)
+@colour_options
+@options.light("Illuminant under which colour and standard error are shown", "none")
+@options.output_format("table", "json", "csv")
+@options.plot("Plot the spectra")
+@click.option("--check", "stored", metavar="FILE", help="Compare answers that --format csv has stored; exit code 1.")
+@click.option(
+    "--tolerance", type=options.NUMBER, default=1e-4, help="Largest difference in reflectance that --check accepts."
+)
+@options.force
+def command(
+    lights: tuple[str, ...],
+    style: str,
+    plot_path: str | None,
+    stored: str | None,
+    tolerance: float,
+    force: bool,
+    **colours: Any,
+) -> None:
     if stored is not None:
         if colours["colour"] or any(colours[name] is not None for name in ("input_path", "xyz", "xy")):
             raise click.UsageError("--check takes the colours from its FILE: give no others.")

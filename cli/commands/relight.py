@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from uplift.common.errors import UpliftWarning
+
 from .. import options
 from ..inputs import expand_patterns, read_pictures
-from ..output.console import make_table, print_json, say, show
+from ..output.console import make_table, paragraph, print_json, show
 from ..output.diagnostics import warn
+from ..output.notes import build_quietly, print_notes
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.lookup import Cube
+    from uplift.report.relight import Relit
 
 SAMPLE, SAMPLE_ATLAS = "still-life.png", "macbeth"
 PAGE, IMAGE = ".html", ".exr"
@@ -27,29 +33,24 @@ DIM = 32
 """Lattice of the cubes that are built for --atlas."""
 
 
-@click.command("relight")
-@click.argument("images", metavar="[IMAGE]...", nargs=-1)
-@options.light("Illuminant", "A FL11 HP1")
-@options.cube(" whose spectra are shown as well.")
-@options.atlas("Measured spectra; a cube is built from them and shown as well")
-@options.pixels()
-@options.output(
-    help="File to write: a figure if it ends in .png, .svg or .pdf, a page if in .html, the image itself if in .exr.",
-    default="relit.png",
-)
-@options.output_format("table", "json")
-@options.force
-def command(
-    images: tuple[str, ...],
-    lights: tuple[str, ...],
-    cube_path: str | None,
-    files: tuple[str, ...],
-    output: str,
-    style: str,
-    force: bool,
-    **pixels: Any,
-) -> None:
-    """Show images under other lights: RGB multiplied by the light, next to spectra.
+def _check_output(path: str) -> str:
+    from uplift.common.errors import OutputError
+    from uplift.viz.figure import SUFFIXES, check_suffix
+
+    suffixes = (*SUFFIXES, PAGE, IMAGE)
+    suffix = Path(path).suffix.lower()
+    if suffix not in suffixes:
+        problem = f"the suffix of relit images must be one of {', '.join(suffixes)}, got '{suffix}'"
+        hint = "give a file name ending in .png for a figure, .html for a page, or .exr for the image itself"
+        raise OutputError(problem, path=path, hint=hint)
+    if suffix in SUFFIXES:
+        check_suffix(path)
+    return path
+
+
+@click.command(
+    "relight",
+    help="""Show images under other lights: RGB multiplied by the light, next to spectra.
 
     Without IMAGE, a sample painted in colours of the ColorChecker is shown, with the ColorChecker as its atlas. Spectra
     come from the packaged cube, which knows no atlas ('spectral'), and from --cube or --atlas. The page has a line to
@@ -68,64 +69,97 @@ def command(
       uplift relight --cube macbeth-32.uplift --format json -o cube.html
       uplift relight painting.exr --light 3200K --light led -o relit.exr
 
-    The white of each light becomes the white of the screen or of the RGB space. The table lists ΔE00 from the products
-    of RGB.
-    """
+    Eye and camera adapt to lights that look white, so their white becomes the white of the screen. The eye does not
+    adapt to a sodium lamp: such lights keep their tint. --adapt or --no-adapt shows all lights alike, and pages have a
+    switch. In an .exr file, whites are white unless --no-adapt is given. The table lists ΔE00 from the products of RGB,
+    relative to the white of the light.
+""",
+)
+@click.argument("images", metavar="[IMAGE]...", nargs=-1)
+@options.light("Illuminant", "A FL11 HP1")
+@options.cube(" whose spectra are shown as well.")
+@options.atlas("Measured spectra; a cube is built from them and shown as well")
+@options.adapt("adapt, but tinted in pictures under lights too coloured to look white, such as HP1")
+@options.pixels()
+@options.output(
+    help="File to write: a figure if it ends in .png, .svg or .pdf, a page if in .html, the image itself if in .exr.",
+    default="relit.png",
+    type=options.OutputFile(_check_output),
+)
+@options.output_format("table", "json")
+@options.force
+def command(
+    images: tuple[str, ...],
+    lights: tuple[str, ...],
+    cube_path: str | None,
+    files: tuple[str, ...],
+    output: str,
+    style: str,
+    adapt: bool | None,
+    force: bool,
+    **pixels: Any,
+) -> None:
     enable_jit_cache()
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
-    from uplift.common.errors import OutputError
     from uplift.common.files import write_text
     from uplift.io import texture
     from uplift.lookup import load
-    from uplift.report.measures import mean_p95_max
-    from uplift.report.relight import RGB_PRODUCT, relight, relit_page, write_relit_sheet
+    from uplift.report.relight import relight, relit_page, write_relit_sheet
     from uplift.samples import sample_path
-    from uplift.viz.figure import SUFFIXES, check_suffix
 
     if cube_path is not None and files:
         raise click.UsageError("--cube and --atlas are alternatives: give one of the two.")
     suffix = Path(output).suffix.lower()
-    if suffix not in (*SUFFIXES, PAGE, IMAGE):
-        raise OutputError(
-            f"the suffix of relit images must be one of {', '.join((*SUFFIXES, PAGE, IMAGE))}, got '{suffix}'",
-            path=output,
-            hint="give a file name ending in .png for a figure, .html for a page, or .exr for the image itself",
-        )
-    if suffix in SUFFIXES:
-        check_suffix(output)
     paths = expand_patterns(images) or [str(sample_path(SAMPLE))]
     if suffix == IMAGE and len(paths) > 1:
         raise click.UsageError("An .exr file holds one image: relight images one by one.")
     check_outputs(output, inputs=paths)
+    atlases = files
     if not images and cube_path is None:
-        files = files or (SAMPLE_ATLAS,)
+        atlases = files or (SAMPLE_ATLAS,)
     lights = lights or RELIGHT_LIGHTS
     if suffix == IMAGE:
         with progress_bar("computing spectra") as progress:
-            cube = _cube_of_user(cube_path, files) or load()
-            converter = texture.prepare_relighter(cube, lights, threads=os.cpu_count() or 1, **pixels)
+            extra, notes = _cube_of_user(cube_path, atlases)
+            balanced = adapt is not False
+            threads = os.cpu_count() or 1
+            converter = texture.prepare_relighter(extra or load(), lights, adapt=balanced, threads=threads, **pixels)
             conversion = texture.convert(converter, paths[0], output, force=force, progress=progress)
         warn(conversion.warnings)
         names = converter.header["uplift.lights"]
         if style == "json":
             print_json({"output": output, "lights": names.split(", "), "pixels": conversion.counts.pixels})
         else:
-            say(f"{output}: {Path(paths[0]).name} under {names}, {conversion.counts.pixels:,} pixels")
-        return
-    with progress_bar("computing spectra"):
-        cubes = {SPECTRAL: load()}
-        pictures = read_pictures(paths, cubes[SPECTRAL].data.sensor, **pixels)
-        if (own := _cube_of_user(cube_path, files)) is not None:
-            cubes[f"{SPECTRAL} with {', '.join(Path(each).stem for each in files or [cube_path or ''])}"] = own
-        relit = [
-            relight(Path(path).name, each.rgb, cubes, lights, opacity=each.opacity, reduction=each.reduction)
-            for path, each in zip(paths, pictures, strict=True)
-        ]
-        if suffix == PAGE:
-            write_text(relit_page(relit), output, force=force)
-        else:
-            write_relit_sheet(relit, output, force=force)
-    rows = []  # ΔE00 of every method from the products of RGB
+            paragraph(f"{output}: {Path(paths[0]).name} under {names}, {conversion.counts.pixels:,} pixels")
+    else:
+        with progress_bar("computing spectra"):
+            cubes = {SPECTRAL: load()}
+            pictures = read_pictures(paths, cubes[SPECTRAL].data.sensor, **pixels)
+            extra, notes = _cube_of_user(cube_path, atlases)
+            if extra is not None:
+                stems = [Path(path).stem for path in atlases or [cube_path or ""]]
+                cubes[f"{SPECTRAL} with {', '.join(stems)}"] = extra
+            relit = []
+            for path, picture in zip(paths, pictures, strict=True):
+                image = relight(
+                    Path(path).name, picture.rgb, cubes, lights, opacity=picture.opacity, reduction=picture.reduction
+                )
+                relit.append(image)
+            if suffix == PAGE:
+                write_text(relit_page(relit, adapt=adapt), output, force=force)
+            else:
+                write_relit_sheet(relit, output, adapt=adapt, force=force)
+        _print_differences(relit, output, style)
+    if extra is not None and files:
+        print_notes(extra, notes, err=style == "json")
+
+
+def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
+    """Print ΔE00 of every method from the products of RGB."""
+    from uplift.report.measures import mean_p95_max
+    from uplift.report.relight import RGB_PRODUCT
+
+    rows = []
     for image in relit:
         for rendering in image.renderings:
             for spectra in image.methods[1:]:
@@ -136,18 +170,18 @@ def command(
         return
     table = make_table(("image", "light", "spectra"), ("mean ΔE00", "95 %", "largest"))
     for row in rows:
-        table.add_row(*(each if isinstance(each, str) else f"{each:.2f}" for each in row.values()))
+        table.add_row(*(cell if isinstance(cell, str) else f"{cell:.2f}" for cell in row.values()))
     show(table)
     names = ", ".join(image.name for image in relit)
-    say(f"{output}: {names} under {', '.join(each.light for each in relit[0].renderings)}")
+    paragraph(f"{output}: {names} under {', '.join(rendering.light for rendering in relit[0].renderings)}")
 
 
-def _cube_of_user(path: str | None, atlases: tuple[str, ...]) -> Cube | None:
-    """Load the cube of a file, or build that of atlases; None without either."""
+def _cube_of_user(path: str | None, atlases: tuple[str, ...]) -> tuple[Cube | None, list[UpliftWarning]]:
+    """Load the cube of a file, or build that of atlases with its warnings; None without either."""
     from uplift.lookup import load
 
     if atlases:
         from uplift.pipeline.build import build
 
-        return build(atlases, dim=DIM)
-    return None if path is None else load(path)
+        return build_quietly(partial(build, atlases, dim=DIM))
+    return None if path is None else load(path), []

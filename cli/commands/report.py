@@ -17,7 +17,26 @@ if TYPE_CHECKING:
     from uplift.report.assessment import Assessment
 
 
-@click.command("report")
+@click.command(
+    "report",
+    help="""Assess a cube: failures, errors, crowded entries, and every atlas entry compared with its measurement.
+
+    The HTML page is self-contained. With --format json the same numbers go to standard output, or to FILE.
+
+    \b
+    Examples:
+      uplift report macbeth-32.uplift
+      uplift report macbeth-32.uplift --atlas cie2017 -o unseen.html
+      uplift report macbeth-32.uplift --light FL4 --worst 6 -o worst.html
+      uplift report macbeth-32.uplift --format json | jq .failures
+
+    The measured spectra are those of the cube's atlases. Atlases are identified by name and content, and searched for
+    in --atlas-dir, the cube's folder, 'atlases' in these, and the shipped atlases.
+
+    --atlas evaluates entries of other atlases at their own colours. This shows how well the cube predicts unseen
+    materials, and whether its standard errors are calibrated.
+    """,
+)
 @options.cube_argument
 @options.atlas("Measured spectra that replace the atlases of the cube")
 @options.atlas_folders
@@ -38,23 +57,6 @@ def command(
     worst: int,
     force: bool,
 ) -> None:
-    """Assess a cube: failures, errors, crowded entries, and every atlas entry compared with its measurement.
-
-    The HTML page is self-contained. With --format json the same numbers go to standard output, or to FILE.
-
-    \b
-    Examples:
-      uplift report macbeth-32.uplift
-      uplift report macbeth-32.uplift --atlas cie2017 -o unseen.html
-      uplift report macbeth-32.uplift --light FL4 --worst 6 -o worst.html
-      uplift report macbeth-32.uplift --format json | jq .failures
-
-    The measured spectra are those of the cube's atlases. Atlases are identified by name and content, and searched for
-    in --atlas-dir, the cube's folder, 'atlases' in these, and the shipped atlases.
-
-    --atlas evaluates entries of other atlases at their own colours. This shows how well the cube predicts unseen
-    materials, and whether its standard errors are calibrated.
-    """
     from uplift.atlas import read_atlas
     from uplift.colorimetry.lights import REPORT_LIGHTS
     from uplift.common.files import write_text

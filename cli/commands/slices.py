@@ -19,13 +19,9 @@ def _check_sheet(path: str) -> str:
 SHEET = options.OutputFile(_check_sheet)
 
 
-@click.command("slices")
-@options.cube_argument
-@options.output(help="Slices to write, as .exr. [default: CUBE's name with .exr, in the current folder]")
-@click.option("--plot", "sheet", metavar="FILE", type=SHEET, help="Contact sheet to write, as .exr or .png.")
-@options.force
-def command(cube: str, output: str | None, sheet: str | None, force: bool) -> None:
-    """Write the blue slices of a cube as images.
+@click.command(
+    "slices",
+    help="""Write the blue slices of a cube as images.
 
     The file of --output has one part per blue slice and one pixel per node. Red increases to the right, green upwards.
     Channels are lattice RGB, target RGB, fitting distance, ΔE00, status, atlas entry, round (with debug information)
@@ -41,7 +37,13 @@ def command(cube: str, output: str | None, sheet: str | None, force: bool) -> No
       uplift slices macbeth-32.uplift -o macbeth.exr --plot sheet.exr --force
 
     With --plot alone, only the contact sheet is written.
-    """
+    """,
+)
+@options.cube_argument
+@options.output(help="Slices to write, as .exr. [default: CUBE's name with .exr, in the current folder]")
+@click.option("--plot", "sheet", metavar="FILE", type=SHEET, help="Contact sheet to write, as .exr or .png.")
+@options.force
+def command(cube: str, output: str | None, sheet: str | None, force: bool) -> None:
     if output is None and sheet is None:
         output = f"{Path(cube).stem}.exr"
     from uplift.cube import read

@@ -22,9 +22,10 @@ MACBETH = "macbeth"
 Row = Mapping[str, Any]
 
 
-@click.group("study")
-def command() -> None:
-    """Measure the accuracy of the models, the reliability of the solver, and the propagation of errors.
+@click.group(
+    "study",
+    cls=options.Group,
+    help="""Measure the accuracy of the models, the reliability of the solver, and the propagation of errors.
 
     \b
     Examples:
@@ -33,7 +34,10 @@ def command() -> None:
       uplift study held-out --atlas paints.csv
       uplift study stability --quick
       uplift study sensitivity macbeth-32.uplift
-    """
+    """,
+)
+def command() -> None:
+    """Hold the subcommands."""
 
 
 def _print(style: str, records: Any, rows: Sequence[Row], table: Sequence[Row]) -> None:
@@ -58,14 +62,9 @@ def _print_table(rows: Sequence[Row]) -> None:
     show(table)
 
 
-@command.command("moments")
-@options.atlas("Atlas", DEFAULT_ATLASES)
-@click.option("--max-moments", metavar="N", type=options.WHOLE, default=15, help="Largest number of moments, up to 32.")
-@options.output(help="Folder for plots.", metavar="DIR")
-@options.output_format("table", "json", "csv")
-@options.force
-def moments(files: tuple[str, ...], max_moments: int, output: str | None, style: str, force: bool) -> None:
-    """Reconstruct measured spectra from their moments and compare them with the measurements.
+@command.command(
+    "moments",
+    help="""Reconstruct measured spectra from their moments and compare them with the measurements.
 
     Tests 0 to N moments of mirrored and unmirrored, warped and unwarped spectra, for all atlases together and for each
     (Tódová 2020, table 4.1 and appendix B.1). Errors are mean and largest ΔE76 under D65, ΔE00 under D65, A, FL2, FL7,
@@ -80,7 +79,14 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
       uplift study moments
       uplift study moments --atlas macbeth --output moments --force
       uplift study moments --max-moments 8 --format json
-    """
+    """,
+)
+@options.atlas("Atlas", DEFAULT_ATLASES)
+@click.option("--max-moments", metavar="N", type=options.WHOLE, default=15, help="Largest number of moments, up to 32.")
+@options.output(help="Folder for plots.", metavar="DIR")
+@options.output_format("table", "json", "csv")
+@options.force
+def moments(files: tuple[str, ...], max_moments: int, output: str | None, style: str, force: bool) -> None:
     from uplift.lab.study.moments import TECHNIQUES, study_moments
 
     atlases = read_atlases(files)
@@ -102,14 +108,9 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
     _print(style, records, records, table)
 
 
-@command.command("held-out")
-@options.atlas("Atlas", DEFAULT_ATLASES)
-@click.option("--splits", type=options.Whole(1, 1000), default=3, help="Number of splits of each atlas.")
-@click.option("--dim", type=options.WHOLE, default=32, help="Lattice nodes along each axis.")
-@options.coefficients
-@options.output_format("table", "json", "csv")
-def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, style: str) -> None:
-    """Build cubes from half of an atlas, query the colours of the other half, and compare with the measurements.
+@command.command(
+    "held-out",
+    help="""Build cubes from half of an atlas, query the colours of the other half, and compare with the measurements.
 
     Reports the rms difference of the spectra and mean ΔE00 under A, FL2, FL7, FL11, LED-B3, LED-RGB1 and HP1, compared
     with cubes of moments and of sigmoids that have no atlas, and the predicted and the actual standard errors.
@@ -122,7 +123,14 @@ def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, s
       uplift study held-out --atlas paints.csv
       uplift study held-out --atlas rawtoaces --coefficients 17 --splits 10
       uplift study held-out --format json
-    """
+    """,
+)
+@options.atlas("Atlas", DEFAULT_ATLASES)
+@click.option("--splits", type=options.Whole(1, 1000), default=3, help="Number of splits of each atlas.")
+@click.option("--dim", type=options.WHOLE, default=32, help="Lattice nodes along each axis.")
+@options.coefficients
+@options.output_format("table", "json", "csv")
+def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, style: str) -> None:
     enable_jit_cache()
     from uplift.lab.study.held_out import holdout, split_records
 
@@ -140,14 +148,9 @@ def held_out(files: tuple[str, ...], splits: int, dim: int, coefficients: int, s
             say(f"{record['atlas']}: {means}; {shares}")
 
 
-@command.command("stability")
-@click.option("--quick", is_flag=True, help="Small lattices and few values: some seconds per model.")
-@options.atlas("Atlas in addition to the synthetic ones", MACBETH)
-@options.output(help="Folder for plots.", metavar="DIR")
-@options.output_format("table", "json", "csv")
-@options.force
-def stability(quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool) -> None:
-    """Build cubes over dims, coefficients, models, spaces, thresholds and atlases, and count unfitted nodes.
+@command.command(
+    "stability",
+    help="""Build cubes over dims, coefficients, models, spaces, thresholds and atlases, and count unfitted nodes.
 
     Reports for each build the realisable and the unfitted nodes, rounds, improvement attempts, the largest residual and
     the time. The builds are a grid of each setting against models and coefficients, and a random sample of other
@@ -160,7 +163,14 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
     Examples:
       uplift study stability --quick --output out --force
       uplift study stability --atlas paints.csv --format json
-    """
+    """,
+)
+@click.option("--quick", is_flag=True, help="Small lattices and few values: some seconds per model.")
+@options.atlas("Atlas in addition to the synthetic ones", MACBETH)
+@options.output(help="Folder for plots.", metavar="DIR")
+@options.output_format("table", "json", "csv")
+@options.force
+def stability(quick: bool, files: tuple[str, ...], output: str | None, style: str, force: bool) -> None:
     enable_jit_cache()
     from uplift.lab.study.stability import NO_ATLAS, QUICK_DESIGN, SYNTHETIC_ATLASES, DesignSpace, study_stability
 
@@ -182,7 +192,27 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
         say(f"{len(records)} builds, {nodes} realisable nodes: {sum(failed)} unfitted in {len(failed)} builds")
 
 
-@command.command("sensitivity")
+@command.command(
+    "sensitivity",
+    help="""Perturb queried colours and the measurements of a cube, and report the change of its spectra.
+
+    Colours are perturbed by an 8-bit code, a 10-bit code and float rounding. The cube is rebuilt with noise on its
+    atlas, with one entry reversed, and with one entry left out. CUBE defaults to the packaged cube, which has no atlas.
+    ΔE00 are under FL11 and, for colours, under the illuminant of the cube.
+
+    jump is the change that remains when steps are halved repeatedly: rounding, unless answers are discontinuous, as
+    those of Otsu 2018 are. --method adds such published methods, in sRGB.
+
+    --output writes, as PNG, the distance to which an entry of the atlas affects the cube.
+
+    \b
+    Examples:
+      uplift study sensitivity
+      uplift study sensitivity macbeth-32.uplift --output out --force
+      uplift study sensitivity --method otsu2018
+      uplift study sensitivity --entries 4 --format json
+    """,
+)
 @click.argument("cube", metavar="[CUBE]", required=False)
 @options.atlas_folders
 @click.option("--entries", type=options.Whole(0), default=24, help="Number of atlas entries to change, one at a time.")
@@ -204,24 +234,6 @@ def sensitivity(
     style: str,
     force: bool,
 ) -> None:
-    """Perturb queried colours and the measurements of a cube, and report the change of its spectra.
-
-    Colours are perturbed by an 8-bit code, a 10-bit code and float rounding. The cube is rebuilt with noise on its
-    atlas, with one entry reversed, and with one entry left out. CUBE defaults to the packaged cube, which has no atlas.
-    ΔE00 are under FL11 and, for colours, under the illuminant of the cube.
-
-    jump is the change that remains when steps are halved repeatedly: rounding, unless answers are discontinuous, as
-    those of Otsu 2018 are. --method adds such published methods, in sRGB.
-
-    --output writes, as PNG, the distance to which an entry of the atlas affects the cube.
-
-    \b
-    Examples:
-      uplift study sensitivity
-      uplift study sensitivity macbeth-32.uplift --output out --force
-      uplift study sensitivity --method otsu2018
-      uplift study sensitivity --entries 4 --format json
-    """
     enable_jit_cache()
     from uplift.colorimetry import observer
     from uplift.colorimetry.lights import NARROW_BAND_LIGHT

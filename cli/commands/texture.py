@@ -61,28 +61,11 @@ image_options = options.stacked(
 """Images, their target, and how they are converted; for `convert`."""
 
 
-@click.command("texture", cls=options.Command, everyday=("target", "cube_paths", "mask", "kind", "depth", "force"))
-@image_options
-@options.cube(options.OF_PACKAGE.format("; repeatable with --mask"), name="cube_paths", multiple=True)
-@click.option(
-    "--mask",
-    metavar="FILE",
-    help="Image of which cube a pixel belongs to: 0 for the first, 1 for the second …, or from black to white.",
-)
-@options.choice("--representation", "spectrum", "moments", "multipliers", name="kind", help="Contents of a pixel.")
-@options.output_wavelengths
-@options.depth
-@options.pixels()
-@options.fill
-@options.repeatable(
-    *("--errors", "errors", "Add a channel with the standard error, ΔE00, under an illuminant, such as error.A"),
-    metavar="NAME",
-    shell_complete=options.complete_light,
-)
-def command(
-    cube_paths: tuple[str, ...], mask: str | None, kind: str, wavelengths: Array | None, **settings: Any
-) -> None:
-    """Convert every pixel of an image (EXR, HDR, PNG, JPEG, TIFF) to a spectrum and write an OpenEXR texture.
+@click.command(
+    "texture",
+    cls=options.Command,
+    everyday=("target", "cube_paths", "mask", "kind", "depth", "force"),
+    help="""Convert every pixel of an image (EXR, HDR, PNG, JPEG, TIFF) to a spectrum and write an OpenEXR texture.
 
     \b
     Examples:
@@ -110,7 +93,28 @@ def command(
     mask holds the weights of three cubes in R, G and B. Mixed spectra keep the colour of the pixel.
 
     Pixels that are light, such as those of an environment map, need 'uplift lights texture'.
-    """
+    """,
+)
+@image_options
+@options.cube(options.OF_PACKAGE.format("; repeatable with --mask"), name="cube_paths", multiple=True)
+@click.option(
+    "--mask",
+    metavar="FILE",
+    help="Image of which cube a pixel belongs to: 0 for the first, 1 for the second …, or from black to white.",
+)
+@options.choice("--representation", "spectrum", "moments", "multipliers", name="kind", help="Contents of a pixel.")
+@options.output_wavelengths
+@options.depth
+@options.pixels()
+@options.fill
+@options.repeatable(
+    *("--errors", "errors", "Add a channel with the standard error, ΔE00, under an illuminant, such as error.A"),
+    metavar="NAME",
+    shell_complete=options.complete_light,
+)
+def command(
+    cube_paths: tuple[str, ...], mask: str | None, kind: str, wavelengths: Array | None, **settings: Any
+) -> None:
     from uplift.io import texture
     from uplift.lookup.cube import find_file, load
 

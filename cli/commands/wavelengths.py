@@ -19,7 +19,24 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    "wavelengths", cls=options.Command, everyday=("count", "tolerance", "files", "lights", "style", "plot_path")
+    "wavelengths",
+    cls=options.Command,
+    everyday=("count", "tolerance", "files", "lights", "style", "plot_path"),
+    help="""Choose the wavelengths at which a renderer samples the materials and lights of a scene.
+
+    All lights share one set of wavelengths. The power of a light at a wavelength is prefiltered, so that spectral lines
+    between the wavelengths count. Radiance is power times reflectance. Weighted sums of radiance give XYZ, or linear
+    RGB in which white under --illuminant is (1, 1, 1). Errors are ΔE00 to sums over every nanometre from 380 to 770.
+
+    \b
+    Examples:
+      uplift wavelengths --count 8
+      uplift wavelengths --tolerance 1 --light D65 --light FL11 --plot chosen.png
+      uplift wavelengths --tolerance 0.5 --measure p95 --atlas paints.csv
+      uplift wavelengths --wavelengths 400:700:20 --light A --format csv
+      uplift wavelengths --count 4 --method meyer --light C --atlas macbeth
+      uplift wavelengths --orders 3 2 1 --light C --atlas macbeth
+    """,
 )
 @click.option("--count", metavar="N", type=options.WHOLE, help="Number of wavelengths, 1 to 40.")
 @options.tolerance(help="Choose the fewest wavelengths with an error below this ΔE00.")
@@ -68,21 +85,6 @@ def command(
     force: bool,
     **camera: Any,
 ) -> None:
-    """Choose the wavelengths at which a renderer samples the materials and lights of a scene.
-
-    All lights share one set of wavelengths. The power of a light at a wavelength is prefiltered, so that spectral lines
-    between the wavelengths count. Radiance is power times reflectance. Weighted sums of radiance give XYZ, or linear
-    RGB in which white under --illuminant is (1, 1, 1). Errors are ΔE00 to sums over every nanometre from 380 to 770.
-
-    \b
-    Examples:
-      uplift wavelengths --count 8
-      uplift wavelengths --tolerance 1 --light D65 --light FL11 --plot chosen.png
-      uplift wavelengths --tolerance 0.5 --measure p95 --atlas paints.csv
-      uplift wavelengths --wavelengths 400:700:20 --light A --format csv
-      uplift wavelengths --count 4 --method meyer --light C --atlas macbeth
-      uplift wavelengths --orders 3 2 1 --light C --atlas macbeth
-    """
     if sum(option is not None for option in (count, tolerance, wavelengths, orders)) != 1:
         raise click.UsageError("Give one of --count, --tolerance, --wavelengths and --orders.")
     if (measure is not None and tolerance is None) or (method is not None and count is None and tolerance is None):

@@ -58,16 +58,16 @@ def has_colours() -> bool:
     return sys.stdout.isatty() and not is_plain
 
 
-def paragraph(text: str, indent: int = 0, prefix: str = "", suffix: str = "") -> None:
+def paragraph(text: str, indent: int = 0, prefix: str = "", suffix: str = "", *, err: bool = False) -> None:
     """Print prose with control characters escaped, wrapped to the window; words such as URLs stay whole."""
     lines = textwrap.wrap(printable(text), columns() - indent, break_long_words=False, break_on_hyphens=False)
-    emit(prefix + ("\n" + " " * indent).join(lines) + suffix)
+    emit(prefix + ("\n" + " " * indent).join(lines) + suffix, err=err)
 
 
 def print_fields(fields: Mapping[str, str], patches: Mapping[str, str] | None = None) -> None:
     """Print names and values in two columns, and the patches of colour that belong to a value."""
     names = {name: printable(name) for name in fields}
-    width = max(12, *(len(name) + 1 for name in names.values()))
+    width = max(12, *(len(name) + 2 for name in names.values()))
     for name, text in fields.items():
         patch = patches.get(name, "") if patches else ""
         paragraph(text, width, f"{names[name]:<{width}}", patch and f"  {patch}")

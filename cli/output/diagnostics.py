@@ -17,7 +17,7 @@ from uplift.common.text import printable
 from ..startup import remove_compiled_code
 from .console import emit, json_text
 
-BAD_INPUT, INTERNAL_ERROR = 2, 70
+FAILED_CHECK, BAD_INPUT, INTERNAL_ERROR = 1, 2, 70
 """Exit codes; 70 is EX_SOFTWARE of sysexits.h."""
 EXIT_CODES = {"internal-error": INTERNAL_ERROR, "interrupted": 128 + signal.SIGINT}
 """Exit codes by code of the error."""
@@ -30,6 +30,7 @@ HINTS = {
     "colour-not-in-scene": "use --fill-missing, or build the cube with the image in --scene",
     "encoded-floats-not-mapped": "use --out-of-gamut clip, or --encoding linear",
     "entry-crowded": "use --dim auto for a lattice that is large enough; 'uplift report' shows details",
+    "entry-skipped": "'uplift atlas' states the reason for each",
     "file-exists": "use --force to replace it, or choose another name",
     "invalid-codes": "leave out --encoded for linear floats",
     "mixed-scales": "correct the row, or use --scale percent or fraction if it is right",
@@ -38,7 +39,7 @@ HINTS = {
     "rgb-out-of-gamut": "map it inside with --out-of-gamut, or use --encoded for 8-bit codes",
     "sparse-cube": "use --fill-missing where the command has it, or a cube built without --scene",
     "texture-differs": "use --resume with --force to convert the image again, or choose another name",
-    "unknown-illuminant": "{} 'uplift help lights' lists all names",
+    "unknown-illuminant": "{} 'uplift help illuminants' lists all names",
 }
 """Hints in place of the library's, {}, which name parameters of Python, by the code of an error or a warning."""
 MEMORY_PROBLEMS = ("RESOURCE_EXHAUSTED", "failed to map segment")

@@ -2,6 +2,8 @@
 
 import errno
 import json
+import subprocess
+import sys
 import time
 import warnings
 
@@ -9,6 +11,7 @@ import click
 import pytest
 from click.testing import CliRunner
 from rich.cells import cell_len
+from uplift_cli.commands.help import GAMUT_MEANINGS, MODE_MEANINGS, TOPICS
 from uplift_cli.main import COMMANDS, main
 from uplift_cli.options import HELP_ALL, Number
 from uplift_cli.output import progress as progress_module
@@ -17,9 +20,12 @@ from uplift_cli.output.diagnostics import HINTS
 from uplift_cli.output.progress import progress_bar
 
 import uplift
+from tests.conftest import ROOT
+from uplift.colorimetry.gamut import METHODS
 from uplift.common.errors import UpliftError, UpliftWarning
 from uplift.common.progress import Progress
 from uplift.common.text import printable
+from uplift.lookup.interpolate import MODES
 
 from .conftest import commands, warning_lines
 
@@ -45,7 +51,7 @@ def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run):
         ("paint", "No such command"),
         ("txture", "Did you mean 'texture'?"),
         ("build --dimm 8", "Did you mean '--dim'?"),
-        ("help mods", "lists the topics"),
+        ("help mods", "neither a topic nor a command"),
         ("query", "Give one colour"),
         ("build --dim many", "neither a whole number nor 'auto'"),
         ("info a b", "unexpected extra argument"),
@@ -145,15 +151,61 @@ def test_warnings_of_the_library_are_one_line_each_and_others_are_ignored(monkey
     assert warnings.showwarning is before
 
 
+COMMANDS_BY_PATH = commands(main)
+
+
+@pytest.mark.parametrize(
+    "path", ["", *(path for path, command in COMMANDS_BY_PATH.items() if isinstance(command, click.Group))]
+)
+def test_a_group_alone_prints_its_help(run, path):
+    alone, requested = run(*path.split()), run(*path.split(), "--help")
+    assert alone.stdout == requested.stdout
+    assert (alone.exit_code, alone.stderr) == (0, "")
+    assert alone.stdout.startswith("Usage: ")
+
+
+def test_help_of_a_command_is_that_of_its_option(run):
+    for path in COMMANDS_BY_PATH:
+        assert run("help", *path.split()).stdout == run(*path.split(), "--help").stdout, path
+
+
+def test_topics_have_text_and_names_that_no_command_has(run):
+    assert not TOPICS.keys() & set(COMMANDS)
+    for topic in TOPICS:
+        assert len(run("help", topic).stdout) > 100
+        assert f"{topic} " in run("help").stdout
+    assert MODE_MEANINGS.keys() == MODES.keys()
+    assert tuple(GAMUT_MEANINGS) == METHODS
+
+
+HELP_OF_ALL = """
+import json, click
+from uplift_cli.commands.help import TOPICS
+from uplift_cli.main import main
+from tests.cli.conftest import commands
+texts = [command.get_help(click.Context(command)) for command in (main, *commands(main).values())]
+print(json.dumps([texts, [str(parts()) for _, parts in TOPICS.values()]]))
+"""
+
+
+def test_help_does_not_depend_on_docstrings():
+    plain, optimised = (
+        subprocess.run([sys.executable, *flags, "-c", HELP_OF_ALL], cwd=ROOT, capture_output=True, text=True)
+        for flags in ([], ["-OO"])
+    )
+    assert optimised.stderr == ""
+    assert optimised.stdout == plain.stdout
+
+
 def test_help_fits_80_columns(monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
-    for command in (main, *commands(main).values()):
+    for command in (main, *COMMANDS_BY_PATH.values()):
         with click.Context(command, info_name="uplift lights texture") as context:
             context.meta[HELP_ALL] = True
             assert max(map(len, command.get_help(context).splitlines())) <= 80, command.name
 
 
-OPTIONS = [(command, param) for command in commands(main).values() for param in command.params]
+OPTIONS = [(command, param) for command in COMMANDS_BY_PATH.values() for param in command.params]
 NUMERIC = [
     pytest.param(command, option, id=f"{command.name}{option.opts[-1]}")
     for command, option in OPTIONS

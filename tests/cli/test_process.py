@@ -36,6 +36,11 @@ def shell(command, **environment):
     )
 
 
+def test_the_package_runs_as_the_command_does():
+    alone, named = (shell(f"{sys.executable} -m {name} help exit-codes") for name in ("uplift", "uplift_cli"))
+    assert (alone.returncode, alone.stdout, alone.stderr) == (0, named.stdout, b"")
+
+
 def test_closed_pipe_is_not_an_error():
     done = shell(f"{UPLIFT} query '#cc3319' --format json | head -c 5")
     assert (done.stdout, done.stderr) == (b'{"cub', b"")

@@ -1,5 +1,7 @@
 """``uplift relight`` and ``uplift samples``."""
 
+import shlex
+
 import numpy as np
 import OpenEXR
 import pytest
@@ -50,9 +52,18 @@ def test_bad_input_is_refused(refuse, misuse, home, wood):
     assert refuse("relight", wood).code == "file-exists"
 
 
-def test_samples_are_copied_and_may_be_copied_again(run, refuse, home):
-    for _ in range(2):
-        assert run("samples").stdout == f".: {len(sample_names())} sample files\n"
-    (home / "wood.png").write_text("mine")
+def test_samples_have_a_folder_and_may_be_copied_again(run, refuse, home):
+    assert run("samples").stdout == run("samples").stdout
+    assert {path.name for path in home.iterdir()} == {"uplift-samples"}
+    assert {path.name for path in (home / "uplift-samples").iterdir()} == set(sample_names())
+    (home / "uplift-samples" / "wood.png").write_text("mine")
     assert refuse("samples").code == "file-exists"
     run("samples", "--force")
+
+
+@pytest.mark.parametrize("folder", ["uplift-samples", ".", "my samples"])
+def test_the_first_commands_with_samples_run_as_pasted(run, folder):
+    lines = [line for line in run("samples", folder).stdout.splitlines() if line.startswith("  uplift ")]
+    assert len(lines) == 3
+    for line in lines:
+        assert run(*shlex.split(line)[1:]).stderr == ""

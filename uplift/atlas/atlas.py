@@ -1,6 +1,6 @@
 """Atlases and their entries: the result of every reader and the input of every writer."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from typing import overload
@@ -118,17 +118,15 @@ class SkippedEntry:
     path: str | None = None
     line: int | None = None
 
-    def warning(self) -> UpliftWarning:
-        """Create the warning to issue.
 
-        Returns
-        -------
-        UpliftWarning
-            With the code ``entry-skipped``.
-        """
-        return UpliftWarning(
-            f"skipped: {self.reason}", code="entry-skipped", path=self.path, line=self.line, entry=self.name
-        )
+def skipped_warning(skipped: Sequence[SkippedEntry], code: str = "entry-skipped") -> UpliftWarning:
+    """Create one warning for all skipped entries, with the location and the reason of the first one."""
+    first, *others = skipped
+    problem = f"skipped: {first.reason}"
+    if others:
+        names = listed([f"'{entry.name}'" for entry in others])
+        problem += f"; {len(others)} more are skipped: {names}"
+    return UpliftWarning(problem, code=code, path=first.path, line=first.line, entry=first.name)
 
 
 @dataclass(frozen=True)

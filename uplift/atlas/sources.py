@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from uplift.atlas.atlas import Atlas, Entry, Header, Source, merge
+from uplift.atlas.atlas import Atlas, Entry, Header, Source, merge, skipped_warning
 from uplift.atlas.document import SourceLocation, read_document
 from uplift.atlas.formats import art, read_any
 from uplift.atlas.measurements import MEASURED, Measured, to_atlas
@@ -55,7 +55,7 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
     Warns
     -----
     UpliftWarning
-        An entry was skipped (``entry-skipped``), a table was read as percent (``values-in-percent``), or a shipped
+        Entries were skipped (``entry-skipped``), a table was read as percent (``values-in-percent``), or a shipped
         atlas replaces a missing file (``shipped-atlas``); the name ``macbeth`` without a suffix gives no warning.
 
     Examples
@@ -72,8 +72,8 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
         chosen, found = read_any(document)
         atlases.append(found if isinstance(found, Atlas) else to_atlas(document, found, chosen.name, measured))
     atlas = merge(atlases)
-    for skipped in atlas.skipped:
-        warnings.warn(skipped.warning(), stacklevel=2)
+    if atlas.skipped:
+        warnings.warn(skipped_warning(atlas.skipped), stacklevel=2)
     return atlas
 
 

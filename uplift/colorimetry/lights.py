@@ -1,11 +1,7 @@
 """Illuminants for each purpose, by the names of colour-science, and sets of lamps.
 
-D65 is daylight, A tungsten. Of fluorescent lamps, FL2 is a cheap, FL7 a broadband and FL11 a three-band one. LED-B3 is
-a white LED, LED-RGB1 one of three narrow bands, HP1 a high-pressure sodium lamp.
-
-Other names: daylight (D65), tungsten (A), fluorescent (FL2), led (LED-B3), sodium (HP1), and temperatures such as
-3200K. From 4000K to 25000K they are CIE daylight (CIE 15:2004, 3.1) of this nominal temperature, as D65 is 6500K;
-below, from 1000K, black bodies.
+Temperatures such as 3200K are names too: from 4000K to 25000K of CIE daylight (CIE 15:2004, 3.1) of this nominal
+temperature, as D65 is 6500K, and below, from 1000K, of black bodies.
 """
 
 import re

@@ -113,9 +113,10 @@ class CubeData:
     def __repr__(self) -> str:
         sensor, own = self.sensor, self.atlas.spectra.model
         more = "" if own == self.model else f" with {own.count} coefficients"
+        outside = "" if self.atlas.outside is None else f" and {len(self.atlas.outside.names)} outside"
         return (
             f"CubeData({self.model.name} with {self.model.count} coefficients, dim {self.lattice.dim}, "
-            f"{sensor.space} under {sensor.illuminant}, {len(self.atlas.names)} entries{more})"
+            f"{sensor.space} under {sensor.illuminant}, {len(self.atlas.names)} entries{more}{outside})"
         )
 
     @cached_property

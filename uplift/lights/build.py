@@ -16,7 +16,7 @@ from uplift.colorimetry.spaces import look_up_space, primaries_of
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.machine import single_threaded_blas
-from uplift.common.text import format_value
+from uplift.common.text import format_value, listed
 from uplift.common.version import version
 from uplift.lights.discs import Lamps, lamp_entries
 from uplift.lights.fit import locus_lattice, mix_with_locus, nearest_lights
@@ -87,8 +87,8 @@ def build_emission(
     Warns
     -----
     UpliftWarning
-        A lamp of the atlas with the chromaticity of another one of it, which is left out (``entry-duplicate``), or an
-        entry of a file that was skipped (``entry-skipped``).
+        Lamps of the atlas with the chromaticity of another one of it, which are left out (``entry-duplicate``), or
+        entries of a file that were skipped (``entry-skipped``).
 
     Examples
     --------
@@ -116,9 +116,10 @@ def build_emission(
     left_out_errors = relit_delta_e(lamps, left_out, surfaces, radiometry).mean(axis=1)
 
     entries, duplicates = lamp_entries(exact, others, lattice, radiometry)
-    for name, other in duplicates:
-        problem = f"left out: it has the chromaticity of '{other}'"
-        warnings.warn(UpliftWarning(problem, code="entry-duplicate", entry=name), stacklevel=STACK_LEVEL)
+    if duplicates:
+        pairs = listed([f"'{name}' that of '{other}'" for name, other in duplicates])
+        problem = f"{len(duplicates)} lamps left out, with the chromaticity of an earlier one: {pairs}"
+        warnings.warn(UpliftWarning(problem, code="entry-duplicate"), stacklevel=STACK_LEVEL)
     return EmissionTable(
         EmissionData(
             space=sensor.space,

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from uplift.atlas.atlas import Atlas, merge
+from uplift.atlas.atlas import Atlas, merge, skipped_warning
 from uplift.atlas.document import Document, read_document, truncate
 from uplift.atlas.formats import read_any
 from uplift.atlas.measurements import Measurements, to_atlas
@@ -48,8 +48,8 @@ def read_lamps(*paths: StrPath) -> Atlas:
     without power.
     """
     atlas = merge(map(_read, map(read_document, paths)))
-    for skipped in atlas.skipped:
-        warnings.warn(skipped.warning(), stacklevel=2)
+    if atlas.skipped:
+        warnings.warn(skipped_warning(atlas.skipped, code="lamp-skipped"), stacklevel=2)
     return atlas
 
 

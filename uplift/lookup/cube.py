@@ -106,6 +106,11 @@ class Cube:
         """Names of the atlas entries that constrain the cube."""
         return self.data.atlas.names
 
+    @property
+    def outside_names(self) -> tuple[str, ...]:
+        """Names of the atlas entries outside the RGB space, which XYZ and textures of wider spaces get."""
+        return () if self.data.atlas.outside is None else self.data.atlas.outside.names
+
     def coefficients(
         self, rgb: ArrayLike, count: int | None = None, *, dtype: DTypeLike = np.float64, threads: int = 1
     ) -> NDArray[Any]:

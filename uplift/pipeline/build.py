@@ -193,11 +193,11 @@ def build(
     Warns
     -----
     UpliftWarning
-        Entries out of gamut (``entry-out-of-gamut``), which answer only XYZ and textures of wider spaces, with the
-        colour of another entry (``entry-duplicate``) or close to another entry (``entry-crowded``). Spectra of a
-        library out of gamut (``entry-out-of-gamut``) or outside [0, 1] (``entry-clipped``). Looks that no
-        reflectance meets (``look-impossible``), or that the coefficients of entries do not reach
-        (``look-not-reached``); the nearest colour is used.
+        Entries with the colour of another entry (``entry-duplicate``) or close to another entry
+        (``entry-crowded``). Spectra of a library out of gamut (``entry-out-of-gamut``) or outside [0, 1]
+        (``entry-clipped``). Looks that no reflectance meets (``look-impossible``), or that the coefficients of
+        entries do not reach (``look-not-reached``); the nearest colour is used. Entries out of gamut are no warning:
+        `Cube.outside_names` has them.
 
     Examples
     --------

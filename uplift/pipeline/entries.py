@@ -78,25 +78,19 @@ def as_atlas(atlas: AtlasLike) -> Atlas:
 
 
 def split_by_gamut(atlas: Atlas, sensor: Sensor) -> tuple[MeasuredEntries, MeasuredEntries]:
-    """Return the entries in the RGB space, and those outside, with a warning for each; all outside are an error."""
+    """Return the entries in the RGB space, and those outside; all outside are an error."""
     measured = on_grid(atlas, sensor.wavelengths)
     # t = W m of measured reflectances m
     rgb = sensor.rgb(measured)
     inside = in_unit_cube(rgb)
-    hint = ""
-    if not inside.all():
+    if (atlas.entries or atlas.skipped) and not inside.any():
         space = smallest_space(resample(atlas, grid()).values, sensor.illuminant, sensor.observer)
+        problem = f"no entry of the atlas is within {sensor.space}: {len(atlas)} outside, {len(atlas.skipped)} skipped"
         hint = f"none of {', '.join(COMMON_SPACES)} holds all entries"
         if space is not None:
-            hint = f'build with --space "{space}" to have all entries in the lattice'
-    if (atlas.entries or atlas.skipped) and not inside.any():
-        problem = f"no entry of the atlas is within {sensor.space}: {len(atlas)} outside, {len(atlas.skipped)} skipped"
+            hint = f'use space="{space}", which holds all entries'
         raise AtlasError(problem, code="atlas-out-of-gamut", hint=hint)
     names = np.array(atlas.names, dtype=object)
-    for row in np.flatnonzero(~inside):
-        values = ", ".join(f"{value:.4f}" for value in rgb[row])
-        problem = f"outside {sensor.space}, at linear RGB ({values}): kept for XYZ and wider spaces"
-        warn(problem, code="entry-out-of-gamut", entry=names[row], hint=hint)
     return (
         MeasuredEntries(tuple(names[inside]), np.clip(rgb[inside], 0, 1), measured[inside]),
         MeasuredEntries(tuple(names[~inside]), rgb[~inside], measured[~inside]),

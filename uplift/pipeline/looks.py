@@ -89,7 +89,7 @@ class LookTargets:
             ]
             weight = float(look.weight)
             records.append({"name": look.name, "rgb": goal.rgb.tolist(), "weight": weight, "lights": lights})
-            _warn_of_missed(look, lights)
+        _warn_of_missed(self.looks, records)
         return {"looks": records}
 
 
@@ -164,20 +164,33 @@ def recorded_looks(provenance: Mapping[str, Any]) -> tuple[Look, ...]:
     return tuple(looks)
 
 
-def _warn_of_missed(look: Look, lights: Sequence[Mapping[str, Any]]) -> None:
-    """Warn of a look that is not met: of impossible targets, or of those that the model does not reach."""
-    missed = [light for light in lights if light["delta_e"] > MET]
+def _warn_of_missed(looks: Sequence[Look], records: Sequence[Mapping[str, Any]]) -> None:
+    """Warn once of the looks with impossible targets, and once of those that the model does not reach."""
+    impossible, unreached = [], []
+    for look, record in zip(looks, records, strict=True):
+        missed = [light for light in record["lights"] if light["delta_e"] > MET]
+        if any(light["possible"] > MET for light in missed):
+            impossible.append((look, missed))
+        elif missed:
+            unreached.append((look, missed))
+    _warn_of_worst(impossible, "look-impossible", "no reflectance meets it")
+    problem = "the coefficients of its spectrum do not reach it"
+    _warn_of_worst(unreached, "look-not-reached", problem, hint="use more entry_coefficients")
+
+
+def _warn_of_worst(
+    missed: Sequence[tuple[Look, Sequence[Mapping[str, Any]]]], code: str, problem: str, hint: str = ""
+) -> None:
+    """Warn of looks and the lights under which they are missed, by the one that is missed by most."""
     if not missed:
         return
-    code, problem, hint = "look-impossible", "no reflectance meets it", ""
-    impossible = any(light["possible"] > MET for light in lights)
-    if not impossible:
-        code, hint = "look-not-reached", "use more entry_coefficients"
-        problem = "the coefficients of its spectrum do not reach it"
+    look, lights = max(missed, key=lambda pair: max(light["delta_e"] for light in pair[1]))
     shown = []
-    for light in missed:
+    for light in lights:
         answer, target = hex_codes(np.array([light["answer"], light["wish"]]))
-        least = f" (at least {light['possible']:.2f})" if impossible else ""
+        least = f" (at least {light['possible']:.2f})" if light["possible"] > MET else ""
         shown.append(f"under {light['light']} it is {answer}, ΔE00 {light['delta_e']:.2f} from {target}{least}")
     text = about(look, f"{problem}: {', '.join(shown)}")
-    warnings.warn(UpliftWarning(text, code=code, hint=hint, path=look.path), stacklevel=STACK_LEVEL)
+    if len(missed) > 1:
+        text += f", and {len(missed) - 1} other looks are missed by less"
+    warnings.warn(UpliftWarning(text, code=code, hint=hint, path=look.path), stacklevel=STACK_LEVEL + 1)

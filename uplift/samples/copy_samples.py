@@ -23,7 +23,7 @@ def sample_path(name: str) -> Path:
     return FOLDER / name
 
 
-def copy_samples(folder: StrPath = ".", *, force: bool = False) -> tuple[Path, ...]:
+def copy_samples(folder: StrPath, *, force: bool = False) -> tuple[Path, ...]:
     """Copy the sample files into a folder, which is created. Equal files that are there already stay as they are.
 
     Raises `OutputError` if the folder cannot be written, or without ``force`` has another file of the same name;

@@ -187,7 +187,7 @@ def designed(metamers, model):
 
 def test_materials_outside_the_range_of_atlases_are_left_out(designed, tmp_path):
     wild = dataclasses.replace(designed, reflectances=designed.reflectances - [[0.2], [0], [0]])
-    with warns("entry-skipped"):
+    with warns("material-skipped"):
         assert write_designed(wild, tmp_path / "out.txt") == 1
     assert uplift.read_atlas(tmp_path / "out.txt").names == ("moss",)
 

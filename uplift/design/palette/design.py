@@ -13,6 +13,7 @@ from uplift.atlas.atlas import HIGHEST, LOWEST
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import PaletteError, UpliftWarning
+from uplift.common.text import listed
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.equations import equations, solve, unknowns
 from uplift.design.palette.factor import FactorModel
@@ -198,7 +199,7 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
     Parameters
     ----------
     design : Design
-        The design. A warning names each material outside the range of reflectances of an atlas, which is left out.
+        The design. A warning lists the materials outside the range of reflectances of an atlas, which are left out.
     path : path-like
         The file, in the format of `uplift.write_atlas`.
     force : bool
@@ -214,20 +215,19 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
     PaletteError
         If no material can be written.
     """
-    entries = []
+    entries, skipped = [], []
     for material, values in zip(design.palette.materials, design.reflectances, strict=True):
         if not material.designed:
             continue
         if values.min() < LOWEST or values.max() > HIGHEST:
-            text = (
-                f"material '{material.name}' is left out of the atlas: reflectance must be in "
-                f"[{LOWEST:g}, {HIGHEST:g}], got {values.min():.3g} to {values.max():.3g}"
-            )
-            warnings.warn(UpliftWarning(text, code="entry-skipped"), stacklevel=2)
+            skipped.append(f"'{material.name}' has {values.min():.3g} to {values.max():.3g}")
             continue
         lights = [goal.light for goal in design.palette.goals if goal.material == material.name and goal.weight]
         description = f"designed for its colours under {', '.join(lights)}" if lights else "designed"
         entries.append(Entry(material.name, design.palette.sensor.wavelengths, values, description=description))
+    if skipped:
+        text = f"{len(skipped)} materials left out of the atlas: reflectance must be in [{LOWEST:g}, {HIGHEST:g}]"
+        warnings.warn(UpliftWarning(f"{text}, but {listed(skipped)}", code="material-skipped"), stacklevel=2)
     if not entries:
         raise PaletteError(
             "no designed material has reflectances that an atlas can hold", hint="design one with bounds within [0, 1]"
