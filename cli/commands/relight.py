@@ -31,6 +31,7 @@ DIM = 32
 @options.light("Illuminant", "A FL11 HP1")
 @options.cube(" whose spectra are shown as well.")
 @options.atlas("Measured spectra; a cube is built from them and shown as well")
+@options.adapt("adapt, but tinted in pictures under lights too coloured to look white, such as HP1")
 @options.pixels()
 @options.output(
     help="File to write: a figure if it ends in .png, .svg or .pdf, a page if in .html, the image itself if in .exr.",
@@ -45,6 +46,7 @@ def command(
     files: tuple[str, ...],
     output: str,
     style: str,
+    adapt: bool | None,
     force: bool,
     **pixels: Any,
 ) -> None:
@@ -67,8 +69,10 @@ def command(
       uplift relight --cube macbeth-32.uplift --format json -o cube.html
       uplift relight painting.exr --light 3200K --light led -o relit.exr
 
-    The white of each light becomes the white of the screen or of the RGB space. The table lists ΔE00 from the products
-    of RGB.
+    Eye and camera adapt to lights that look white, so their white becomes the white of the screen. The eye does not
+    adapt to a sodium lamp: such lights keep their tint. --adapt or --no-adapt shows all lights alike, and pages have a
+    switch. In an .exr file, whites are white unless --no-adapt is given. The table lists ΔE00 from the products of RGB,
+    relative to the white of the light.
     """
     enable_jit_cache()
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
@@ -102,7 +106,8 @@ def command(
     if suffix == IMAGE:
         with progress_bar("computing spectra") as progress:
             cube = _cube_of_user(cube_path, files) or load()
-            converter = texture.prepare_relighter(cube, lights, threads=os.cpu_count() or 1, **pixels)
+            balanced = adapt is not False
+            converter = texture.prepare_relighter(cube, lights, adapt=balanced, threads=os.cpu_count() or 1, **pixels)
             conversion = texture.convert(converter, paths[0], output, force=force, progress=progress)
         warn(conversion.warnings)
         names = converter.header["uplift.lights"]
@@ -120,9 +125,9 @@ def command(
             for path, each in zip(paths, read_pictures(paths, cubes[SPECTRAL].data.sensor, **pixels), strict=True)
         ]
         if suffix == PAGE:
-            write_text(relit_page(relit), output, force=force)
+            write_text(relit_page(relit, adapt=adapt), output, force=force)
         else:
-            write_relit_sheet(relit, output, force=force)
+            write_relit_sheet(relit, output, adapt=adapt, force=force)
     rows = []  # ΔE00 of every method from the products of RGB
     for image in relit:
         for rendering in image.renderings:

@@ -1,5 +1,8 @@
 """``uplift relight`` and ``uplift samples``."""
 
+import json
+import re
+
 import numpy as np
 import OpenEXR
 import pytest
@@ -38,6 +41,17 @@ def test_an_image_of_full_size_has_a_layer_for_each_further_light(ask, misuse, h
     assert set(part.channels) == {*"RGB", *(f"3200K.{letter}" for letter in "RGB")}
     assert part.channels["R"].pixels.shape == (12, 20)
     assert "one by one" in misuse("relight", wood, wood, "-o", "both.exr")
+
+
+def test_lights_are_shown_white_or_tinted(ask, home, wood):
+    for number, option in enumerate(([], ["--adapt"], ["--no-adapt"])):
+        ask("relight", wood, "--light", "A", "--light", "HP1", *option, "-o", f"{number}.html")
+        page = (home / f"{number}.html").read_text(encoding="utf-8")
+        shown = json.loads(re.search(r'id="balanced">(.*?)<', page)[1])
+        assert shown == ([True, False], [True, True], [False, False])[number]
+    for option in ("--adapt", "--no-adapt"):
+        ask("relight", wood, "--light", "HP1", option, "-o", f"{option[2:]}.png")
+    assert (home / "adapt.png").read_bytes() != (home / "no-adapt.png").read_bytes()
 
 
 def test_bad_input_is_refused(refuse, misuse, home, wood):

@@ -1,5 +1,6 @@
 """Relit colours: laws, a plain counterpart that integrates spectra, and measured atlas entries."""
 
+import colour
 import numpy as np
 import pytest
 
@@ -60,6 +61,29 @@ def test_atlas_entries_are_relit_as_measured_where_products_fail(macbeth_cube):
         products = delta_e_rgb(rendering.sensor, truth, rendering.colours[RGB_PRODUCT])
         assert spectra.max() < bounds[0]
         assert products.mean() > bounds[1]
+
+
+def test_the_white_of_a_light_is_white_or_has_its_tint(relit, picture):
+    assert (picture[-1] == 1).all()
+    for rendering in relit.renderings:
+        for method in relit.methods:
+            assert rendering.screen_codes(method, balanced=True)[-1] == pytest.approx(255, abs=1)
+            x, y, z = light(rendering.light).white
+            tint = colour.XYZ_to_sRGB([x, y, z], apply_cctf_encoding=False)
+            expected = 255 * colour.cctf_encoding(np.clip(tint / tint.max(), 0, 1), function="sRGB")
+            codes = rendering.screen_codes(method, balanced=False)[-1]
+            np.testing.assert_allclose(codes, np.broadcast_to(expected, (3, 3)), atol=1.5)
+
+
+@pytest.mark.parametrize(
+    ("lamp", "white"),
+    [("D65", 1), ("A", 1), ("FL2", 1), ("LED-B3", 1), ("LED-RGB1", 1), ("2700K", 1), ("HP1", 0), ("1900K", 0)],
+)
+def test_lamps_look_white_but_sodium_and_candles_do_not(lamp, white, small_cube):
+    (rendering,) = relight("grey", np.full((1, 1, 3), 0.5, np.float32), {"a": small_cube}, (lamp,)).renderings
+    assert rendering.looks_white is bool(white)
+    assert rendering.is_balanced(None) is bool(white)
+    assert [rendering.is_balanced(adapt) for adapt in (True, False)] == [True, False]
 
 
 def test_cubes_of_other_spaces_are_refused(picture, small_cube, plain_cube):

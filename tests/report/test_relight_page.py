@@ -7,7 +7,7 @@ from benchmarks.browser import browser
 from tests.browsing import check_page
 from tests.pages import Page
 from tests.parts import CHROMIUM, need
-from uplift.report.relight import relight, relit_page
+from uplift.report.relight import map_limit, relight, relit_page
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def page(relit, tmp_path_factory):
 def test_the_page_is_well_formed_and_holds_its_images(page):
     found = Page(page.read_text(encoding="utf-8"))
     sources = [value for name, value in found.attributes if name == "src"]
-    assert len(sources) == 2 * (1 + 3 * (3 + 3))  # images, original, lights, methods and pairs of them
+    assert len(sources) == 2 * (1 + 3 * (2 * 3 + 3))  # images, original, lights, methods twice and pairs of them
     assert all(source.startswith("data:image/") for source in sources)
     assert all(text for name, text in found.attributes if name == "alt")
     assert "a & b.png" in found.text
@@ -49,6 +49,8 @@ def tab(page):
 VISIBLE = """[...document.querySelector(".view").querySelectorAll("img")]
   .filter(image => getComputedStyle(image).display !== "none")
   .map(image => [image.dataset.light, image.dataset.shows])"""
+BALANCED = """[balance.checked, ...new Set([...document.querySelectorAll("img.first, img.second")]
+  .map(image => image.dataset.balanced === "true"))]"""
 SPLIT = 'getComputedStyle(document.querySelector(".view")).getPropertyValue("--split")'
 CHOOSE = """(() => {
   const form = document.querySelector(".choices");
@@ -78,6 +80,26 @@ def test_the_page_opens_where_the_difference_is_largest_and_choices_change_the_l
     choose(tab, 1, 3, 2, True)  # the original has no light and no map
     assert sorted(tab.evaluate(VISIBLE)) == [["", "3"], ["1", "2"]]
     assert tab.errors == []
+
+
+def test_each_light_keeps_its_white_balance_as_the_switch_was_left(tab):
+    choose(tab, 2, 0, 2, False)
+    assert tab.evaluate(BALANCED) == [False, False]  # a sodium lamp does not look white
+    tab.evaluate("balance.focus()")
+    tab.key(" ")
+    assert tab.evaluate(BALANCED) == [True, True]
+    choose(tab, 1, 0, 2, False)
+    assert tab.evaluate(BALANCED) == [True, True]
+    tab.evaluate("balance.click()")
+    assert tab.evaluate(BALANCED) == [False, False]
+    choose(tab, 2, 0, 2, False)
+    assert tab.evaluate(BALANCED) == [True, True]
+
+
+def test_maps_of_a_page_have_one_scale(relit, page):
+    limit = map_limit([relit])
+    assert limit >= np.quantile(relit.renderings[2].differences[relit.shown_pair], 0.95)
+    assert f">{limit} and more<" in page.read_text(encoding="utf-8")
 
 
 def test_the_line_moves_by_key_and_by_mouse(tab):
