@@ -27,6 +27,9 @@ OF_SURFACES = {"type": "direct", "bsdf_samples": 1, "emitter_samples": 0}
 """Integrator for uniform illumination, where only the wavelengths are random."""
 CIE_Y_INTEGRAL = 106.856895
 """Mitsuba divides by it, so that a constant radiance of 1 has Y = 1."""
+DPI = 160
+Place = tuple[slice, slice]
+"""Rows and columns of a part of a picture."""
 Reflectances = list[dict[str, Any]]
 """Textures of Mitsuba for the patches."""
 
@@ -73,10 +76,19 @@ class Layout:
             for column in range(COLUMNS):
                 yield self.gap + column * pitch, self.gap + row * pitch
 
-    def patches(self, inset: int = 0) -> Iterator[tuple[slice, slice]]:
+    def patches(self, inset: int = 0) -> Iterator[Place]:
         """Yield the rows and columns of each patch, without ``inset`` pixels along its edges."""
         for x, y in self.corners():
             yield slice(y + inset, y + self.patch - inset), slice(x + inset, x + self.patch - inset)
+
+    def middles(self) -> list[Place]:
+        """Return the rows and columns of a square in the middle of each patch."""
+        return list(self.patches(round(INSET * self.patch)))
+
+    def halves(self) -> list[Place]:
+        """Return the rows and columns of the left half of each patch."""
+        width = self.patch // 2
+        return [(rows, slice(columns.start, columns.start + width)) for rows, columns in self.patches()]
 
     def means(self, image: Array) -> Array:
         """(24, K) mean of each patch in an image (height, width, K)."""
@@ -88,20 +100,21 @@ def draw(
     captions: Mapping[tuple[str, str], str],
     to_screen: Mapping[str, Array],
     methods: Sequence[str],
-    layout: Layout,
+    reference: Sequence[Place],
     path: Path,
     size: tuple[float, float],
 ) -> None:
-    """Draw XYZ ``images`` by row and method; the first method is the reference, shown inside the patches of all.
+    """Draw XYZ ``images`` by row and method; the first method is shown in the places ``reference`` of all.
 
     ``to_screen`` has the matrices (3, 3) from XYZ to linear sRGB by row.
     """
     figure = new_figure(*size)
+    figure.set_dpi(DPI)
     grid = figure.subplots(len(to_screen), len(methods), squeeze=False)
     for row, (name, matrix) in enumerate(to_screen.items()):
         for column, method in enumerate(methods):
             axes, image = grid[row, column], images[name, method].copy()
-            for place in layout.patches(round(INSET * layout.patch)):
+            for place in reference:
                 image[place] = images[name, methods[0]][place]
             height, width, _ = image.shape
             # Means of 2 × 2 pixels halve the noise.

@@ -63,7 +63,9 @@ def main() -> None:
     captions |= {(name, REFERENCE): "" for name in LIGHTS}
     to_screen = {name: sensor(illuminant=name).xyz_to_rgb for name in LIGHTS}
     picture = DOCS / "render" / "charts.png"
-    checker.draw(renders.images, captions, to_screen, (REFERENCE, MITSUBA, ATLAS), LAYOUT, picture, (10.5, 7.6))
+    checker.draw(
+        renders.images, captions, to_screen, (REFERENCE, MITSUBA, ATLAS), LAYOUT.middles(), picture, (10.5, 7.6)
+    )
     record(
         "render",
         mitsuba=version,

@@ -38,6 +38,7 @@ MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
 FILM_LIGHT, FILM_SIZE = "D55", (11.2, 2.9)
 LAYOUT = Layout(patch=32, gap=4)
 SIZE = (11.2, 5.2)
+TRUTH_LIGHTS, TRUTH_SIZE = RELIGHT_LIGHTS[:2], (9.2, 4.7)
 JPEG_WIDTH, JPEG_QUALITY = 1500, 88
 DIM = 32
 SESSION = (
@@ -50,7 +51,7 @@ SESSION = (
 
 
 def main() -> None:
-    """Draw both pictures and store the numbers of the first."""
+    """Draw the pictures and store the numbers of the charts."""
     FOLDER.mkdir(exist_ok=True)
     lamps = [light(name) for name in RELIGHT_LIGHTS]
     methods, inside = colours(lamps)
@@ -74,6 +75,7 @@ def main() -> None:
                     lamp.name: {
                         "all": float(errors[lamp.name, name].mean()),
                         "inside": float(errors[lamp.name, name][inside].mean()),
+                        "largest": float(errors[lamp.name, name].max()),
                     }
                     for lamp in lamps
                 },
@@ -112,7 +114,7 @@ def colours(lamps: list[Light]) -> tuple[list[dict[str, Array]], Array]:
 
 
 def draw_charts(lamps: list[Light], methods: list[dict[str, Array]], errors: dict[tuple[str, str], Array]) -> None:
-    """Draw the charts; the squares inside the patches are the measured colours."""
+    """Draw charts by all methods with measured squares, and by two, whose patches have a measured left half."""
     width, height = LAYOUT.size
     images = {}
     captions = {}
@@ -123,10 +125,14 @@ def draw_charts(lamps: list[Light], methods: list[dict[str, Array]], errors: dic
             for place, colour in zip(LAYOUT.patches(), xyz, strict=True):
                 image[place] = colour
             images[lamp.name, name] = image
-            mean = errors[lamp.name, name].mean()
-            captions[lamp.name, name] = row if name == MEASURED else f"mean ΔE00 {mean:.1f}"
+            delta_e = errors[lamp.name, name]
+            text = f"mean ΔE00 {delta_e.mean():.1f}, largest {delta_e.max():.1f}"
+            captions[lamp.name, name] = row if name == MEASURED else text
     to_screen = {lamp.name: sensor(illuminant=lamp.name).xyz_to_rgb for lamp in lamps}
-    draw(images, captions, to_screen, tuple(methods[0]), LAYOUT, FOLDER / "charts.png", SIZE)
+    draw(images, captions, to_screen, tuple(methods[0]), LAYOUT.middles(), FOLDER / "charts.png", SIZE)
+    shown = {name: to_screen[name] for name in TRUTH_LIGHTS}
+    truth = FOLDER / "truth.png"
+    draw(images, captions, shown, (MEASURED, PRODUCT, ATLAS), LAYOUT.halves(), truth, TRUTH_SIZE)
 
 
 def draw_still_life() -> None:
