@@ -11,6 +11,7 @@ from benchmarks import MACBETH
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.lights import DESCRIPTIONS
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
@@ -97,16 +98,16 @@ class Layout:
 
 def draw(
     images: Mapping[tuple[str, str], Array],
-    captions: Mapping[tuple[str, str], str],
+    delta_e: Mapping[tuple[str, str], Array],
     to_screen: Mapping[str, Array],
     methods: Sequence[str],
     reference: Sequence[Place],
     path: Path,
     size: tuple[float, float],
 ) -> None:
-    """Draw XYZ ``images`` by row and method; the first method is shown in the places ``reference`` of all.
+    """Draw XYZ ``images`` by light and method; the first method is shown in the places ``reference`` of all.
 
-    ``to_screen`` has the matrices (3, 3) from XYZ to linear sRGB by row.
+    ``delta_e`` has the errors of the patches, ``to_screen`` the matrices (3, 3) from XYZ to linear sRGB by light.
     """
     figure = new_figure(*size)
     figure.set_dpi(DPI)
@@ -120,11 +121,14 @@ def draw(
             # Means of 2 × 2 pixels halve the noise.
             binned = image.reshape(height // 2, 2, width // 2, 2, 3).mean(axis=(1, 3))
             show_image(axes, to_display_codes(binned @ matrix.T, SRGB).astype(np.uint8), interpolation="nearest")
-            axes.set_xlabel(captions[name, method], fontsize=9, color="0.3")
+            if column:
+                errors = delta_e[name, method]
+                text = f"mean ΔE00 {errors.mean():.1f}, largest {errors.max():.1f}"
+                axes.set_xlabel(text, fontsize=9, color="0.3")
             if row == 0:
                 axes.set_title(method, fontsize=11, pad=8)
             if column == 0:
-                axes.set_ylabel(name, fontsize=11, labelpad=8)
+                axes.set_ylabel(f"{name}\n{DESCRIPTIONS[name]}", fontsize=9, labelpad=8)
     write_png(figure, path, force=True)
 
 

@@ -10,7 +10,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import light, sensor
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import OptionError
-from uplift.report.relight import RGB_PRODUCT, relight
+from uplift.report.relight import RGB_PRODUCT, relight, write_relit_sheet
 
 LIGHTS = ("D65", "A", "FL11", "HP1")
 
@@ -75,15 +75,17 @@ def test_the_white_of_a_light_is_white_or_has_its_tint(relit, picture):
             np.testing.assert_allclose(codes, np.broadcast_to(expected, (3, 3)), atol=1.5)
 
 
-@pytest.mark.parametrize(
-    ("lamp", "white"),
-    [("D65", 1), ("A", 1), ("FL2", 1), ("LED-B3", 1), ("LED-RGB1", 1), ("2700K", 1), ("HP1", 0), ("1900K", 0)],
-)
-def test_lamps_look_white_but_sodium_and_candles_do_not(lamp, white, small_cube):
-    (rendering,) = relight("grey", np.full((1, 1, 3), 0.5, np.float32), {"a": small_cube}, (lamp,)).renderings
-    assert rendering.looks_white is bool(white)
-    assert rendering.is_balanced(None) is bool(white)
-    assert [rendering.is_balanced(adapt) for adapt in (True, False)] == [True, False]
+def test_lamps_look_white_but_sodium_and_candles_do_not(small_cube):
+    white = ("D65", "A", "FL2", "LED-B3", "LED-RGB1", "2700K")
+    relit = relight("grey", np.full((1, 1, 3), 0.5, np.float32), {"a": small_cube}, (*white, "HP1", "1900K"))
+    looks = {rendering.light for rendering in relit.renderings if rendering.is_balanced(None)}
+    assert looks == set(white)
+
+
+def test_a_sheet_shows_lights_as_told(relit, tmp_path):
+    for adapt in (None, True, False):
+        write_relit_sheet([relit], tmp_path / f"{adapt}.png", adapt=adapt)
+    assert len({path.read_bytes() for path in tmp_path.iterdir()}) == 3
 
 
 def test_cubes_of_other_spaces_are_refused(picture, small_cube, plain_cube):

@@ -1,5 +1,7 @@
 """Relit images as pictures and as a page, in Chromium too."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -52,20 +54,16 @@ VISIBLE = """[...document.querySelector(".view").querySelectorAll("img")]
 BALANCED = """[balance.checked, ...new Set([...document.querySelectorAll("img.first, img.second")]
   .map(image => image.dataset.balanced === "true"))]"""
 SPLIT = 'getComputedStyle(document.querySelector(".view")).getPropertyValue("--split")'
-CHOOSE = """(() => {
+CHOOSE = """((light, left, right, asMap) => {
   const form = document.querySelector(".choices");
-  form.elements.light.value = "LIGHT";
-  first.value = "FIRST"; second.value = "SECOND"; map.checked = MAP;
+  form.elements.light.value = light;
+  first.value = left; second.value = right; map.checked = asMap;
   form.dispatchEvent(new Event("change"));
-})()"""
+})"""
 
 
-def choose(tab, light, first, second, as_map):
-    values = {"LIGHT": light, "FIRST": first, "SECOND": second, "MAP": str(as_map).lower()}
-    code = CHOOSE
-    for name, value in values.items():
-        code = code.replace(name, str(value))
-    tab.evaluate(code)
+def choose(tab, *choices):
+    tab.evaluate(f"{CHOOSE}(...{json.dumps(choices)})")
 
 
 def test_the_page_opens_where_the_difference_is_largest_and_choices_change_the_layers(tab):
