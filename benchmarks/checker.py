@@ -91,6 +91,14 @@ class Layout:
         width = self.patch // 2
         return [(rows, slice(columns.start, columns.start + width)) for rows, columns in self.patches()]
 
+    def paint(self, colours: Array, background: Array) -> Array:
+        """Return an image (height, width, 3) of patches (24, 3) before a background (3,)."""
+        width, height = self.size
+        image = np.tile(background, (height, width, 1))
+        for place, colour in zip(self.patches(), colours, strict=True):
+            image[place] = colour
+        return image
+
     def means(self, image: Array) -> Array:
         """(24, K) mean of each patch in an image (height, width, K)."""
         return np.array([image[place].mean(axis=(0, 1)) for place in self.patches()])
