@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,7 @@ from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
     from uplift.lookup import Cube
+    from uplift.report.relight import Relit
 
 SAMPLE, SAMPLE_ATLAS = "still-life.png", "macbeth"
 PAGE, IMAGE = ".html", ".exr"
@@ -80,8 +82,7 @@ def command(
     from uplift.common.files import check_output, write_text
     from uplift.io import texture
     from uplift.lookup import load
-    from uplift.report.measures import mean_p95_max
-    from uplift.report.relight import RGB_PRODUCT, relight, relit_page, write_relit_sheet
+    from uplift.report.relight import relight, relit_page, write_relit_sheet
     from uplift.samples import sample_path
     from uplift.viz.figure import SUFFIXES, check_suffix
 
@@ -104,9 +105,9 @@ def command(
         files = files or (SAMPLE_ATLAS,)
     lights = lights or RELIGHT_LIGHTS
     if suffix == IMAGE:
+        balanced = adapt is not False
         with progress_bar("computing spectra") as progress:
             cube = _cube_of_user(cube_path, files) or load()
-            balanced = adapt is not False
             converter = texture.prepare_relighter(cube, lights, adapt=balanced, threads=os.cpu_count() or 1, **pixels)
             conversion = texture.convert(converter, paths[0], output, force=force, progress=progress)
         warn(conversion.warnings)
@@ -118,17 +119,30 @@ def command(
         return
     with progress_bar("computing spectra"):
         cubes = {SPECTRAL: load()}
-        if (own := _cube_of_user(cube_path, files)) is not None:
-            cubes[f"{SPECTRAL} with {', '.join(Path(each).stem for each in files or [cube_path or ''])}"] = own
-        relit = [
-            relight(Path(path).name, each.rgb, cubes, lights, opacity=each.opacity, reduction=each.reduction)
-            for path, each in zip(paths, read_pictures(paths, cubes[SPECTRAL].data.sensor, **pixels), strict=True)
-        ]
+        pictures = read_pictures(paths, cubes[SPECTRAL].data.sensor, **pixels)
+        extra = _cube_of_user(cube_path, files)
+        if extra is not None:
+            stems = [Path(path).stem for path in files or [cube_path or ""]]
+            cubes[f"{SPECTRAL} with {', '.join(stems)}"] = extra
+        relit = []
+        for path, picture in zip(paths, pictures, strict=True):
+            image = relight(
+                Path(path).name, picture.rgb, cubes, lights, opacity=picture.opacity, reduction=picture.reduction
+            )
+            relit.append(image)
         if suffix == PAGE:
             write_text(relit_page(relit, adapt=adapt), output, force=force)
         else:
             write_relit_sheet(relit, output, adapt=adapt, force=force)
-    rows = []  # ΔE00 of every method from the products of RGB
+    _print_differences(relit, output, style)
+
+
+def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:
+    """Print ΔE00 of every method from the products of RGB."""
+    from uplift.report.measures import mean_p95_max
+    from uplift.report.relight import RGB_PRODUCT
+
+    rows = []
     for image in relit:
         for rendering in image.renderings:
             for spectra in image.methods[1:]:
@@ -139,10 +153,10 @@ def command(
         return
     table = make_table(("image", "light", "spectra"), ("mean ΔE00", "95 %", "largest"))
     for row in rows:
-        table.add_row(*(each if isinstance(each, str) else f"{each:.2f}" for each in row.values()))
+        table.add_row(*(cell if isinstance(cell, str) else f"{cell:.2f}" for cell in row.values()))
     show(table)
     names = ", ".join(image.name for image in relit)
-    say(f"{output}: {names} under {', '.join(each.light for each in relit[0].renderings)}")
+    say(f"{output}: {names} under {', '.join(rendering.light for rendering in relit[0].renderings)}")
 
 
 def _cube_of_user(path: str | None, atlases: tuple[str, ...]) -> Cube | None:

@@ -1,8 +1,5 @@
 """``uplift relight`` and ``uplift samples``."""
 
-import json
-import re
-
 import numpy as np
 import OpenEXR
 import pytest
@@ -43,13 +40,10 @@ def test_an_image_of_full_size_has_a_layer_for_each_further_light(ask, misuse, h
     assert "one by one" in misuse("relight", wood, wood, "-o", "both.exr")
 
 
-@pytest.mark.parametrize(
-    ("option", "balanced"), [([], [True, False]), (["--adapt"], [True, True]), (["--no-adapt"], [False, False])]
-)
+@pytest.mark.parametrize(("option", "balanced"), [("--adapt", "[true, true]"), ("--no-adapt", "[false, false]")])
 def test_lights_are_shown_white_or_tinted(ask, home, wood, option, balanced):
-    ask("relight", wood, "--light", "A", "--light", "HP1", *option, "-o", "relit.html")
-    page = (home / "relit.html").read_text(encoding="utf-8")
-    assert json.loads(re.search(r'id="balanced">(.*?)<', page)[1]) == balanced
+    ask("relight", wood, "--light", "A", "--light", "HP1", option, "-o", "relit.html")
+    assert f'id="balanced">{balanced}<' in (home / "relit.html").read_text(encoding="utf-8")
 
 
 def test_bad_input_is_refused(refuse, misuse, home, wood):

@@ -43,6 +43,6 @@ def test_the_tint_of_a_light_is_kept_on_request(small_cube, colours, tmp_path):
     source = write_exr(tmp_path / "in.exr", planes(colours))
     relighter = texture.prepare_relighter(small_cube, ("A",), adapt=False, threads=1)
     texture.convert(relighter, source, tmp_path / "out.exr")
-    lit = observer.sensor("sRGB", "A")
-    expected = lit.xyz(lit.rgb(small_cube.reflectance(colours))) @ small_cube.data.sensor.xyz_to_rgb.T
+    xyz = small_cube.reflectance(colours) @ observer.light("A").xyz.T
+    expected = xyz @ small_cube.data.sensor.xyz_to_rgb.T
     np.testing.assert_allclose(read_channels(tmp_path / "out.exr", "RGB"), expected, rtol=1e-3, atol=1e-3)
