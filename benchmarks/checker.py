@@ -11,6 +11,7 @@ from benchmarks import MACBETH
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import SRGB
+from uplift.colorimetry.lights import DESCRIPTIONS
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array
@@ -27,6 +28,9 @@ OF_SURFACES = {"type": "direct", "bsdf_samples": 1, "emitter_samples": 0}
 """Integrator for uniform illumination, where only the wavelengths are random."""
 CIE_Y_INTEGRAL = 106.856895
 """Mitsuba divides by it, so that a constant radiance of 1 has Y = 1."""
+DPI = 160
+Place = tuple[slice, slice]
+"""Rows and columns of a part of a picture."""
 Reflectances = list[dict[str, Any]]
 """Textures of Mitsuba for the patches."""
 
@@ -73,10 +77,27 @@ class Layout:
             for column in range(COLUMNS):
                 yield self.gap + column * pitch, self.gap + row * pitch
 
-    def patches(self, inset: int = 0) -> Iterator[tuple[slice, slice]]:
+    def patches(self, inset: int = 0) -> Iterator[Place]:
         """Yield the rows and columns of each patch, without ``inset`` pixels along its edges."""
         for x, y in self.corners():
             yield slice(y + inset, y + self.patch - inset), slice(x + inset, x + self.patch - inset)
+
+    def middles(self) -> list[Place]:
+        """Return the rows and columns of a square in the middle of each patch."""
+        return list(self.patches(round(INSET * self.patch)))
+
+    def halves(self) -> list[Place]:
+        """Return the rows and columns of the left half of each patch."""
+        width = self.patch // 2
+        return [(rows, slice(columns.start, columns.start + width)) for rows, columns in self.patches()]
+
+    def paint(self, colours: Array, background: Array) -> Array:
+        """Return an image (height, width, 3) of patches (24, 3) before a background (3,)."""
+        width, height = self.size
+        image = np.tile(background, (height, width, 1))
+        for place, colour in zip(self.patches(), colours, strict=True):
+            image[place] = colour
+        return image
 
     def means(self, image: Array) -> Array:
         """(24, K) mean of each patch in an image (height, width, K)."""
@@ -85,33 +106,37 @@ class Layout:
 
 def draw(
     images: Mapping[tuple[str, str], Array],
-    captions: Mapping[tuple[str, str], str],
+    delta_e: Mapping[tuple[str, str], Array],
     to_screen: Mapping[str, Array],
     methods: Sequence[str],
-    layout: Layout,
+    reference: Sequence[Place],
     path: Path,
     size: tuple[float, float],
 ) -> None:
-    """Draw XYZ ``images`` by row and method; the first method is the reference, shown inside the patches of all.
+    """Draw XYZ ``images`` by light and method; the first method is shown in the places ``reference`` of all.
 
-    ``to_screen`` has the matrices (3, 3) from XYZ to linear sRGB by row.
+    ``delta_e`` has the errors of the patches, ``to_screen`` the matrices (3, 3) from XYZ to linear sRGB by light.
     """
     figure = new_figure(*size)
+    figure.set_dpi(DPI)
     grid = figure.subplots(len(to_screen), len(methods), squeeze=False)
     for row, (name, matrix) in enumerate(to_screen.items()):
         for column, method in enumerate(methods):
             axes, image = grid[row, column], images[name, method].copy()
-            for place in layout.patches(round(INSET * layout.patch)):
+            for place in reference:
                 image[place] = images[name, methods[0]][place]
             height, width, _ = image.shape
             # Means of 2 × 2 pixels halve the noise.
             binned = image.reshape(height // 2, 2, width // 2, 2, 3).mean(axis=(1, 3))
             show_image(axes, to_display_codes(binned @ matrix.T, SRGB).astype(np.uint8), interpolation="nearest")
-            axes.set_xlabel(captions[name, method], fontsize=9, color="0.3")
+            if column:
+                errors = delta_e[name, method]
+                text = f"mean ΔE00 {errors.mean():.1f}, largest {errors.max():.1f}"
+                axes.set_xlabel(text, fontsize=9, color="0.3")
             if row == 0:
                 axes.set_title(method, fontsize=11, pad=8)
             if column == 0:
-                axes.set_ylabel(name, fontsize=11, labelpad=8)
+                axes.set_ylabel(f"{name}\n{DESCRIPTIONS[name]}", fontsize=9, labelpad=8)
     write_png(figure, path, force=True)
 
 

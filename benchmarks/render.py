@@ -59,11 +59,10 @@ def main() -> None:
     version, painted = checker.start_mitsuba(), checker.chart()
     with tempfile.TemporaryDirectory() as folder:
         renders = render(methods(painted, Path(folder), DIM), LAYOUT, SPP)
-    captions = {key: f"mean ΔE00 {each.mean():.2f}, worst {each.max():.1f}" for key, each in renders.delta_e.items()}
-    captions |= {(name, REFERENCE): "" for name in LIGHTS}
     to_screen = {name: sensor(illuminant=name).xyz_to_rgb for name in LIGHTS}
     picture = DOCS / "render" / "charts.png"
-    checker.draw(renders.images, captions, to_screen, (REFERENCE, MITSUBA, ATLAS), LAYOUT, picture, (10.5, 7.6))
+    shown = (REFERENCE, MITSUBA, ATLAS)
+    checker.draw(renders.images, renders.delta_e, to_screen, shown, LAYOUT.middles(), picture, (10.5, 7.6))
     record(
         "render",
         mitsuba=version,

@@ -6,6 +6,7 @@ instead of rendered; docs/scene.md has renderings of the same chart, which agree
 
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -15,11 +16,10 @@ import uplift
 from benchmarks import DOCS, record
 from benchmarks.checker import BACKGROUND, Layout, chart, draw
 from tests.examples import build_wheel, run_lines, unpack
-from uplift.colorimetry import Light, delta_e_2000, lab
-from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS
+from uplift.colorimetry import delta_e_2000, lab
+from uplift.colorimetry.lights import RELIGHT_LIGHTS
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, grid, illuminant_spd, light, matching_functions, sensor
 from uplift.colorimetry.srgb import encode
-from uplift.common.arrays import Array
 from uplift.io.export import write_film
 from uplift.io.export.film import CAT16, LAYER_WIDTH, LAYERS
 from uplift.lab.chart import mitsuba3
@@ -28,16 +28,18 @@ from uplift.samples import sample_path
 from uplift.viz.figure import new_figure, show_image, write_png
 
 FOLDER = DOCS / "showcase"
-MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
+METHODS = MEASURED, PRODUCT, MITSUBA, PLAIN, ATLAS = (
     "measured",
     "RGB × light",
     "Mitsuba 3",
     "uplift, no atlas",
     "uplift, with the chart",
 )
+Cubes = dict[str, uplift.Cube]
 FILM_LIGHT, FILM_SIZE = "D55", (11.2, 2.9)
 LAYOUT = Layout(patch=32, gap=4)
 SIZE = (11.2, 5.2)
+TRUTH_LIGHTS, TRUTH_SIZE = RELIGHT_LIGHTS[:2], (7.4, 3.8)
 JPEG_WIDTH, JPEG_QUALITY = 1500, 88
 DIM = 32
 SESSION = (
@@ -51,37 +53,13 @@ SESSION = (
 
 
 def main() -> None:
-    """Draw the charts, the still life and the film, and store the numbers of the charts and of the film."""
+    """Draw the charts, the still life and the film, and store the errors of the charts."""
     FOLDER.mkdir(exist_ok=True)
-    lamps = [light(name) for name in RELIGHT_LIGHTS]
-    methods, inside = colours(lamps)
-    errors = {
-        (lamp.name, name): delta_e_2000(lab(values[MEASURED], lamp.white), lab(values[name], lamp.white))
-        for lamp, values in zip(lamps, methods, strict=True)
-        for name in values
-    }
-    draw_charts(lamps, methods, errors)
-    draw_still_life()
-    expose_film()
-    record(
-        "showcase",
-        session=session(),
-        dim=DIM,
-        lights=[{"light": lamp.name, "what": DESCRIPTIONS[lamp.name]} for lamp in lamps],
-        means=[
-            {
-                "method": name,
-                **{
-                    lamp.name: {
-                        "all": float(errors[lamp.name, name].mean()),
-                        "inside": float(errors[lamp.name, name][inside].mean()),
-                    }
-                    for lamp in lamps
-                },
-            }
-            for name in (PRODUCT, MITSUBA, PLAIN, ATLAS)
-        ],
-    )
+    cubes = {PLAIN: uplift.load(), ATLAS: uplift.build("macbeth", dim=DIM)}
+    means = draw_charts(cubes)
+    draw_still_life(cubes)
+    expose_film(cubes)
+    record("showcase", session=session(), dim=DIM, means=means)
 
 
 def session() -> list[dict[str, str]]:
@@ -97,51 +75,45 @@ def session() -> list[dict[str, str]]:
     return [{"command": line, "output": output.strip("\n")} for line, output in zip(SESSION, outputs, strict=True)]
 
 
-def colours(lamps: list[Light]) -> tuple[list[dict[str, Array]], Array]:
-    """Return XYZ (24, 3) of the patches by method for each lamp, and which patches lie inside sRGB."""
-    painted = chart()
-    cube = uplift.build("macbeth", dim=DIM)
-    srgb = cube.data.sensor
+def draw_charts(cubes: Cubes) -> list[dict[str, Any]]:
+    """Draw the chart by all methods, and by two; return the errors by method and light.
+
+    Patches have a measured square by all methods, and a measured left half by two.
+    """
+    painted, srgb = chart(), sensor()
     spectra = {
         MEASURED: painted.measured,
         MITSUBA: mitsuba3.spectra(painted.painted, painted.wavelengths),
-        PLAIN: uplift.load().reflectance(painted.painted),
-        ATLAS: cube.reflectance(painted.painted),
+        **{name: cube.reflectance(painted.painted) for name, cube in cubes.items()},
     }
-    found = []
-    for lamp in lamps:
+    images, errors, to_screen = {}, {}, {}
+    rows: dict[str, dict[str, Any]] = {name: {"method": name} for name in METHODS}
+    for lamp in map(light, RELIGHT_LIGHTS):
+        to_screen[lamp.name] = sensor(illuminant=lamp.name).xyz_to_rgb
         xyz = {name: values @ lamp.xyz.T for name, values in spectra.items()}
-        product = painted.painted * (srgb.xyz_to_rgb @ lamp.white)
-        found.append({MEASURED: xyz.pop(MEASURED), PRODUCT: srgb.xyz(product), **xyz})
-    return found, ~painted.outside
+        xyz[PRODUCT] = srgb.xyz(painted.painted * (srgb.xyz_to_rgb @ lamp.white))
+        truth = lab(xyz[MEASURED], lamp.white)
+        for name in METHODS:
+            delta_e = delta_e_2000(truth, lab(xyz[name], lamp.white))
+            inside = delta_e[~painted.outside]
+            rows[name][lamp.name] = {"all": delta_e.mean(), "inside": inside.mean(), "largest": delta_e.max()}
+            errors[lamp.name, name] = delta_e
+            images[lamp.name, name] = LAYOUT.paint(xyz[name], BACKGROUND * lamp.white)
+    draw(images, errors, to_screen, METHODS, LAYOUT.middles(), FOLDER / "charts.png", SIZE)
+    shown = {name: to_screen[name] for name in TRUTH_LIGHTS}
+    picture = FOLDER / "truth.png"
+    draw(images, errors, shown, (MEASURED, PRODUCT, ATLAS), LAYOUT.halves(), picture, TRUTH_SIZE)
+    return [rows[name] for name in METHODS[1:]]
 
 
-def draw_charts(lamps: list[Light], methods: list[dict[str, Array]], errors: dict[tuple[str, str], Array]) -> None:
-    """Draw the charts; the squares inside the patches are the measured colours."""
-    width, height = LAYOUT.size
-    images = {}
-    captions = {}
-    for lamp, values in zip(lamps, methods, strict=True):
-        row = f"{lamp.name}, {DESCRIPTIONS[lamp.name]}"
-        for name, xyz in values.items():
-            image = np.full((height, width, 3), BACKGROUND) * lamp.white
-            for place, colour in zip(LAYOUT.patches(), xyz, strict=True):
-                image[place] = colour
-            images[lamp.name, name] = image
-            mean = errors[lamp.name, name].mean()
-            captions[lamp.name, name] = row if name == MEASURED else f"mean ΔE00 {mean:.1f}"
-    to_screen = {lamp.name: sensor(illuminant=lamp.name).xyz_to_rgb for lamp in lamps}
-    draw(images, captions, to_screen, tuple(methods[0]), LAYOUT, FOLDER / "charts.png", SIZE)
-
-
-def draw_still_life() -> None:
+def draw_still_life(cubes: Cubes) -> None:
     """Draw what ``uplift relight`` shows, as JPEG."""
     from uplift.io.texture.picture import read_picture
 
-    cubes = {"spectral": uplift.load(), "spectral with macbeth": uplift.build("macbeth", dim=DIM)}
     path = sample_path("still-life.png")
-    picture = read_picture(path, cubes["spectral with macbeth"].data.sensor, max_side=960)
-    relit = relight(path.name, picture.rgb, cubes)
+    picture = read_picture(path, sensor(), max_side=960)
+    shown = {"spectral": cubes[PLAIN], "spectral with macbeth": cubes[ATLAS]}
+    relit = relight(path.name, picture.rgb, shown)
     with tempfile.TemporaryDirectory() as folder:
         png = Path(folder) / "relit.png"
         write_relit_sheet([relit], png)
@@ -151,13 +123,13 @@ def draw_still_life() -> None:
     small.save(FOLDER / "relit.jpg", quality=JPEG_QUALITY, subsampling=0)
 
 
-def expose_film() -> None:
+def expose_film(cubes: Cubes) -> None:
     """Expose the chart on a film by tables, draw the layers as red, green and blue, and store the errors in stops."""
     painted, daylight, luminous = chart(), light(FILM_LIGHT), matching_functions(DEFAULT_OBSERVER)[:, 1]
     power = illuminant_spd(FILM_LIGHT) / (illuminant_spd(FILM_LIGHT) @ luminous / luminous.sum())
     layers = np.exp(-0.5 * ((grid()[:, None] - LAYERS[::-1]) / LAYER_WIDTH) ** 2)
     exposures, figures = {MEASURED: painted.measured * power @ layers}, {}
-    for name, cube in ((PLAIN, uplift.load()), (ATLAS, uplift.build("macbeth", dim=DIM))):
+    for name, cube in cubes.items():
         with tempfile.TemporaryDirectory() as folder:
             stated = write_film(cube, Path(folder) / "film.npy", light=FILM_LIGHT).stops
             table = np.load(Path(folder) / "film.npy").astype(float) @ layers
@@ -172,9 +144,8 @@ def expose_film() -> None:
         figures[name] = {"stated": stated, "mean": stops.mean(), "largest": stops.max(), "patches": stops.tolist()}
     figure = new_figure(*FILM_SIZE)
     for axes, (name, exposure) in zip(figure.subplots(1, len(exposures)), exposures.items(), strict=True):
-        image = np.full((*LAYOUT.size[::-1], 3), BACKGROUND)
+        image = LAYOUT.paint(exposure / (power @ layers), np.full(3, BACKGROUND))
         for number, place in enumerate(LAYOUT.patches()):
-            image[place] = exposure[number] / (power @ layers)
             if name in figures:
                 corner, dark = (place[1].start + 2, place[0].stop - 3), image[place].mean() < 0.25
                 axes.text(*corner, f"{figures[name]['patches'][number]:.2f}", fontsize=8, color="w" if dark else "k")

@@ -305,6 +305,14 @@ depth = click.option(
     type=click.Choice(("half", "float")),
     help="16 or 32 bits per channel. [default: half for reflectances, else float]",
 )
+
+
+def adapt(default: str = "adapt") -> Decorator:
+    """``--adapt`` and ``--no-adapt``; ``default`` names what applies without them."""
+    text = f"Show the white of a light as white, or tinted. [default: {default}]"
+    return click.option("--adapt/--no-adapt", default=None, help=text)
+
+
 table = click.option(
     "--table",
     type=click.Choice(("header", "file")),

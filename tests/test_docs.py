@@ -10,7 +10,7 @@ from uplift_cli.main import COMMANDS, main
 import uplift
 from benchmarks.__main__ import pages
 from tests.conftest import ROOT
-from tests.examples import examples
+from tests.examples import BLOCKS, examples
 from tests.helpers import warns
 from tests.parts import MITSUBA, need
 
@@ -49,6 +49,12 @@ def test_links_resolve():
     for page in PAGES:
         for target in re.findall(r"\]\((?!http)([^)#]+)\)", page.read_text(encoding="utf-8")):
             assert (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+def test_a_block_has_one_way_to_install():
+    for page in PAGES:
+        for _, block in BLOCKS.findall(page.read_text("utf-8")):
+            assert block.count("pip install") <= 1, page.name
 
 
 def test_make_targets_exist():

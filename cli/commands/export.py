@@ -90,9 +90,7 @@ APPLIES = {
     help="Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier 33, film 192]",
 )
 @click.option("--light", metavar="NAME", help="Illuminant of a cube, clf or film table.")
-@click.option(
-    "--adapt/--no-adapt", default=None, help="Show the white of the light as white, or tinted. [default: adapt]"
-)
+@options.adapt()
 @click.option(
     "--mode",
     type=click.Choice(("spectra", "moments")),

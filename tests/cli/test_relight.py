@@ -42,6 +42,12 @@ def test_an_image_of_full_size_has_a_layer_for_each_further_light(ask, misuse, h
     assert "one by one" in misuse("relight", wood, wood, "-o", "both.exr")
 
 
+@pytest.mark.parametrize(("option", "balanced"), [("--adapt", "[true, true]"), ("--no-adapt", "[false, false]")])
+def test_lights_are_shown_white_or_tinted(ask, home, wood, option, balanced):
+    ask("relight", wood, "--light", "A", "--light", "HP1", option, "-o", "relit.html")
+    assert f'id="balanced">{balanced}<' in (home / "relit.html").read_text(encoding="utf-8")
+
+
 def test_bad_input_is_refused(refuse, misuse, home, wood):
     assert refuse("relight", "-o", "relit.gif").code == "output"
     assert refuse("relight", "none.png").code == "file-not-found"

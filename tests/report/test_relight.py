@@ -1,5 +1,6 @@
 """Relit colours: laws, a plain counterpart that integrates spectra, and measured atlas entries."""
 
+import colour
 import numpy as np
 import pytest
 
@@ -9,7 +10,7 @@ from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import light, sensor
 from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.errors import OptionError
-from uplift.report.relight import RGB_PRODUCT, relight
+from uplift.report.relight import RGB_PRODUCT, relight, write_relit_sheet
 
 LIGHTS = ("D65", "A", "FL11", "HP1")
 
@@ -60,6 +61,29 @@ def test_atlas_entries_are_relit_as_measured_where_products_fail(macbeth_cube):
         products = delta_e_rgb(rendering.sensor, truth, rendering.colours[RGB_PRODUCT])
         assert spectra.max() < bounds[0]
         assert products.mean() > bounds[1]
+
+
+def test_the_white_of_a_light_is_white_or_has_its_tint(relit):
+    for rendering in relit.renderings:
+        tint = colour.XYZ_to_sRGB(light(rendering.light).white, apply_cctf_encoding=False)
+        codes = 255 * colour.cctf_encoding(np.clip(tint / tint.max(), 0, 1), function="sRGB")
+        for method in relit.methods:
+            for balanced, expected in ((True, 255), (False, codes)):
+                white = rendering.screen_codes(method, balanced=balanced)[-1, 0]
+                np.testing.assert_allclose(white, expected, atol=1.5)
+
+
+def test_lamps_look_white_but_sodium_and_candles_do_not(small_cube):
+    white = ("D65", "A", "FL2", "LED-B3", "LED-RGB1", "2700K")
+    relit = relight("grey", np.full((1, 1, 3), 0.5, np.float32), {"a": small_cube}, (*white, "HP1", "1900K"))
+    looks = {rendering.light for rendering in relit.renderings if rendering.is_balanced(None)}
+    assert looks == set(white)
+
+
+def test_a_sheet_shows_lights_as_requested(relit, tmp_path):
+    for adapt in (None, True, False):
+        write_relit_sheet([relit], tmp_path / f"{adapt}.png", adapt=adapt)
+    assert len({path.read_bytes() for path in tmp_path.iterdir()}) == 3
 
 
 def test_cubes_of_other_spaces_are_refused(picture, small_cube, plain_cube):

@@ -1,5 +1,8 @@
 """Relit images as pictures and as a page, in Chromium too."""
 
+import json
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,7 +10,7 @@ from benchmarks.browser import browser
 from tests.browsing import check_page
 from tests.pages import Page
 from tests.parts import CHROMIUM, need
-from uplift.report.relight import relight, relit_page
+from uplift.report.relight import map_limit, relight, relit_page
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +30,7 @@ def page(relit, tmp_path_factory):
 def test_the_page_is_well_formed_and_holds_its_images(page):
     found = Page(page.read_text(encoding="utf-8"))
     sources = [value for name, value in found.attributes if name == "src"]
-    assert len(sources) == 2 * (1 + 3 * (3 + 3))  # images, original, lights, methods and pairs of them
+    assert len(sources) == 2 * (1 + 3 * (2 * 3 + 3))  # images, original, lights, methods twice and pairs of them
     assert all(source.startswith("data:image/") for source in sources)
     assert all(text for name, text in found.attributes if name == "alt")
     assert "a & b.png" in found.text
@@ -49,21 +52,18 @@ def tab(page):
 VISIBLE = """[...document.querySelector(".view").querySelectorAll("img")]
   .filter(image => getComputedStyle(image).display !== "none")
   .map(image => [image.dataset.light, image.dataset.shows])"""
+BALANCED = '[balance.checked, document.querySelector("img.first").dataset.balanced === "true"]'
 SPLIT = 'getComputedStyle(document.querySelector(".view")).getPropertyValue("--split")'
-CHOOSE = """(() => {
+CHOOSE = """((light, left, right, asMap) => {
   const form = document.querySelector(".choices");
-  form.elements.light.value = "LIGHT";
-  first.value = "FIRST"; second.value = "SECOND"; map.checked = MAP;
+  form.elements.light.value = light;
+  first.value = left; second.value = right; map.checked = asMap;
   form.dispatchEvent(new Event("change"));
-})()"""
+})"""
 
 
-def choose(tab, light, first, second, as_map):
-    values = {"LIGHT": light, "FIRST": first, "SECOND": second, "MAP": str(as_map).lower()}
-    code = CHOOSE
-    for name, value in values.items():
-        code = code.replace(name, str(value))
-    tab.evaluate(code)
+def choose(tab, *choices):
+    tab.evaluate(f"{CHOOSE}(...{json.dumps(choices)})")
 
 
 def test_the_page_opens_where_the_difference_is_largest_and_choices_change_the_layers(tab):
@@ -78,6 +78,24 @@ def test_the_page_opens_where_the_difference_is_largest_and_choices_change_the_l
     choose(tab, 1, 3, 2, True)  # the original has no light and no map
     assert sorted(tab.evaluate(VISIBLE)) == [["", "3"], ["1", "2"]]
     assert tab.errors == []
+
+
+def test_each_light_keeps_its_white_balance_as_the_switch_was_left(tab):
+    choose(tab, 2, 0, 2, False)
+    assert tab.evaluate(BALANCED) == [False, False]  # a sodium lamp does not look white
+    tab.evaluate("balance.focus()")
+    tab.key(" ")
+    assert tab.evaluate(BALANCED) == [True, True]
+    choose(tab, 1, 0, 2, False)
+    tab.evaluate("balance.click()")
+    choose(tab, 2, 0, 2, False)
+    assert tab.evaluate(BALANCED) == [True, True]
+
+
+def test_maps_of_a_page_have_one_scale(relit, page):
+    limits = [map_limit([replace(relit, renderings=(rendering,))]) for rendering in relit.renderings]
+    assert len(set(limits)) > 1
+    assert page.read_text(encoding="utf-8").count(f">{max(limits)} and more<") == 2
 
 
 def test_the_line_moves_by_key_and_by_mouse(tab):

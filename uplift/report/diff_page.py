@@ -61,7 +61,8 @@ def _map(values: Array, limit: float, label: str, picture: NDArray[np.uint8] | N
         if picture is not None:
             show_image(grid[0], picture, interpolation="antialiased")
         drawn = show_image(grid[-1], values, cmap=colour_map(), vmin=0, vmax=limit, interpolation="nearest")
-        bar = figure.colorbar(drawn, ax=list(grid), fraction=0.03, pad=0.015, label="ΔE00", extend="max")
+        style = {"fraction": 0.03, "pad": 0.015, "extend": "max"}
+        bar = figure.colorbar(drawn, ax=list(grid), label="ΔE00 between the cubes", **style)
         bar.outline.set_visible(False)
         grid[-1].set_facecolor(PALE)
         return to_page_svg(figure, label)

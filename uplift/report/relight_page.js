@@ -1,17 +1,21 @@
 // The layers of each picture lie on top of one another: two methods divided by a line, or the map of their difference.
-const limits = JSON.parse(document.getElementById("limits").textContent);
+const balanced = JSON.parse(document.getElementById("balanced").textContent);  // by light, as the switch was left
 const form = document.querySelector(".choices");
-const [first, second, map] = ["first", "second", "map"].map(id => document.getElementById(id));
+const [first, second, map, balance] = ["first", "second", "map", "balance"].map(id => document.getElementById(id));
 
-function choose() {
+function choose(event) {
   const light = form.elements.light.value;
+  if (event?.target === balance) balanced[light] = balance.checked;
+  balance.checked = balanced[light];
   const pair = [first.value, second.value].sort().join("-");
   const original = String(first.options.length - 1);
   const asMap = map.checked && first.value !== second.value && ![first.value, second.value].includes(original);
   for (const view of document.querySelectorAll(".view")) {
     view.classList.toggle("map", asMap);
     for (const layer of view.querySelectorAll("img")) {
-      const here = !layer.dataset.light || layer.dataset.light === light, shows = layer.dataset.shows;
+      const { shows } = layer.dataset;
+      const state = layer.dataset.balanced ?? String(balanced[light]);
+      const here = !layer.dataset.light || (layer.dataset.light === light && state === String(balanced[light]));
       layer.classList.toggle("first", here && !asMap && shows === first.value);
       layer.classList.toggle("second", here && !asMap && shows === second.value && shows !== first.value);
       layer.classList.toggle("shown", here && (asMap ? shows === pair : shows === first.value && shows === second.value));
@@ -21,7 +25,8 @@ function choose() {
     const figure = view.closest("figure");
     figure.querySelector(".split").hidden = asMap;
     figure.querySelector(".scale").hidden = !asMap;
-    figure.querySelector(".limit").textContent = `${limits[light]} and more`;
+    figure.querySelector(".pair").textContent =
+      `ΔE00 between ${first.selectedOptions[0].textContent} and ${second.selectedOptions[0].textContent}`;
   }
 }
 

@@ -169,7 +169,9 @@ def draw_advice(
         show_image(panels[name], to_display_codes(rgb, sensor) / 255)
         panels[name].set_title(figure_text(Path(name).name), fontsize=9, loc="left")
         shown = show_image(errors, maps[name].reshape(rgb.shape[:2]), cmap=colour_map(), vmin=0, vmax=largest)
-        errors.set_title(f"expected ΔE00, {', '.join(light.name for light in lights)}", fontsize=9, loc="left")
+        names = ", ".join(light.name for light in lights)
+        title = f"expected ΔE00 between answer and measurement\nmean under {names}"
+        errors.set_title(title, fontsize=9, loc="left")
         row.colorbar(shown, ax=errors, format="%.1f")
     box = {"boxstyle": "circle", "facecolor": "white", "edgecolor": ACCENT}
     labs = {name: rgb_to_lab(sensor, rgb) for name, rgb in flat.items()}

@@ -37,3 +37,12 @@ def test_colours_stay_in_the_space_of_the_image(small_cube, colours, tmp_path):
     grey = write_exr(tmp_path / "grey.exr", planes(np.full((2, 2, 3), 0.5, np.float32)), chromaticities=AP1)
     texture.convert(texture.prepare_relighter(small_cube, ("HP1",), threads=1), grey, target, force=True)
     np.testing.assert_allclose(read_channels(target, "RGB"), 0.5, atol=0.02)
+
+
+def test_the_tint_of_a_light_is_kept_on_request(small_cube, colours, tmp_path):
+    source = write_exr(tmp_path / "in.exr", planes(colours))
+    relighter = texture.prepare_relighter(small_cube, ("A",), adapt=False, threads=1)
+    texture.convert(relighter, source, tmp_path / "out.exr")
+    xyz = small_cube.reflectance(colours) @ observer.light("A").xyz.T
+    expected = xyz @ small_cube.data.sensor.xyz_to_rgb.T
+    np.testing.assert_allclose(read_channels(tmp_path / "out.exr", "RGB"), expected, rtol=1e-3, atol=1e-3)

@@ -3,7 +3,7 @@
 import contextlib
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -48,6 +48,7 @@ def prepare_relighter(
     cube: Cube,
     lights: Sequence[str],
     *,
+    adapt: bool = True,
     encoding: str = "auto",
     out_of_gamut: str = "clip",
     space: str | None = None,
@@ -64,6 +65,8 @@ def prepare_relighter(
         The cube.
     lights : sequence of str
         At least one light, as for `uplift.colorimetry.observer.light`.
+    adapt : bool, default True
+        Whether the white of each light is the white of the RGB space (Bradford). Otherwise colours have its tint.
     encoding, out_of_gamut, space, threads
         As for `uplift.io.texture.prepare`.
 
@@ -82,8 +85,11 @@ def prepare_relighter(
     sensor = cube.data.sensor
     screens = display_sensors(lights, sensor.observer, *sensor.range, space=sensor.space)
     names = [screen.illuminant for screen in screens]
+    if not adapt:
+        screens = tuple(replace(screen, xyz_to_rgb=sensor.xyz_to_rgb) for screen in screens)
     layers = map(channel_name, names[1:])
-    settings = {"as": "relit", "lights": names, "encoding": encoding, "out_of_gamut": out_of_gamut}
+    settings: dict[str, object] = {"as": "relit", "lights": names, "encoding": encoding, "out_of_gamut": out_of_gamut}
+    settings |= {} if adapt else {"adapt": False}
     header = {**exr.attributes(cube.data), "uplift.texture": json.dumps(settings), "uplift.lights": ", ".join(names)}
     return Relighter(
         sensor,
