@@ -111,62 +111,49 @@ def find_input_space(name: str) -> ImageSpace:
     return find_space(name)
 
 
-def check_space(name: str) -> str:
-    """Return the name or the chromaticities of the RGB space of an image."""
-    find_input_space(name)
-    return name
+def check_space(name: str) -> None:
+    """Check the name of an RGB space, which may be that of raw values of a camera."""
+    from uplift.colorimetry import camera, spaces
+
+    if name != camera.CAMERA:
+        spaces.look_up_space(name)
 
 
-def check_rgb_space(name: str) -> str:
-    """Return the name of an RGB space, or that of raw values of a camera."""
-    from uplift.colorimetry.camera import CAMERA
-
-    if name != CAMERA:
-        from uplift.colorimetry.spaces import look_up_space
-
-        look_up_space(name)
-    return name
-
-
-def check_light(name: str) -> str:
-    """Return the name of an illuminant."""
+def check_light(name: str) -> None:
+    """Check the name of an illuminant."""
     from uplift.colorimetry.tables import stated_name
 
     stated_name("illuminant", name)
-    return name
 
 
-def check_observer(name: str) -> str:
-    """Return the name of an observer or a camera, or that of a camera's file."""
+def check_observer(name: str) -> None:
+    """Check the name of an observer or a camera; that of a camera's file is found when it is read."""
     from uplift.colorimetry import observer, tables
 
     if not observer.is_camera_file(name) and name not in tables.names("camera"):
         tables.stated_name("observer", name)
-    return name
 
 
-def check_page(path: str) -> str:
-    """Return the name of a page, which must end in .html."""
+def check_page(path: str) -> None:
+    """Check the name of a page, which must end in .html."""
     if not path.lower().endswith(".html"):
         raise OutputError("the name of a page must end in .html", path=path, hint="name the page .html")
-    return path
 
 
-def check_figure_page(path: str) -> str:
-    """Return the name of a page with figures, which matplotlib draws."""
+def check_figure_page(path: str) -> None:
+    """Check the name of a page with figures, which matplotlib draws."""
     from uplift.viz.figure import matplotlib
 
     matplotlib()
-    return check_page(path)
+    check_page(path)
 
 
-def check_plot(path: str) -> str:
-    """Return the name of a plot, whose suffix must be that of a figure."""
+def check_plot(path: str) -> None:
+    """Check the name of a plot, whose suffix must be that of a figure."""
     from uplift.viz.figure import check_suffix
 
     hide_drawing_notes()
     check_suffix(path)
-    return path
 
 
 def check_range(wavelengths: Array, own: Array) -> None:

@@ -23,8 +23,8 @@ from .inputs import (
     check_observer,
     check_page,
     check_plot,
-    check_rgb_space,
     check_space,
+    find_input_space,
     parse_wavelengths,
 )
 
@@ -125,7 +125,7 @@ class Whole(click.IntRange):
 
 
 class Parsed(click.ParamType):  # type: ignore[type-arg]
-    """A text that a function of `uplift_cli.inputs` parses or checks, which may raise `UpliftError`."""
+    """A text that a function of `uplift_cli.inputs` parses, which may raise `UpliftError`."""
 
     name = "text"
 
@@ -137,15 +137,24 @@ class Parsed(click.ParamType):  # type: ignore[type-arg]
         return self.function(value)
 
 
-class OutputFile(Parsed):
-    """The name of a file or folder that a command writes, which the function checks."""
+class Checked(Parsed):
+    """A text that a function of `uplift_cli.inputs` checks."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the text."""
+        self.function(value)
+        return value
+
+
+class OutputFile(Checked):
+    """The name of a file or folder that a command writes."""
 
 
 NUMBER, WHOLE = Number(), Whole()
 WHOLE_OR_AUTO = Whole(word="auto")
 WAVELENGTHS = Parsed(parse_wavelengths)
-LIGHT, OBSERVER = Parsed(check_light), Parsed(check_observer)
-SPACE, INPUT_SPACE = Parsed(check_rgb_space), Parsed(check_space)
+LIGHT, OBSERVER = Checked(check_light), Checked(check_observer)
+SPACE, INPUT_SPACE = Checked(check_space), Checked(find_input_space)
 OUTPUT, PAGE, PLOT = OutputFile(str), OutputFile(check_page), OutputFile(check_plot)
 FIGURE_PAGE = OutputFile(check_figure_page)
 

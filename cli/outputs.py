@@ -1,8 +1,6 @@
 """Files that a command writes: compared with all that it reads, before it computes anything."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable, Iterable, Sequence
 
 import click
 
@@ -24,18 +22,20 @@ def check_outputs(*paths: StrPath | None, inputs: Paths = ()) -> None:
     files.check_outputs(paths, inputs=[*_stated_inputs(), *inputs], force=_is_forced())
 
 
-def check_folder(path: StrPath, names: Sequence[str], inputs: Paths = ()) -> Path:
+def check_folder(path: StrPath | None, names: Sequence[str], inputs: Paths = ()) -> None:
     """Check the files of a folder as `check_outputs`, and that PNG can be drawn; `write_files` creates the folder."""
+    if path is None:
+        return
     if any(name.endswith(".png") for name in names):
         from uplift.viz.figure import matplotlib
 
         matplotlib()
-    return files.check_folder(path, names, inputs=[*_stated_inputs(), *inputs], force=_is_forced())
+    files.check_folder(path, names, inputs=[*_stated_inputs(), *inputs], force=_is_forced())
 
 
-def write_files(folder: Path, names: Sequence[str], *writers: Callable[..., None]) -> None:
+def write_files(path: StrPath, names: Sequence[str], *writers: Callable[..., None]) -> None:
     """Write the files of a folder, and print their names to standard error."""
-    files.make_folder(folder)
+    folder = files.make_folder(path)
     for name, write in zip(names, writers, strict=True):
         write(folder / name, force=_is_forced())
     say(f"{folder}: {', '.join(names)}", err=True)
@@ -45,17 +45,12 @@ def _is_forced() -> bool:
     return bool(click.get_current_context().params["force"])
 
 
-def _stated_inputs() -> Iterator[str]:
-    """Yield the texts of all parameters but outputs: those that name no file do no harm."""
+def _stated_inputs() -> list[str]:
+    """Return the texts of all parameters but outputs: those that name no file do no harm."""
     context = click.get_current_context()
-    for param in context.command.params:
-        if not isinstance(param.type, OutputFile):
-            yield from _texts(context.params.get(str(param.name)))
-
-
-def _texts(value: Any) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, tuple):
-        for part in value:
-            yield from _texts(part)
+    outputs = [param.name for param in context.command.params if isinstance(param.type, OutputFile)]
+    texts: list[str] = []
+    for name, value in context.params.items():
+        if name not in outputs:
+            texts += [text for text in (value if isinstance(value, tuple) else [value]) if isinstance(text, str)]
+    return texts

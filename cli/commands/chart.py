@@ -90,10 +90,10 @@ def command(
     from uplift.lab.chart.picture import render_chart, write_picture
     from uplift.lab.chart.table import chart_csv, read_chart
 
-    folder = check_folder(output, FILES, inputs=atlas_files(files))
+    check_folder(output, FILES, inputs=atlas_files(files))
     chart = read_chart(source) if source is not None else _measure(files, patterns, quick=quick)
     table, page = partial(write_text, chart_csv(chart)), partial(write_text, render_chart(chart))
-    write_files(folder, FILES, table, partial(write_picture, chart), page)
+    write_files(output, FILES, table, partial(write_picture, chart), page)
     _print_fronts(chart)
 
 

@@ -90,13 +90,13 @@ def command(
         return
     if tolerance is not None:
         check_target(tolerance)
-    folder = None if output is None else check_folder(output, FILES, inputs=atlas_files(files))
+    check_folder(output, FILES, inputs=atlas_files(files))
     comparison, tuned = _measure(files, lights, filters=filters, quick=quick)
-    if folder is not None:
+    if output is not None:
         from uplift.lab.comparison.pictures import render_comparison, write_boxes, write_costs
 
         page = partial(write_text, render_comparison(comparison, tuned))
-        write_files(folder, FILES, partial(write_boxes, comparison), partial(write_costs, comparison), page)
+        write_files(output, FILES, partial(write_boxes, comparison), partial(write_costs, comparison), page)
     if tolerance is not None:
         _print_advice(comparison, tolerance)
     elif style == "table":
@@ -111,11 +111,11 @@ def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[str, ...], o
     from uplift.scene.representations import find_representation
 
     representation = find_representation(name)
-    folder = check_folder(output, SPECTRA, inputs=atlas_files(files))
+    check_folder(output, SPECTRA, inputs=atlas_files(files))
     atlases = read_atlases(files)
     pair = represent(representation, make_scene(atlases, lights), merge(atlases.values()).names)
-    write_files(folder, SPECTRA, *(partial(write_atlas, atlas) for atlas in pair))
-    say(f"{folder}: {len(pair[0])} surfaces and {len(pair[1])} lights as {representation.name}")
+    write_files(output, SPECTRA, *(partial(write_atlas, atlas) for atlas in pair))
+    say(f"{output}: {len(pair[0])} surfaces and {len(pair[1])} lights as {representation.name}")
 
 
 def _measure(

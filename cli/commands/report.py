@@ -67,7 +67,8 @@ def command(
 
     path = output
     if style == "html":
-        path = check_figure_page(output or f"{Path(cube).stem}.html")
+        path = output or f"{Path(cube).stem}.html"
+        check_figure_page(path)
     loaded = load(cube)
     recorded = () if files else recorded_files(loaded.data, cube, folders)
     check_outputs(path, inputs=recorded)

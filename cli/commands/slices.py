@@ -9,11 +9,10 @@ from ..output.console import say
 from ..outputs import check_outputs
 
 
-def _check_sheet(path: str) -> str:
+def _check_sheet(path: str) -> None:
     from uplift.viz.sheet import check_sheet
 
     check_sheet(path)
-    return path
 
 
 SHEET = options.OutputFile(_check_sheet)

@@ -90,14 +90,14 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
     from uplift.lab.study.moments import TECHNIQUES, study_moments
 
     atlases = read_atlases(files)
-    folder = None if output is None else check_folder(output, MOMENTS_PLOTS, inputs=atlas_files(files))
+    check_folder(output, MOMENTS_PLOTS, inputs=atlas_files(files))
     with progress_bar("reconstructions") as progress:
         study = study_moments(atlases, max_moments, progress)
-    if folder is not None:
+    if output is not None:
         from uplift.lab.study.plots import plot_errors, plot_patches, plot_worst
 
         plots = partial(plot_errors, {"all entries": study.curves()}), partial(plot_patches, study)
-        write_files(folder, MOMENTS_PLOTS, *plots, partial(plot_worst, study))
+        write_files(output, MOMENTS_PLOTS, *plots, partial(plot_worst, study))
     results = [[study.result(technique, count) for technique in TECHNIQUES] for count in range(max_moments + 1)]
     table = [
         {"moments": str(count)}
@@ -176,14 +176,14 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
 
     atlases = read_atlases(files or (MACBETH,)) | {name: make() for name, make in SYNTHETIC_ATLASES.items()}
     design = replace(QUICK_DESIGN if quick else DesignSpace(), atlases=(NO_ATLAS, *atlases))
-    folder = None if output is None else check_folder(output, STABILITY_PLOTS, inputs=atlas_files(files))
+    check_folder(output, STABILITY_PLOTS, inputs=atlas_files(files))
     with progress_bar("builds") as progress:
         results = study_stability(design.configs(), atlases, progress)
     records = list(results.values())
-    if folder is not None:
+    if output is not None:
         from uplift.lab.study.plots import plot_map
 
-        write_files(folder, STABILITY_PLOTS, partial(plot_map, records))
+        write_files(output, STABILITY_PLOTS, partial(plot_map, records))
     hidden = ("success", "points", "stand_ins")
     _print(style, records, records, [{key: row[key] for key in row if key not in hidden} for row in records])
     if style == "table":
@@ -251,16 +251,16 @@ def sensitivity(
         atlas = recorded_atlas(loaded.data, cube, folders)
     if output is not None and atlas is None:
         raise click.UsageError("--output draws the effect of entries: it needs a CUBE with an atlas, and --entries.")
-    folder = None if output is None else check_folder(output, SENSITIVITY_PLOTS, inputs=recorded)
+    check_folder(output, SENSITIVITY_PLOTS, inputs=recorded)
     of_methods = []
     for method in others:
         of_methods += perturb_method(method, observer.light(NARROW_BAND_LIGHT))
     with progress_bar("builds") as progress:
         moves, changes = study_sensitivity(loaded, atlas, entries, progress)
-    if folder is not None:
+    if output is not None:
         from uplift.lab.study.plots import plot_locality
 
-        write_files(folder, SENSITIVITY_PLOTS, partial(plot_locality, changes))
+        write_files(output, SENSITIVITY_PLOTS, partial(plot_locality, changes))
     moves += of_methods
     record = {"moves": moves, "changes": [change.record() for change in changes]}
     _print(style, record, (), moves)

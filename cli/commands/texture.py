@@ -29,11 +29,10 @@ if TYPE_CHECKING:
     from uplift.io.texture.uplifter import PixelEncoding
 
 
-def _check_scheduler(address: str) -> str:
+def _check_scheduler(address: str) -> None:
     from uplift.io.texture.sequence import import_distributed
 
     import_distributed()
-    return address
 
 
 LARGE = 100.0
@@ -51,7 +50,7 @@ image_options = options.stacked(
     click.option(
         "--scheduler",
         metavar="ADDRESS",
-        type=options.Parsed(_check_scheduler),
+        type=options.Checked(_check_scheduler),
         help="Dask cluster that converts the images; requires the package distributed.",
     ),
     click.option("--resume", is_flag=True, help="Skip images whose textures are complete."),
@@ -167,7 +166,8 @@ def convert(
     converted = [one for one in results if isinstance(one, texture.Conversion)]
     for conversion in converted:
         warn(conversion.warnings)
-    if not quiet:
+    failures = [one for one in results if isinstance(one, texture.Failure)]
+    if not quiet and len(failures) < len(jobs):
         count = len(jobs) - len(pending) + sum(isinstance(one, texture.Skipped) for one in results)
         skipped = f", {count} skipped" if count else ""
         pixels = sum(one.counts.pixels for one in converted)
@@ -179,7 +179,6 @@ def convert(
         )
         if size > LARGE and isinstance(settings.pixel_encoding, texture.Spectrum):
             say("hint: --representation moments --depth half takes a fraction of the size", err=True)
-    failures = [one for one in results if isinstance(one, texture.Failure)]
     for failure in failures[1:]:
         CommandFailure(failure.error).show()
     if failures:

@@ -80,13 +80,13 @@ def check_outputs(
 
 def _check_distinct(paths: Iterable[StrPath]) -> None:
     """Raise `OutputError` if two paths are the same file."""
-    seen: dict[str, StrPath] = {}
+    checked: dict[str, StrPath] = {}
     for path in paths:
         place = os.path.realpath(path)
-        if place in seen:
-            problem = f"is the same file as {os.fspath(seen[place])}"
+        if place in checked:
+            problem = f"is the same file as {os.fspath(checked[place])}"
             raise OutputError(problem, path=path, hint="give each output its own name")
-        seen[place] = path
+        checked[place] = path
 
 
 def check_output(path: StrPath, *, inputs: Iterable[StrPath | None] = (), force: bool = False) -> Path:

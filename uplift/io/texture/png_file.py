@@ -1,4 +1,4 @@
-"""Structure of PNG files, checked before OpenImageIO reads them: libpng prints errors of its own.
+"""Structure of PNG files, checked before OpenImageIO reads them: libpng prints its own errors.
 
 Reference: "Portable Network Graphics (PNG) Specification", World Wide Web Consortium, https://www.w3.org/TR/png-3/.
 """
