@@ -1,7 +1,5 @@
 """``uplift build``."""
 
-import os
-
 import pytest
 
 import uplift
@@ -71,34 +69,6 @@ def test_the_same_input_gives_the_same_bytes_and_warnings(run, home, macbeth):
         assert "'cyan'" in warnings[0]
         assert "(-0.0334, 0.2488, 0.3855)" in warnings[0]
         assert len(warnings) == result.stderr.count("\n")
-
-
-@pytest.mark.parametrize(
-    ("args", "code"),
-    [
-        ("-o none/cube", "output"),
-        ("-o .", "output"),
-        ("-o mine", "file-exists"),
-        ("--dim 1", "option"),
-        ("--dim 1000000000000", "out-of-memory"),
-        ("--illuminant D66", "unknown-name"),
-        ("--space no/where", "unknown-name"),
-        ("--observer CIE", "unknown-name"),
-        ("--model moment", "unknown-name"),
-        ("--axis log", "unknown-name"),
-        ("--range 360", "option"),
-        ("--range 361:830", "option"),
-        ("--entry-coefficients 18", "option"),
-        ("--atlas none.txt", "file-not-found"),
-        ("--atlas mine", "atlas"),
-        ("--look mine -o mine --force", "output-is-input"),
-    ],
-)
-def test_invalid_input_is_reported_before_the_build(refuse, monkeypatch, home, args, code):
-    monkeypatch.setattr("uplift.pipeline.build.learn_base", lambda *_, **__: pytest.fail("built"))
-    (home / "mine").write_text("")
-    assert refuse("build", "--dim", "2", *args.split()).code == code
-    assert os.listdir(home) == ["mine"]
 
 
 def test_looks_are_built_summarised_and_shown(run, home):

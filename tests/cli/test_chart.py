@@ -111,21 +111,5 @@ def test_recommendations(quick, run, refuse):
     assert "--atlas FILE" in result.stdout
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code"),
-    [
-        (("--method", "x"), "option"),
-        (("--recommend", "--light", "D65"), "option"),
-        (("--recommend", "--tolerance", 1, "--light", "FL12"), "unknown-name"),
-        (("--from", "none.csv"), "file-not-found"),
-        (("-o", "file"), "output"),
-    ],
-)
-def test_invalid_input_is_an_error(refuse, home, macbeth, arguments, code):
-    (home / "file").write_text("mine")
-    assert refuse("chart", "--atlas", macbeth, *arguments).code == code
-    assert {path.name for path in home.iterdir()} <= {"chart", "file"}
-
-
 def test_requirements_need_recommend(misuse):
     assert "--recommend" in misuse("chart", "--time-ns", 100)

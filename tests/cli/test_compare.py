@@ -80,22 +80,3 @@ def test_written_spectra_are_an_atlas_and_lamps(run, misuse, home, macbeth):
     assert read_lamps("out/lights.csv").names == ("FL11", "A")
     misuse(*words)
     misuse(*words, "-o", "out", "--filters")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "code"),
-    [
-        (("--light", "F2"), "unknown-name"),
-        (("--tolerance", 0), "option"),
-        (("--write", "GQ16", "-o", "new"), "option"),
-        (("--write", "PS16", "-o", "file"), "output"),
-        (("-o", "file"), "output"),
-        (("-o", "out"), "file-exists"),
-    ],
-)
-def test_invalid_input_is_an_error(refuse, home, macbeth, arguments, code):
-    (home / "file").write_text("mine")
-    (home / "out").mkdir()
-    (home / "out" / "compare.html").write_text("mine")
-    assert refuse("compare", "--atlas", macbeth, *arguments).code == code
-    assert (home / "out" / "compare.html").read_text() == "mine"

@@ -77,23 +77,6 @@ def test_paint_over_an_image(run, refuse, home, cubes):
 
 
 @pytest.mark.parametrize(
-    ("words", "code"),
-    [
-        (("teal",), "colour"),
-        (("-1:#ffffff",), "option"),
-        (("1:1.5,0,0",), "rgb-out-of-gamut"),
-        (("#802020/#c03030",), "colour"),
-        (("#802020", "--internal-reflectance", "1"), "option"),
-        (("--duntley", "none.csv"), "file-not-found"),
-        (("#802020", "--atlas", "none.txt"), "file-not-found"),
-        (("#802020", "--wavelengths", "300,500"), "option"),
-    ],
-)
-def test_invalid_input_is_an_error(refuse, words, code):
-    assert refuse("mix", *words).code == code
-
-
-@pytest.mark.parametrize(
     "words",
     [
         (),

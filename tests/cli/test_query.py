@@ -61,30 +61,6 @@ def test_syntax_of_colours(ask, words, rgb):
     np.testing.assert_allclose(ask("query", *words)["rgb"], rgb, rtol=0, atol=1e-15)
 
 
-@pytest.mark.parametrize(
-    ("words", "code"),
-    [
-        *((words, "colour") for words in ("#cc331", "c31", "red", "0.1 0.2", "0.1 0.2 0.3 0.4", "#cc3319 0.5")),
-        *((words, "rgb-out-of-gamut") for words in ("0.1 1.2 0.3", "0.3 -.1 0.3", "nan 0.2 0.3", "204 51 25")),
-        ("--encoded 256 0 0", "invalid-codes"),
-        ("--encoded -1 0 0", "invalid-codes"),
-        ("--encoded nan 0 0 --out-of-gamut clip", "invalid-codes"),
-        ("nan 0 0 --out-of-gamut scale", "colour"),
-        ("0.5 0.6 0.3 --input-space P9", "unknown-name"),
-        ("0.5 0.6 0.3 --input-space 1,2", "option"),
-        ("--xy 0.3 0 --luminance 0.2", "colour"),
-        ("--xyz 0.05 0.9 0.1", "colour-unrealisable"),
-        ("#fff --light FL99", "unknown-name"),
-        ("#fff --cube none.uplift", "file-not-found"),
-        *((f"#fff --wavelengths {text}", "option") for text in ("red", "400:700", "400:700:0", "700:400:5", "4,,5")),
-        *((f"#fff --wavelengths {text}", "option") for text in ("400:inf:5", "400:700:1e-9", "0.4:0.7:0.1")),
-        *((f"#fff --plot {name}", "output") for name in ("red.gif", "red.png.txt", "none/red.png")),
-    ],
-)
-def test_invalid_input_is_an_error(refuse, words, code):
-    assert refuse("query", *words.split()).code == code
-
-
 @pytest.mark.parametrize(("method", "rgb"), [("clip", [1, 0.3, 0]), ("desaturate-oklab", [1, 0.4215, 0.1069])])
 def test_out_of_gamut_colours_are_mapped_with_a_warning(run, method, rgb):
     words = ("query", "-", "--out-of-gamut", method)

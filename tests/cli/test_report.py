@@ -43,18 +43,3 @@ def test_another_atlas_tests_unseen_colours(run, repository, cube):
     other = repository / "atlases" / "babelcolor.txt"
     summary = run("report", cube, *SMALL, "--atlas", other).stdout
     assert re.search(r"68 % within \d\.\d\d under A, predicted \d\.\d\d", summary)
-
-
-def test_invalid_input_is_an_error_and_nothing_is_written(refuse, home, cube):
-    (home / "text.uplift").write_text("not a cube")
-    (home / "old.html").write_text("old")
-    before = {path.name for path in home.iterdir()}
-    assert refuse("report", cube, "-o", "old.html").code == "file-exists"
-    assert refuse("report", "missing.uplift", "-o", "old.html").code == "file-not-found"
-    assert refuse("report", cube, "-o", "report.pdf").code == "output"
-    assert refuse("report", "none.uplift").code == "file-not-found"
-    assert refuse("report", "text.uplift").code == "not-a-cube"
-    assert refuse("report", cube, "--light", "D66").code == "unknown-name"
-    assert refuse("report", cube, "--atlas", "none.txt").code == "file-not-found"
-    assert refuse("report", cube, "-o", "nowhere/page.html").code == "output"
-    assert {path.name for path in home.iterdir()} == before

@@ -74,26 +74,6 @@ def test_default_atlases_are_those_of_the_working_folder_or_the_shipped_ones(row
     assert {row["atlas"] for row in rows("moments", "--max-moments", 0)} == {"all", "tcs"}
 
 
-@pytest.mark.parametrize(
-    ("options", "code"),
-    [
-        (("moments", "--atlas", "none.txt"), "file-not-found"),
-        (("moments", "--atlas", "tcs.txt", "--max-moments", 33), "option"),
-        (("moments", "--atlas", "tcs.txt", "--atlas", "copy/tcs.txt"), "atlas"),
-        (("moments", "--atlas", "tcs.txt", "-o", "file"), "output"),
-        (("held-out", "--atlas", "two.csv", "--dim", 4), "too-few-entries"),
-        (("sensitivity", "--method", "otsu"), "option"),
-    ],
-)
-def test_invalid_input_is_an_error(refuse, home, tcs, options, code):
-    (home / "copy").mkdir()
-    shutil.copy(tcs, home / "copy")
-    shutil.copy(tcs, home)
-    (home / "file").write_text("mine")
-    (home / "two.csv").write_text("name,400,550,700\none,0.5,0.5,0.5\nother,0.4,0.4,0.4\n")
-    assert refuse("study", *options).code == code
-
-
 def test_held_out_has_the_same_numbers_in_all_formats(run, rows, macbeth, monkeypatch):
     compute_once(monkeypatch, held_out, "holdout")
     args = ("held-out", "--atlas", macbeth, "--dim", 4, "--splits", 1)

@@ -46,22 +46,6 @@ def test_sequences_continue_after_an_invalid_image(run, shown, frames, cubes):
     assert sorted(path.name for path in (frames / "out").iterdir()) == ["shot.0.exr", "shot.1.exr"]
 
 
-@pytest.mark.parametrize(
-    ("words", "code"),
-    [
-        (("none.exr", "-o", "out.exr"), "file-not-found"),
-        (("none*.exr", "-o", "out"), "texture"),
-        (("shot.0.exr", "-o", "out.png"), "output"),
-        (("shot.0.exr", "shot.1.exr", "-o", "out.exr"), "output"),
-        (("shot.0.exr", "shot.1.exr", "-o", "shot.2.exr/out"), "output"),
-        (("shot.0.exr", "-o", "a.exr", "--cube", "none.uplift"), "file-not-found"),
-        (("shot.0.exr", "-o", "a.exr", "--wavelengths", "0.4:0.7:0.1"), "option"),
-    ],
-)
-def test_invalid_input_is_an_error(refuse, frames, words, code):
-    assert refuse("texture", *words).code == code
-
-
 def test_masks_choose_among_cubes(run, refuse, misuse, frames, cubes):
     two = ("--cube", cubes / "moments-8.uplift", "--cube", cubes / "moments-8-macbeth.uplift")
     options = ("--mask", "mask.exr", *two, "--representation", "moments")

@@ -16,14 +16,13 @@ from .conftest import commands
 
 CUBE = "cube.uplift"
 COMPUTES = {
-    "advise": "uplift.scene.advice.uncertainty",
+    "advise": "uplift.scene.advice.posterior",
     "build": "uplift.pipeline.entries.fit_constraints",
     "chart": "uplift.lab.chart.measure.measure_methods",
     "check": "uplift.pipeline.rebuild.rebuild",
-    "compare": "uplift.lab.comparison.compare.make_scene",
+    "compare": "uplift.lab.comparison.compare.error_statistics",
     "diff": "uplift.report.diff.diff_cubes",
     "lights build": "uplift.lights.build.EmissionTable",
-    "mix": "uplift.design.mixing.mix",
     "palette": "uplift.design.palette.design",
     "plan": "uplift.scene.plan.space.sample_colours",
     "relight": "uplift.pipeline.entries.fit_constraints",
@@ -37,102 +36,179 @@ COMPUTES = {
 }
 """Functions that do the long work of commands, and must not be called."""
 INVALID = """
-advise wood.png none.png --cube {}
-advise wood.png --cube {} --light none
-advise wood.png --cube {} --count 0
-advise wood.png --cube {} --input-space none --plot x.png
-atlas macbeth none.csv -o x.csv
-atlas macbeth -o x.csv --space none
-atlas macbeth --illuminant none
-bounds #888 --html x.html --plot x.png --light none
-bounds --input none.csv --plot x.png
-build --atlas macbeth --atlas none.csv
-build --light none
-build --exclude-family none
-build --solver none
-build --library none.csv
-build --look none.toml
-build --scene wood.png --scene none.png
-build --scene wood.png --input-space none
-build --step 7
-build --observer none
-build --plan none.json
-chart --atlas macbeth --atlas none.csv
-chart --method none
-chart --from none.csv
-chart --recommend --light none
-compare -o out --atlas macbeth --atlas none.csv
-compare -o out --light none
-compare -o out --tolerance 0
-compare -o out --write none
-compare -o out --write PF16 --atlas none.csv
-diff {} none.uplift
-diff {} {} wood.png none.png -o x.html
-diff {} {} -o x.html --light none
-diff {} {} wood.png --input-space none -o x.html
-info none.uplift
-lights build --atlas macbeth --atlas none.csv
-lights build --space none
-lights build --observer none
-lights info none.uplift --plot x.png --html x.html
-lights query 1 1 1 --lights none.uplift --plot x.png
-lights query 1 1 1 --input-space none --plot x.png
-lights query 1 1 1 --wavelengths 1:2:1 --plot x.png
-lights query --input none.csv --plot x.png
-lights texture wood.png none.png -o out
-lights texture wood.png fire.exr -o out --input-space none
-lights texture wood.png fire.exr -o out --wavelengths 1:2:1
-mix #888 none --plot x.png
-mix #888 --over none.png -o x.exr
-mix #888 --over wood.png -o x.exr --input-space none
-mix #888 --wavelengths 1:2:1 --plot x.png
-mix #888 --atlas none.csv --plot x.png
-palette palette.toml --image none.png --html x.html --plot x.png
-palette none.toml -o x.csv
-palette palette.toml --label none=#888 --image wood.png --html x.html
-plan none.toml
-plan scene.toml
-query #888 --plot x.png --light none
-query #888 --plot x.png --wavelengths 1:2:1
-query --input none.csv --plot x.png
-query --check none.csv
-relight wood.png none.png --atlas macbeth
-relight wood.png --atlas macbeth --light none
-relight wood.png --atlas macbeth --input-space none
-relight wood.png --atlas macbeth --atlas none.csv
-relight wood.png broken.png --atlas macbeth
-relight wood.png --atlas macbeth -o x.exr --light none
-report {} --atlas none.csv
-report {} --light none
-report none.uplift
-slices {} --plot x.jpg
-slices none.uplift --plot x.png
-slices {} -o none/x.exr --plot x.png
-study held-out --atlas macbeth --atlas none.csv
-study held-out --atlas macbeth --coefficients 99
-study held-out --atlas macbeth --dim 1
-study moments --atlas macbeth --max-moments 99 -o out
-study moments --atlas none.csv -o out
-study sensitivity {} -o out --method none
-study sensitivity none.uplift -o out
-study stability --atlas none.csv -o out
-texture wood.png none.png -o out
-texture wood.png fire.exr -o out --errors A
-texture wood.png fire.exr -o out --errors none
-texture wood.png fire.exr -o out --input-space none
-texture wood.png fire.exr -o out --cube none.uplift
-texture wood.png fire.exr -o out --wavelengths 1:2:1
-texture wood.png -o x.exr --cube {} --cube {} --mask none.png
-texture wood.png wood.png -o out
-texture wood.png fire.exr -o out --depth half --representation multipliers
-wavelengths --count 4 --illuminant none --plot x.png
-wavelengths --count 4 --atlas macbeth --atlas none.csv --plot x.png
-wavelengths --count 99 --plot x.png
-wavelengths --count 4 --light none --plot x.png
-wavelengths --wavelengths 1:2:1 --plot x.png
-wavelengths --tolerance 0 --plot x.png
+too-few-entries advise wood.png --cube ACEScg
+file-not-found advise wood.png none.png --cube {}
+unknown-name advise wood.png --cube {} --light none
+unknown-name advise wood.png --cube {} --input-space none --plot x.png
+file-not-found atlas macbeth none.csv -o x.csv
+unknown-name atlas macbeth -o x.csv --space none
+unknown-name atlas macbeth --illuminant none
+unknown-name bounds #888 --html x.html --plot x.png --light none
+colour bounds --input none.csv --plot x.png
+output build --dim 2 -o none/cube
+output build --dim 2 -o .
+file-exists build --dim 2 -o mine
+option build --dim 1
+out-of-memory build --dim 1000000000000
+unknown-name build --illuminant D66
+unknown-name build --space no/where
+unknown-name build --observer CIE
+unknown-name build --model moment
+unknown-name build --axis log
+option build --range 360
+option build --range 361:830
+option build --entry-coefficients 18
+atlas build --atlas mine
+output-is-input build --look mine -o mine --force
+file-not-found build --atlas macbeth --atlas none.csv
+unknown-name build --light none
+unknown-name build --exclude-family none
+unknown-name build --solver none
+file-not-found build --library none.csv
+file-not-found build --look none.toml
+file-not-found build --scene wood.png --scene none.png
+unknown-name build --scene wood.png --input-space none
+option build --step 7
+unknown-name build --observer none
+file-not-found build --plan none.json
+option chart --atlas macbeth --method x
+option chart --recommend --light D65
+unknown-name chart --recommend --tolerance 1 --light FL12
+output chart --atlas macbeth -o mine
+file-not-found chart --atlas macbeth --atlas none.csv
+option chart --method none
+file-not-found chart --from none.csv
+option chart --recommend --light none
+unknown-name compare --atlas macbeth --light F2
+option compare --atlas macbeth --write GQ16 -o new
+output compare --atlas macbeth --write PS16 -o mine
+output compare --atlas macbeth -o mine
+file-exists compare --atlas macbeth -o taken
+file-not-found compare -o out --atlas macbeth --atlas none.csv
+unknown-name compare -o out --light none
+option compare -o out --tolerance 0
+option compare -o out --write none
+file-not-found compare -o out --write PF16 --atlas none.csv
+file-not-found diff {} none.uplift
+file-not-found diff {} {} wood.png none.png -o x.html
+unknown-name diff {} {} -o x.html --light none
+unknown-name diff {} {} wood.png --input-space none -o x.html
+file-not-found info none.uplift
+file-not-found lights build --atlas macbeth --atlas none.csv
+unknown-name lights build --space none
+unknown-name lights build --observer none
+file-not-found lights info none.uplift --plot x.png --html x.html
+file-not-found lights query 1 1 1 --lights none.uplift --plot x.png
+unknown-name lights query 1 1 1 --input-space none --plot x.png
+option lights query 1 1 1 --wavelengths 1:2:1 --plot x.png
+colour lights query --input none.csv --plot x.png
+file-not-found lights texture wood.png none.png -o out
+unknown-name lights texture wood.png fire.exr -o out --input-space none
+option lights texture wood.png fire.exr -o out --wavelengths 1:2:1
+colour mix teal
+option mix -1:#ffffff
+rgb-out-of-gamut mix 1:1.5,0,0
+colour mix #802020/#c03030
+option mix #802020 --internal-reflectance 1
+file-not-found mix --duntley none.csv
+colour mix #888 none --plot x.png
+file-not-found mix #888 --over none.png -o x.exr
+unknown-name mix #888 --over wood.png -o x.exr --input-space none
+option mix #888 --wavelengths 1:2:1 --plot x.png
+file-not-found mix #888 --atlas none.csv --plot x.png
+file-not-found palette palette.toml --image none.png --html x.html --plot x.png
+file-not-found palette none.toml -o x.csv
+unknown-name palette palette.toml --label none=#888 --image wood.png --html x.html
+file-not-found plan none.toml
+file-not-found plan scene.toml
+colour query #cc331
+colour query c31
+colour query red
+colour query 0.1 0.2
+colour query 0.1 0.2 0.3 0.4
+colour query #cc3319 0.5
+rgb-out-of-gamut query 0.1 1.2 0.3
+rgb-out-of-gamut query 0.3 -.1 0.3
+rgb-out-of-gamut query nan 0.2 0.3
+rgb-out-of-gamut query 204 51 25
+invalid-codes query --encoded 256 0 0
+invalid-codes query --encoded -1 0 0
+invalid-codes query --encoded nan 0 0 --out-of-gamut clip
+colour query nan 0 0 --out-of-gamut scale
+unknown-name query 0.5 0.6 0.3 --input-space P9
+option query 0.5 0.6 0.3 --input-space 1,2
+colour query --xy 0.3 0 --luminance 0.2
+colour-unrealisable query --xyz 0.05 0.9 0.1
+unknown-name query #fff --light FL99
+file-not-found query #fff --cube none.uplift
+option query #fff --wavelengths red
+option query #fff --wavelengths 400:700
+option query #fff --wavelengths 400:700:0
+option query #fff --wavelengths 700:400:5
+option query #fff --wavelengths 4,,5
+option query #fff --wavelengths 400:inf:5
+option query #fff --wavelengths 400:700:1e-9
+option query #fff --wavelengths 0.4:0.7:0.1
+output query #fff --plot red.gif
+output query #fff --plot red.png.txt
+output query #fff --plot none/red.png
+unknown-name query #888 --plot x.png --light none
+option query #888 --plot x.png --wavelengths 1:2:1
+colour query --input none.csv --plot x.png
+file-not-found query --check none.csv
+output relight -o relit.gif
+output-is-input relight wood.png -o wood.png --force
+file-not-found relight wood.png none.png --atlas macbeth
+unknown-name relight wood.png --atlas macbeth --light none
+unknown-name relight wood.png --atlas macbeth --input-space none
+file-not-found relight wood.png --atlas macbeth --atlas none.csv
+texture relight wood.png broken.png --atlas macbeth
+unknown-name relight wood.png --atlas macbeth -o x.exr --light none
+file-exists report {} -o taken/compare.html
+output report {} -o report.pdf
+output report {} -o nowhere/page.html
+not-a-cube report mine
+file-not-found report {} --atlas none.csv
+unknown-name report {} --light none
+file-not-found report none.uplift
+output slices {} --plot x.jpg
+file-not-found slices none.uplift --plot x.png
+output slices {} -o none/x.exr --plot x.png
+too-few-entries study held-out --atlas two.csv --dim 4
+file-not-found study held-out --atlas macbeth --atlas none.csv
+option study held-out --atlas macbeth --coefficients 99
+option study held-out --atlas macbeth --dim 1
+atlas study moments --atlas macbeth.txt --atlas copy/macbeth.txt
+output study moments --atlas macbeth -o mine
+option study moments --atlas macbeth --max-moments 99 -o out
+file-not-found study moments --atlas none.csv -o out
+option study sensitivity {} -o out --method none
+file-not-found study sensitivity none.uplift -o out
+file-not-found study stability --atlas none.csv -o out
+texture texture none*.png -o out
+output texture wood.png -o out.png
+output texture wood.png fire.exr -o out.exr
+output texture wood.png fire.exr -o mine/out
+file-not-found texture wood.png none.png -o out
+too-few-entries texture wood.png fire.exr -o out --errors A
+unknown-name texture wood.png fire.exr -o out --errors none
+unknown-name texture wood.png fire.exr -o out --input-space none
+file-not-found texture wood.png fire.exr -o out --cube none.uplift
+option texture wood.png fire.exr -o out --wavelengths 1:2:1
+file-not-found texture wood.png -o x.exr --cube {} --cube {} --mask none.png
+output texture wood.png wood.png -o out
+option texture wood.png fire.exr -o out --depth half --representation multipliers
+option wavelengths --count 0 --atlas macbeth
+undefined-rule wavelengths --count 3 --method meyer --atlas macbeth
+option wavelengths --wavelengths 0.4:0.7:0.1 --atlas macbeth
+unknown-name wavelengths --count 4 --illuminant none --plot x.png
+file-not-found wavelengths --count 4 --atlas macbeth --atlas none.csv --plot x.png
+option wavelengths --count 99 --plot x.png
+unknown-name wavelengths --count 4 --light none --plot x.png
+option wavelengths --wavelengths 1:2:1 --plot x.png
+option wavelengths --tolerance 0 --plot x.png
 """
-"""Commands of which the last input is missing or a late option is invalid; {} is a cube."""
+"""Codes of errors, and commands of which the last input is missing or a late option is invalid; {} is a cube."""
 UNPLOTTED = """
 advise wood.png --cube {} --plot x.png
 bounds #888 --plot x.svg
@@ -197,7 +273,12 @@ def files(home, repository):
     shutil.copy(repository / "cubes" / "moments-8-macbeth.uplift", home / CUBE)
     shutil.copy(repository / "atlases" / "macbeth.txt", home)
     write_exr(home / "fire.exr", planes(np.full((2, 2, 3), 0.5, np.float32)))
-    (home / "broken.png").write_text("no image")
+    for folder in ("copy", "taken"):
+        (home / folder).mkdir()
+    shutil.copy(home / "macbeth.txt", home / "copy")
+    for name in ("broken.png", "mine", "taken/compare.html"):
+        (home / name).write_text("")
+    (home / "two.csv").write_text("name,400,550,700\none,0.5,0.5,0.5\nother,0.4,0.4,0.4\n")
     (home / "palette.toml").write_text(PALETTE)
     (home / "scene.toml").write_text('textures = ["wood.png", "none.png"]\n')
     measured = 'atlas = "paints.xlsx", entry = "x"'
@@ -216,40 +297,37 @@ def command_of(line):
 
 
 @pytest.fixture
-def refused_at_once(refuse, run, home, files, monkeypatch):
-    """Check that a command is refused before it computes, writes or prints anything."""
+def refuse_at_once(refuse, home, files, monkeypatch):
+    """Run an invalid command, which must not compute, write or print anything, and return the error."""
 
     def begin(*args, **options):
         pytest.fail("began to compute")
 
-    def check(line):
-        command = command_of(line)
-        if command in COMPUTES:
-            monkeypatch.setattr(COMPUTES[command], begin)
-        result = run(*line.replace("{}", CUBE).split(), code=2)
-        assert result.stdout == ""
+    def refuse_at_once(line):
+        if begins := COMPUTES.get(command_of(line)):
+            monkeypatch.setattr(begins, begin)
+        error = refuse(*line.replace("{}", CUBE).split())
         assert {path.name for path in home.iterdir()} == files
+        return error
 
-    return check
+    return refuse_at_once
 
 
 @pytest.mark.parametrize("line", lines(INVALID))
-def test_all_is_validated_before_anything_is_computed_or_written(refused_at_once, line):
-    refused_at_once(line)
+def test_all_is_validated_before_anything_is_computed_or_written(refuse_at_once, line):
+    code, command = line.split(maxsplit=1)
+    assert refuse_at_once(command).code == code
 
 
 def test_every_command_has_a_line():
-    tested = {command_of(line) for line in lines(INVALID)}
+    tested = {command_of(line.split(maxsplit=1)[1]) for line in lines(INVALID)}
     assert {*tested, *WITHOUT_ROWS, *GROUPS} == set(commands(main))
 
 
 @pytest.mark.parametrize(("package", "line"), [(name, line) for name, text in PACKAGES.items() for line in lines(text)])
-def test_missing_packages_are_named_before_anything_is_computed_or_written(
-    refused_at_once, shown, monkeypatch, package, line
-):
+def test_missing_packages_are_named_before_anything_is_computed_or_written(refuse_at_once, monkeypatch, package, line):
     monkeypatch.setitem(sys.modules, package, None)
-    refused_at_once(line)
-    error = shown.pop().error
+    error = refuse_at_once(line)
     assert error.code == "extra-not-installed"
     assert error.hint.endswith(f"pip install {package.replace('_', '-')}")
 

@@ -24,19 +24,6 @@ def test_plot(choose, home):
     assert picture[..., :3].std() > 0.05
 
 
-@pytest.mark.parametrize(
-    ("options", "code"),
-    [
-        ("--count 0", "option"),
-        ("--count 4 --light D66", "unknown-name"),
-        ("--count 3 --method meyer", "undefined-rule"),
-        ("--wavelengths 0.4:0.7:0.1", "option"),
-    ],
-)
-def test_invalid_options_are_errors(refuse, macbeth, options, code):
-    assert refuse("wavelengths", "--atlas", macbeth, *options.split()).code == code
-
-
 def test_given_wavelengths(answer):
     found = answer("--wavelengths", "420:660:40")
     assert found["wavelengths"] == [420, 460, 500, 540, 580, 620, 660]

@@ -22,7 +22,8 @@ from uplift.fit.families import families_with
 from uplift.lookup import Cube
 from uplift.lookup.refine import FIRST_DAMPING, MAX_STEPS
 from uplift.models.minimum_norm import forward_map, minimum_norm_step
-from uplift.pipeline.build import build
+from uplift.pipeline.build import build, problem_of
+from uplift.pipeline.options import Options
 from uplift.report.fidelity import Answers, compare_spectra
 from uplift.report.measures import check_calibration
 
@@ -57,15 +58,16 @@ def holdout(
     """
     total = 2 + 2 * splits
     options = {"leave_out": families_with(resample(atlas, observer.grid()).values), **options}
+    settings = Options(**options)
+    sensor = problem_of(settings, settings.observer, settings.solver)[1].sensor
+    measured = resample(atlas, sensor.wavelengths).values
+    inside = np.flatnonzero(in_unit_cube(sensor.rgb(measured)))
+    if len(inside) < MIN_ENTRIES:
+        problem = f"a split needs at least {MIN_ENTRIES} entries within {sensor.space}, got {len(inside)}"
+        raise AtlasError(problem, code="too-few-entries", hint="use a larger atlas")
     with warnings.catch_warnings(action="ignore", category=UpliftWarning):
         others = {NO_ATLAS: build(**options), SIGMOID: build(**{**options, "model": "sigmoid"})}
         progress(Progress("builds", 2, total))
-        sensor = others[SIGMOID].data.sensor
-        measured = resample(atlas, sensor.wavelengths).values
-        inside = np.flatnonzero(in_unit_cube(sensor.rgb(measured)))
-        if len(inside) < MIN_ENTRIES:
-            problem = f"a split needs at least {MIN_ENTRIES} entries within {sensor.space}, got {len(inside)}"
-            raise AtlasError(problem, code="too-few-entries", hint="use a larger atlas")
         results: list[HoldoutSplit] = []
         for kept, other in halves_both_ways(inside, splits):
             cube = build(Atlas(tuple(atlas.entries[row] for row in kept)), **options)
