@@ -111,27 +111,11 @@ def find_input_space(name: str) -> ImageSpace:
     return find_space(name)
 
 
-def check_space(name: str) -> None:
-    """Check the name of an RGB space, which may be that of raw values of a camera."""
-    from uplift.colorimetry import camera, spaces
-
-    if name != camera.CAMERA:
-        spaces.look_up_space(name)
-
-
 def check_light(name: str) -> None:
     """Check the name of an illuminant."""
     from uplift.colorimetry.tables import stated_name
 
     stated_name("illuminant", name)
-
-
-def check_observer(name: str) -> None:
-    """Check the name of an observer or a camera; that of a camera's file is found when it is read."""
-    from uplift.colorimetry import observer, tables
-
-    if not observer.is_camera_file(name) and name not in tables.names("camera"):
-        tables.stated_name("observer", name)
 
 
 def check_page(path: str) -> None:

@@ -17,16 +17,7 @@ from click.shell_completion import CompletionItem
 
 from uplift.common.text import format_value, parse_float, parse_whole
 
-from .inputs import (
-    check_figure_page,
-    check_light,
-    check_observer,
-    check_page,
-    check_plot,
-    check_space,
-    find_input_space,
-    parse_wavelengths,
-)
+from .inputs import check_figure_page, check_light, check_page, check_plot, find_input_space, parse_wavelengths
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
@@ -153,8 +144,7 @@ class OutputFile(Checked):
 NUMBER, WHOLE = Number(), Whole()
 WHOLE_OR_AUTO = Whole(word="auto")
 WAVELENGTHS = Parsed(parse_wavelengths)
-LIGHT, OBSERVER = Checked(check_light), Checked(check_observer)
-SPACE, INPUT_SPACE = Checked(check_space), Checked(find_input_space)
+LIGHT, INPUT_SPACE = Checked(check_light), Checked(find_input_space)
 OUTPUT, PAGE, PLOT = OutputFile(str), OutputFile(check_page), OutputFile(check_plot)
 FIGURE_PAGE = OutputFile(check_figure_page)
 
@@ -358,23 +348,19 @@ verbose = click.option("-v", "--verbose", is_flag=True, help="Print a line for e
 def space(camera: str = "") -> Decorator:
     """``--space``: the space of what is built or listed."""
     text = f"RGB space by its name in colour-science or OpenColorIO, such as ACEScg{camera}."
-    return click.option("--space", default="sRGB", type=SPACE, help=text, shell_complete=complete_space)
+    return click.option("--space", default="sRGB", help=text, shell_complete=complete_space)
 
 
 def observer(camera: str = "") -> Decorator:
     """``--observer``."""
     default, text = "CIE 1931 2 Degree Standard Observer", f"Standard observer{camera}."
-    return click.option("--observer", default=default, type=OBSERVER, help=text, shell_complete=complete_observer)
+    return click.option("--observer", default=default, help=text, shell_complete=complete_observer)
 
 
 sensor = stacked(
     space("; or camera: raw values"),
     click.option(
-        "--illuminant",
-        default="D65",
-        type=LIGHT,
-        help="Illuminant under which RGB are defined.",
-        shell_complete=complete_light,
+        "--illuminant", default="D65", help="Illuminant under which RGB are defined.", shell_complete=complete_light
     ),
     observer(", or with --space camera a camera: name or CSV file of sensitivities"),
 )

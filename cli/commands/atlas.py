@@ -59,14 +59,13 @@ def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, 
             raise click.UsageError("--output needs an atlas to write.")
         _print_shipped(style)
         return
+    target = sensor(**camera)
+    check_outputs(output)
+    atlas = read_atlas(*files, measured=scale)
     if output is not None:
-        check_outputs(output)
-        atlas = read_atlas(*files, measured=scale)
         write_atlas(atlas, output, force=force)
         say(f"{output}: {len(atlas)} entries", err=True)
         return
-    atlas = read_atlas(*files, measured=scale)
-    target = sensor(**camera)
     rows, codes, smallest = _list_entries(atlas, target)
     if style == "json":
         fields = {
