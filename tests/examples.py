@@ -1,7 +1,7 @@
 """Every ``uplift`` line of the README, the documentation and the help texts, run where a reader would run it.
 
-``python -m tests.examples`` (``make examples``) runs all of them from a wheel, unpacked outside the clone, in an empty
-folder, and exits with 1 if one fails; ``tests/test_package.py`` runs a few.
+``python -m tests.examples [PAGE...]`` (``make examples``) runs them from a wheel, unpacked outside the clone, each page
+in a new folder with the sample files, and exits with 1 if one fails; ``tests/test_package.py`` runs a few.
 """
 
 import json
@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,45 +22,53 @@ from uplift_cli.main import COMMANDS, main
 ROOT = Path(__file__).parents[1]
 BLOCKS = re.compile(r"^```(\S*)[^\n]*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 SHELLS = ("", "console", "bash", "sh")
-FIRST = ("README.md", "docs/commands.md")
-"""Pages that are read first. The others are in alphabetical order, after the help texts."""
+CUBE = "uplift build --atlas macbeth --dim 32"
+"""Command of the cube that help texts use. A page of the documentation that uses it has this line."""
 TUTORIAL = "docs/tutorial.md"
 """The page whose commands and Python tests/test_docs.py runs together, in a separate folder."""
 ELSEWHERE = {
-    "uplift texture 'shot.*.exr' -o sequence --cube macbeth-32.uplift --scheduler tcp://10.0.0.5:8786",
-    "uplift texture 'shot.*.exr' -o uplifted --scheduler tcp://10.0.0.5:8786",
+    "uplift texture 'shot.*.exr' -o many --cube macbeth-32.uplift --scheduler tcp://10.0.0.5:8786",
+    "uplift texture 'shot.*.exr' -o spectra --scheduler tcp://10.0.0.5:8786",
     "uplift texture shot.*.exr -o uplifted --scheduler tcp://10.0.0.5:8786",
 }
 """Examples that need a Dask cluster at that address."""
 
 
 def examples() -> list[str]:
-    """Return every example once, in reading order."""
-    pages = {path.relative_to(ROOT).as_posix(): path for path in ROOT.glob("docs/**/*.md")}
-    del pages[TUTORIAL]
-    first = [ROOT / "README.md", pages.pop(FIRST[1])]
-    texts = [page_examples(path.read_text(encoding="utf-8")) for path in (*first, *map(pages.get, sorted(pages)))]
-    texts.insert(len(FIRST), help_examples())
-    return list(dict.fromkeys(line for each in texts for line in each))
+    """Return every example once."""
+    return list(dict.fromkeys(line for lines in examples_by_page().values() for line in lines))
 
 
-def page_examples(text: str) -> Iterator[str]:
-    """Yield the examples of a page: lines that begin with ``uplift`` or ``mkdir -p`` in its code blocks."""
+def examples_by_page() -> dict[str, list[str]]:
+    """Return the examples of each page of the documentation and of each help text, in reading order."""
+    paths = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))]
+    texts = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in paths}
+    del texts[TUTORIAL]
+    listed = {name: page_examples(text) for name, text in texts.items()} | help_examples()
+    return {name: lines for name, lines in listed.items() if lines}
+
+
+def page_examples(text: str) -> list[str]:
+    """Return the examples of a page: lines that begin with ``uplift``, ``mkdir -p`` or ``cd`` in its code blocks."""
+    lines = []
     for language, block in BLOCKS.findall(text):
         for line in block.replace("\\\n", " ").splitlines() if language in SHELLS else ():
             if match := re.match(r"(?:\$ )?((?:uplift|mkdir -p|cd) .*)", line):
-                yield " ".join(match[1].partition("    #")[0].split())
+                lines.append(" ".join(match[1].partition("    #")[0].split()))
+    return lines
 
 
-def help_examples() -> Iterator[str]:
-    """Yield the examples of the help of every command and subcommand."""
+def help_examples() -> dict[str, list[str]]:
+    """Return the examples of the help of every command, with those of its subcommands, once each."""
+    listed = {}
     with click.Context(main, **main.context_settings) as context:
         for name in COMMANDS:
             command = main.get_command(context, name)
             assert command is not None
-            for each in (command, *getattr(command, "commands", {}).values()):
-                lines = (line.strip() for line in (each.help or "").splitlines())
-                yield from (line for line in lines if line.startswith("uplift "))
+            helps = [each.help or "" for each in (command, *getattr(command, "commands", {}).values())]
+            lines = (line.strip() for line in "\n".join(helps).splitlines())
+            listed[f"{name} --help"] = list(dict.fromkeys(line for line in lines if line.startswith("uplift ")))
+    return listed
 
 
 def source_files(repository: Path) -> list[str]:
@@ -99,19 +107,32 @@ def run_lines(lines: Sequence[str], package: Path, folder: Path) -> list[dict[st
     return list(json.loads(subprocess.run(command, input=json.dumps(lines), **options).stdout))
 
 
-def run_all() -> int:
-    """Run the examples in an empty folder and print those that fail."""
-    lines = [line for line in examples() if line not in ELSEWHERE]
-    with tempfile.TemporaryDirectory() as name:
-        folder, package = Path(name) / "empty", Path(name) / "package"
-        folder.mkdir()
-        outcomes = run_lines(lines, unpack(build_wheel(Path(name)), package), folder)
-    failures = [outcome for outcome in outcomes if outcome["code"]]
-    for outcome in failures:
-        print(f"{outcome['line']}\n{outcome['stderr']}")
+def run_all(names: Sequence[str]) -> int:
+    """Run the examples of pages, all by default, each page in its folder, and print those that fail."""
+    listed = {name: lines for name, lines in examples_by_page().items() if name in names or not names}
+    with tempfile.TemporaryDirectory() as temporary:
+        root = Path(temporary)
+        package = unpack(build_wheel(root), root / "package")
+        samples = root / "samples"
+        samples.mkdir()
+        run_lines(["uplift samples"], package, samples)
+        # `uplift samples` may write into a folder of its own.
+        samples = next((path for path in samples.iterdir() if path.is_dir()), samples)
+        run_lines([CUBE], package, root)
+        outcomes = []
+        for number, (name, lines) in enumerate(listed.items()):
+            print(f"{name}:", file=sys.stderr, flush=True)
+            folder = shutil.copytree(samples, root / str(number))
+            if name.endswith("--help") and CUBE not in lines:
+                shutil.copy(root / "macbeth-32.uplift", folder)
+            runnable = [line for line in lines if line not in ELSEWHERE]
+            outcomes += [(name, outcome) for outcome in run_lines(runnable, package, folder)]
+    failures = [(name, outcome) for name, outcome in outcomes if outcome["code"]]
+    for name, outcome in failures:
+        print(f"{name}: {outcome['line']}\n{outcome['stderr']}")
     print(f"{len(outcomes) - len(failures)} of {len(outcomes)} examples run")
     return bool(failures)
 
 
 if __name__ == "__main__":
-    sys.exit(run_all())
+    sys.exit(run_all(sys.argv[1:]))

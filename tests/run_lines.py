@@ -32,7 +32,7 @@ def main() -> None:
             Path(words[-1]).mkdir(exist_ok=True)
             continue
         if words[0] == "cd":
-            os.chdir(words[1])
+            os.chdir(words[-1])
             continue
         result = CliRunner().invoke(uplift_cli.main.main, words[1:], prog_name="uplift")
         if target is not None:

@@ -1,5 +1,6 @@
 """The documentation is valid: its commands and options exist, its Python runs, its links resolve."""
 
+import itertools
 import re
 import shlex
 
@@ -10,7 +11,7 @@ from uplift_cli.main import COMMANDS, main
 import uplift
 from benchmarks.__main__ import pages
 from tests.conftest import ROOT
-from tests.examples import BLOCKS, examples
+from tests.examples import BLOCKS, CUBE, examples, examples_by_page
 from tests.helpers import warns
 from tests.parts import MITSUBA, need
 
@@ -20,6 +21,10 @@ COVERAGE = (ROOT / "docs" / "coverage.md").read_text(encoding="utf-8")
 TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
 PYTHON = (ROOT / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
 LINES = [each.split(" > ")[0].split(" | ")[0] for each in examples() if each.startswith("uplift ")]
+
+
+OUTPUTS = ("-o", "--output", "--plot", "--plot-spectra", "--html", ">")
+"""Options whose value is a file that is written."""
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -36,6 +41,21 @@ def test_command_lines_parse(line):
     with click.Context(main, **main.context_settings) as context:
         command = main.get_command(context, name)
         command.make_context(name, arguments, parent=context)
+
+
+@pytest.mark.parametrize(("name", "lines"), examples_by_page().items())
+def test_a_page_makes_the_cubes_and_plans_that_it_uses(name, lines):
+    """Help texts may use the cube of README. No file is written twice without --force."""
+    written, made = set(), [CUBE] if name.endswith("--help") else []
+    for line in lines:
+        words = shlex.split(line)
+        outputs = {word for before, word in itertools.pairwise(words) if before in OUTPUTS}
+        used = {word for word in words if word.endswith((".uplift", ".plan.json"))} - outputs
+        unnamed = {"uplift plan" if word.endswith(".json") else "uplift build" for word in used - written}
+        assert all(any(earlier.startswith(command) for earlier in made) for command in unnamed), line
+        assert not outputs & written or "--force" in words or "--resume" in words, line
+        written |= outputs
+        made += [line] if "-o" not in words else []
 
 
 def test_the_python_page_runs(tmp_path, monkeypatch):

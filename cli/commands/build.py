@@ -66,6 +66,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
       uplift build --atlas paints.csv --range 360:830 --step 1 -o range.uplift
       uplift build --model sigmoid --space 'ITU-R BT.2020' -o wide.uplift
       uplift build --observer 'Nikon 5100 (NPL)' --space camera --dim 16
+      uplift plan kitchen.toml
       uplift build --plan kitchen.plan.json
 
     Warnings name the entries that were left out, clipped or crowded. Colours without measurements get the

@@ -70,6 +70,7 @@ APPLIES = {
       uplift export macbeth-32.uplift -o filed.h --table file
       uplift export macbeth-32.uplift -o moments.glsl --mode moments
       uplift export macbeth-32.uplift -o sodium.cube --light HP1
+      uplift build --coefficients 3 --warp colour --dim 33 -o three.uplift
       uplift export three.uplift -o fourier.png
       uplift export macbeth-32.uplift -o film.npy
       uplift export macbeth-32.uplift --format csv

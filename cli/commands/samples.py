@@ -13,7 +13,8 @@ from ..output.console import say
     "samples",
     help="""Copy images, scenes, palettes and measurements into FOLDER, as files to try uplift with.
 
-    All commands in the documentation and in these help texts run in that folder. Files that are there already stay as
+    All commands in the documentation and in these help texts run in that folder, those of a help text after
+    'uplift build --atlas macbeth --dim 32'. Files that are there already stay as
     they are. The pictures are in the public domain; paints.csv and fabrics.csv are two of the shipped atlases.
 
     \b
