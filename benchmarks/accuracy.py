@@ -17,7 +17,7 @@ from uplift.common.arrays import Array
 from uplift.fit.growth_outward import shells
 from uplift.fit.problem import Problem
 from uplift.io.exr import blue_slices
-from uplift.lab.chart.method import at_1_nm
+from uplift.lab.chart.method import at_1_nm, published_srgb
 from uplift.lab.timing import time_calls
 from uplift.lattice import Status
 from uplift.lookup import MODES, Cube
@@ -30,6 +30,9 @@ RANGES = ((380, 780, 10), (380, 780, 5), (380, 780, 1), (360, 830, 10), (360, 83
 VISIBLE = np.arange(400, 701, 5)
 DIMS = (16, 32, 64)
 QUERIES = np.random.default_rng(20000).random((20000, 3))
+STARTS, FIRST_STEP, LAST_STEP = 32, 0.03, 1e-4
+"""Of searches for the largest error: colours, and steps in linear RGB."""
+DIRECTIONS = np.concatenate([np.eye(3), -np.eye(3)])
 ORDER_DIM, SOLVER_DIM, RUNS = 32, 16, 3
 SPACES = ("sRGB", "ITU-R BT.2020", "ProPhoto RGB")
 OTHERS = ("rawtoaces", "cie2017")
@@ -39,6 +42,13 @@ SOLVERS = ("least-change", "gauss-newton", "dogleg", "levenberg-marquardt")
 
 def main() -> None:
     """Measure and store."""
+    measure_round_trips()
+    draw_rounds()
+    measure_growth()
+
+
+def measure_round_trips() -> None:
+    """Measure what cubes return for a colour, by their model, dim and range."""
     fitted, round_trips = [], []
     for name, cube in cubes():
         fitted.append({"cube": name, **fit_quality(cube)})
@@ -48,11 +58,15 @@ def main() -> None:
                 "cube": name,
                 "errors": {mode: round_trip(cube, cube.data.sensor, mode) for mode in MODES},
                 "fine": {mode: round_trip(cube, fine, mode) for mode in MODES},
+                "published": round_trip(cube, published_srgb()),
             }
         )
     ranges = [at_range(*each) for each in RANGES]
     record("accuracy", queries=len(QUERIES), fitted=fitted, round_trips=round_trips, ranges=ranges)
-    draw_rounds()
+
+
+def measure_growth() -> None:
+    """Measure orders of growth and solvers."""
     record(
         "accuracy",
         "growth",
@@ -86,9 +100,27 @@ def fit_quality(cube: Cube) -> Row:
 
 
 def round_trip(cube: Cube, sensor: Sensor, mode: str = "spectra") -> list[float]:
-    """Return the mean and the largest ΔE00 by a sensor between requested colours and those of their spectra."""
-    found = delta_e_rgb(sensor, QUERIES, sensor.rgb(cube.reflectance(QUERIES, sensor.wavelengths, mode)))
-    return [float(found.mean()), float(found.max())]
+    """Return the mean and the largest ΔE00 between requested colours and those of the spectra, by a sensor."""
+
+    def error(rgb: Array) -> Array:
+        spectra = cube.reflectance(rgb, sensor.wavelengths, mode)
+        return delta_e_rgb(sensor, rgb, sensor.rgb(spectra))
+
+    errors = error(QUERIES)
+    return [float(errors.mean()), largest(error, QUERIES[np.argsort(errors)[-STARTS:]])]
+
+
+def largest(error: Callable[[Array], Array], rgb: Array) -> float:
+    """Search the largest error near colours (n, 3), by steps along the axes that are halved where none is better."""
+    step, value = np.full((len(rgb), 1, 1), FIRST_STEP), error(rgb)
+    while step.max() > LAST_STEP:
+        trials = np.clip(rgb[:, None] + step * DIRECTIONS, 0, 1)
+        errors = error(trials.reshape(-1, 3)).reshape(trials.shape[:2])
+        best, is_better = errors.argmax(axis=1), errors.max(axis=1) > value
+        rgb = np.where(is_better[:, None], trials[np.arange(len(rgb)), best], rgb)
+        value = np.maximum(value, errors.max(axis=1))
+        step = np.where(is_better[:, None, None], step, step / 2)
+    return float(value.max())
 
 
 def at_range(shortest: int, longest: int, step: int) -> Row:
