@@ -7,6 +7,7 @@ from typing import Any
 from unittest import mock
 
 import numpy as np
+from scipy.optimize import differential_evolution
 
 import uplift
 from benchmarks import MACBETH, ROOT, Row, record
@@ -30,9 +31,8 @@ RANGES = ((380, 780, 10), (380, 780, 5), (380, 780, 1), (360, 830, 10), (360, 83
 VISIBLE = np.arange(400, 701, 5)
 DIMS = (16, 32, 64)
 QUERIES = np.random.default_rng(20000).random((20000, 3))
-STARTS, FIRST_STEP, LAST_STEP = 32, 0.03, 1e-4
-"""Of searches for the largest error: colours, and steps in linear RGB."""
-DIRECTIONS = np.concatenate([np.eye(3), -np.eye(3)])
+STARTS = 512
+"""Colours from which the largest error is searched."""
 ORDER_DIM, SOLVER_DIM, RUNS = 32, 16, 3
 SPACES = ("sRGB", "ITU-R BT.2020", "ProPhoto RGB")
 OTHERS = ("rawtoaces", "cie2017")
@@ -111,16 +111,12 @@ def round_trip(cube: Cube, sensor: Sensor, mode: str = "spectra") -> list[float]
 
 
 def largest(error: Callable[[Array], Array], rgb: Array) -> float:
-    """Search the largest error near colours (n, 3), by steps along the axes that are halved where none is better."""
-    step, value = np.full((len(rgb), 1, 1), FIRST_STEP), error(rgb)
-    while step.max() > LAST_STEP:
-        trials = np.clip(rgb[:, None] + step * DIRECTIONS, 0, 1)
-        errors = error(trials.reshape(-1, 3)).reshape(trials.shape[:2])
-        best, is_better = errors.argmax(axis=1), errors.max(axis=1) > value
-        rgb = np.where(is_better[:, None], trials[np.arange(len(rgb)), best], rgb)
-        value = np.maximum(value, errors.max(axis=1))
-        step = np.where(is_better[:, None, None], step, step / 2)
-    return float(value.max())
+    """Search the largest error from colours (n, 3) on."""
+    limits = [(0, 1)] * 3
+    found = differential_evolution(
+        lambda rgb: -error(rgb.T), limits, init=rgb, vectorized=True, updating="deferred", polish=False, rng=1
+    )
+    return float(-found.fun)
 
 
 def at_range(shortest: int, longest: int, step: int) -> Row:

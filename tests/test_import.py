@@ -30,7 +30,7 @@ QUERY = "from uplift_cli.main import main\ntry: main(['query', '#123456', '--for
 
 def test_builds_and_queries_load_only_the_core():
     assert not loaded_subpackages("import uplift")[1] & {"numpy", "click", *HEAVY_OF_FITS}
-    assert not loaded_subpackages(QUERY)[1] & {"matplotlib", "rich", "logging", *HEAVY_OF_FITS}
+    assert not loaded_subpackages(QUERY)[1] & {"matplotlib", "rich", "logging", "subprocess", *HEAVY_OF_FITS}
     assert loaded_subpackages("import uplift; uplift.build(dim=2)")[0] == CORE | {"atlas", "fit", "pipeline"}
     for code, more in (
         ("uplift.load().reflectance([0.5, 0.5, 0.5], wavelengths=[400, 500])", set()),

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks import palette_dial as scan
+from benchmarks.accuracy import largest
 from benchmarks.cameras import lab_matrix, realisable_share, xyz_matrix
 from benchmarks.representations import Printed, closed, enhanced, printed_filters, printed_tables
 from uplift.colorimetry import observer, tables
@@ -27,6 +28,11 @@ def test_known_camera_matrices_are_found_and_keep_white(known):
     np.testing.assert_allclose(lab_matrix(raw, raw @ known.T, WHITE), known, rtol=1e-6)
     noisy = raw @ known.T + 0.01 * rng.standard_normal((12, 3))
     np.testing.assert_allclose(lab_matrix(raw, noisy, WHITE).sum(axis=1), WHITE, rtol=1e-12)
+
+
+def test_the_largest_error_is_searched_for():
+    starts = np.random.default_rng(0).uniform(0, 0.5, (32, 3))
+    assert largest(lambda rgb: rgb @ [1, 2, -3], starts) == pytest.approx(3, abs=1e-3)
 
 
 def test_overlapping_channels_leave_few_raw_values():

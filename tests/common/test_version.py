@@ -2,54 +2,43 @@
 
 import shutil
 import subprocess
-import sys
 
 import pytest
 
-from uplift.common import version as module
-from uplift.common.version import UNKNOWN, VERSION, is_older, version
+from uplift.common import version
+from uplift.common.version import UNKNOWN, VERSION, is_older
 
 
 @pytest.fixture
-def root(tmp_path, monkeypatch):
-    """A folder in place of the clone."""
-    monkeypatch.setattr(module, "ROOT", tmp_path)
-    version.cache_clear()
-    yield tmp_path
-    version.cache_clear()
+def version_of(monkeypatch):
+    """The version of the source in a folder."""
 
+    def version_of(folder):
+        monkeypatch.setattr(version, "ROOT", folder)
+        return version.version.__wrapped__()
 
-def git(folder, *arguments):
-    identity = ("-c", "user.name=a", "-c", "user.email=a@b.c", "-c", "commit.gpgsign=false")
-    subprocess.run(["git", *identity, "-C", folder, *arguments], check=True, capture_output=True)
+    return version_of
 
 
 @pytest.mark.skipif(shutil.which("git") is None, reason="no git")
-def test_every_commit_has_a_version_that_a_shallow_clone_does_not_know(root, monkeypatch):
-    whole, shallow = root / "whole", root / "shallow"
-    git(root, "init", whole)
+def test_every_commit_has_a_version_that_a_shallow_clone_does_not_know(version_of, tmp_path):
+    def git(*arguments):
+        identity = ("-c", "user.name=a", "-c", "user.email=a@b.c", "-c", "commit.gpgsign=false")
+        subprocess.run(["git", *identity, *arguments], cwd=tmp_path, check=True, capture_output=True)
+
+    git("init")
     for count in (1, 2):
-        git(whole, "commit", "--allow-empty", "-m", "change")
-        monkeypatch.setattr(module, "ROOT", whole)
-        version.cache_clear()
-        assert version() == f"{VERSION}{count}"
-    git(root, "clone", "--depth", "1", whole.as_uri(), shallow)
-    monkeypatch.setattr(module, "ROOT", shallow)
-    version.cache_clear()
-    assert version() == VERSION + UNKNOWN
+        git("commit", "--allow-empty", "-m", "change")
+        assert version_of(tmp_path) == f"{VERSION}{count}"
+    git("clone", "--depth", "1", tmp_path.as_uri(), "shallow")
+    assert version_of(tmp_path / "shallow") == VERSION + UNKNOWN
 
 
-def test_a_source_distribution_has_the_version_of_its_build(root):
-    (root / "pyproject.toml").touch()
-    assert version() == VERSION + UNKNOWN
-    (root / "PKG-INFO").write_text("Metadata-Version: 2.4\nName: spectral-uplift\nVersion: 0.3.0.dev7\n")
-    version.cache_clear()
-    assert version() == "0.3.0.dev7"
-
-
-def test_import_asks_no_git():
-    code = "import sys, uplift.common.version; assert not {'subprocess', 'importlib.metadata'} & set(sys.modules)"
-    subprocess.run([sys.executable, "-c", code], check=True)
+def test_a_source_distribution_has_the_version_of_its_build(version_of, tmp_path):
+    (tmp_path / "pyproject.toml").touch()
+    assert version_of(tmp_path) == VERSION + UNKNOWN
+    (tmp_path / "PKG-INFO").write_text("Metadata-Version: 2.4\nVersion: 0.3.0.dev7\n")
+    assert version_of(tmp_path) == "0.3.0.dev7"
 
 
 def test_versions_are_ordered_by_number_and_unknown_ones_are_not():
