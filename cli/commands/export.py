@@ -7,11 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from uplift.common.text import round_up
+
 from .. import options
 from ..output.console import say
 from ..output.progress import progress_bar
 
 if TYPE_CHECKING:
+    from uplift.cube import CubeData
+    from uplift.io.export import TableError
     from uplift.lookup import Cube
 
 PROGRAMS = {"c": ".h", "cuda": ".cuh", "glsl": ".glsl", "hlsl": ".hlsl"}
@@ -111,11 +115,15 @@ def command(cube: str, output: str | None, style: str | None, fill_missing: bool
             raise click.UsageError(f"--{name} applies to {', '.join(APPLIES[name])} only.")
     if style in LUTS and "light" not in settings:
         raise click.UsageError("A cube or clf table shows the colours under a light: give --light, such as HP1.")
-    from uplift.common.files import check_output
+    from uplift.common.files import check_output, check_outputs
+    from uplift.io.export import check_form, output_files
     from uplift.lookup import load
 
+    form = check_form(style, settings.get("table")) if style in PROGRAMS else style
+    files = output_files(output or Path(cube).stem + SUFFIXES[style], form)
+    path = check_output(files[0], inputs=[cube], force=force)
+    check_outputs(files, inputs=[cube], force=True)  # second files that exist are judged by their content
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
-    path = check_output(output or Path(cube).stem + SUFFIXES[style], inputs=[cube], force=force)
     say(f"{path}: {_write(loaded, path, style, force=force, **settings)}")
 
 
@@ -128,19 +136,18 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     data = cube.data
     if style in LUTS:
         error = export.write_lut(cube, path=path, **settings)
-        shown = f"mean {error.mean:.2g}, largest {error.largest:.2g}"
-        return f"colours under {settings['light']}, ΔE00 from the cube's: {shown}"
+        return f"colours under {settings['light']}, {_shown(error)}"
     if style == "fourier":
         error = export.write_fourier(cube, path, **settings)
-        shader = path.with_suffix(".glsl")
-        return f"shader in {shader}, ΔE00 of colours in 8 bits: mean {error.mean:.2g}, largest {error.largest:.2g}"
+        _, shader = export.output_files(path, style)
+        return f"shader in {shader}, with 8 bits {_shown(error)}"
     if style == "film":
         film = export.write_film(cube, path, **settings)
         return f"{film.inside:.0%} of the chromaticities from the cube, mean error of exposure {film.stops:.2g} stops"
     if style in SIGMOIDS:
         with progress_bar("fitting sigmoids"):
-            largest = export.write_coeff(data, path, layout=style, **settings)
-        return f"table of sigmoids, largest RGB error {largest:.1e} between its points"
+            error = export.write_coeff(data, path, layout=style, **settings)
+        return f"table of sigmoids, {_shown(error)}"
     if style == "npz":
         return f"{export.write_npz(data, path, **settings)} arrays"
     if style == "csv":
@@ -148,10 +155,27 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     if style == "html":
         write_text(page(data), path, **settings)
         return f"page, {path.stat().st_size / 1e6:.1f} MB"
-    form = settings.pop("table", None)
-    written = export.write_program(data, path, style=style, form=form, **settings)
+    return _write_program(data, path, style, **settings)
+
+
+def _write_program(
+    data: CubeData, path: Path, style: str, *, force: bool, mode: str = "spectra", table: str | None = None
+) -> str:
+    """Write a program, and return a description of it."""
+    from uplift.io import export
+
+    written = export.write_program(data, path, style=style, mode=mode, form=table, force=force)
     size = sum(each.stat().st_size for each in written) / 1e6
-    tables = "".join(f", table in {each}" for each in written[1:])
-    rounding = export.rounding_error(data, settings.get("mode", "spectra"))
-    shown = f"single precision changes reflectances by up to {rounding:.1g}{tables}"
-    return f"{data.lattice.size} nodes, {len(data.atlas.names)} atlas entries, {size:.1f} MB, {shown}"
+    facts = [f"{data.lattice.size} nodes", f"{len(data.atlas.names)} atlas entries", f"{size:.1f} MB"]
+    facts.append(f"single precision changes reflectances by less than {round_up(export.rounding_error(data, mode)):g}")
+    moved = export.moved_cells(data, mode).sum() / (data.lattice.dim - 1) ** 3
+    if moved:
+        facts.append(f"more in {moved:.0%} of the cells, next to unrealisable colours")
+    facts += [f"table in {each}" for each in written[1:]]
+    return ", ".join(facts)
+
+
+def _shown(error: TableError) -> str:
+    """Describe the errors of a table."""
+    worst = " ".join(f"{value:.2g}" for value in error.worst)
+    return f"ΔE00 from the cube's: mean {error.mean:.2g}, largest {round_up(error.largest):g} (RGB {worst})"

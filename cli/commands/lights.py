@@ -145,13 +145,15 @@ def info(table_path: str, style: str, plot_path: str | None, html: str | None, f
 @options.table
 @options.force
 def export(table_path: str, output: str, table: str | None, force: bool) -> None:
-    from uplift.io.export import write_light_program
+    from uplift.io.export import check_form, output_files, write_light_program
     from uplift.lights.lookup import load_emission
 
     language = LANGUAGES.get(Path(output).suffix.lower())
     if language is None:
         raise click.UsageError(f"--output must end in {' or '.join(LANGUAGES)}.")
-    path = check_output(output, inputs=[table_path], force=force)
+    files = output_files(output, check_form(language, table))
+    path = check_output(files[0], inputs=[table_path], force=force)
+    check_outputs(files, inputs=[table_path], force=True)  # a table that exists is judged by its content
     data = load_emission(table_path).data
     written = write_light_program(data, path, style=language, form=table, force=force)
     size = sum(each.stat().st_size for each in written) / 1e6

@@ -37,8 +37,33 @@ def test_the_table_of_a_program_is_a_choice(run, refuse, home, cube):
     run("export", cube, "-o", "a.h", "--table", "file")
     assert {path.name for path in home.iterdir()} == {cube, "a.h", "a.bin"}
     assert refuse("export", cube, "-o", "c.cuh", "--table", "header").code == "option"
-    assert refuse("export", cube, "-o", "a.glsl").code == "file-exists"
+    assert refuse("export", cube, "-o", "a.glsl", "--mode", "moments").code == "file-exists"
     assert not (home / "a.glsl").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "output"),
+    [
+        ("c.uplift", "c.uplift --format csv"),
+        ("c.bin", "c.glsl"),
+        ("c.bin", "c.h --table file"),
+        ("c.toml", "c.npy"),
+        ("c.glsl", "c.png"),
+    ],
+)
+def test_no_output_replaces_the_cube(refuse, home, cube, name, output):
+    """A second file neither, even with --force, and before anything is written."""
+    before = (home / cube).read_bytes()
+    (home / cube).rename(home / name)
+    assert refuse("export", name, "--force", "-o", *output.split()).code == "output-is-input"
+    assert [path.name for path in home.iterdir()] == [name]
+    assert (home / name).read_bytes() == before
+
+
+@pytest.mark.parametrize("output", ["c.bin --format c --table file", "c.toml --format film", "c.glsl --format fourier"])
+def test_two_outputs_of_one_name(refuse, home, cube, output):
+    assert refuse("export", cube, "--force", "-o", *output.split()).code == "output"
+    assert [path.name for path in home.iterdir()] == [cube]
 
 
 def test_format_follows_the_suffix_of_out(run, home, cube, monkeypatch):

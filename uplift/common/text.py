@@ -1,5 +1,6 @@
 """Text from elsewhere: made safe to show, shortened for messages, and parsed as numbers or JSON."""
 
+import decimal
 import json
 import math
 import re
@@ -55,6 +56,15 @@ def listed(names: Sequence[str]) -> str:
     """Join the first `MAX_LISTED` names, and count the others: 'a, b, c, d, e, f and 2 more'."""
     more = f" and {len(names) - MAX_LISTED} more" if len(names) > MAX_LISTED else ""
     return ", ".join(names[:MAX_LISTED]) + more
+
+
+def round_up(value: float) -> float:
+    """Round a bound up to two digits.
+
+    >>> round_up(1.2301), round_up(0.5)
+    (1.3, 0.5)
+    """
+    return float(decimal.Context(prec=2, rounding=decimal.ROUND_CEILING).create_decimal_from_float(value))
 
 
 def parse_float(text: str) -> float:

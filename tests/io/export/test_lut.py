@@ -2,6 +2,7 @@
 
 import numpy as np
 import PyOpenColorIO
+import pytest
 
 from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import sensor
@@ -10,7 +11,7 @@ from uplift.io.export import write_lut
 
 LIGHT = "HP1"
 NODES = np.random.default_rng(1).integers(0, 9, (60, 3)) / 8
-OTHERS = np.random.default_rng(2).random((500, 3))
+OTHERS = np.random.default_rng(2).random((1 << 14, 3))
 
 
 def apply(path, colours):
@@ -21,9 +22,9 @@ def apply(path, colours):
     return pixels.astype(float)
 
 
-def expected(cube, linear):
+def expected(cube, linear, light=LIGHT):
     """Linear RGB of the spectra of linear RGB, with the white of the light as white."""
-    screen = sensor("sRGB", LIGHT)
+    screen = sensor("sRGB", light)
     return cube.reflectance(linear, screen.wavelengths) @ screen.matrix.T
 
 
@@ -35,13 +36,23 @@ def test_a_table_of_codes_holds_the_relit_colours(small_cube, tmp_path):
     np.testing.assert_allclose(apply(tmp_path / "relight.cube", NODES)[inside], encode(right)[inside], atol=1e-6)
 
 
-def test_a_clf_file_takes_linear_colours_and_states_its_error(small_cube, tmp_path):
-    error = write_lut(small_cube, LIGHT, tmp_path / "relight.clf")
-    linear = decode(OTHERS)
-    found, right = apply(tmp_path / "relight.clf", linear), expected(small_cube, linear)
-    measured = delta_e_rgb(sensor("sRGB", LIGHT), found, right)
-    assert measured.mean() < 1.3 * error.mean < 0.2
-    assert measured.max() < 2 * error.largest
+def pairs(codes):
+    """Codes with green and blue nearly equal, where the error of tetrahedra is largest."""
+    return np.column_stack([codes[:, :2], np.clip(codes[:, 1] + 0.01 * (codes[:, 2] - 0.5), 0, 1)])
+
+
+@pytest.mark.parametrize(("light", "res"), [(LIGHT, 33), ("A", 33), ("FL11", 17)])
+@pytest.mark.parametrize("name", ["small_cube", "small_sigmoid_cube"])
+def test_a_clf_file_takes_linear_colours_and_states_its_largest_error(request, tmp_path, name, light, res):
+    """Independent colours do not exceed it, and the colour with the largest error has it."""
+    cube = request.getfixturevalue(name)
+    error = write_lut(cube, light, tmp_path / "relight.clf", res=res)
+    linear = np.concatenate([decode(OTHERS), decode(pairs(OTHERS)), [error.worst]])
+    found, right = apply(tmp_path / "relight.clf", linear), expected(cube, linear, light)
+    measured = delta_e_rgb(sensor("sRGB", light), found, right)
+    np.testing.assert_allclose(measured[: len(OTHERS)].mean(), error.mean, rtol=0.1)
+    assert measured[:-1].max() < error.largest
+    np.testing.assert_allclose(measured[-1], error.largest, rtol=0.02)
 
 
 def test_greys_stay_grey_only_if_the_light_is_adapted(small_cube, tmp_path):

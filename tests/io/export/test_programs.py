@@ -7,12 +7,16 @@ import numpy as np
 import pytest
 
 import uplift
+from tests.fuzz.builds import stay
+from tests.fuzz.programs import c_reflectances
+from tests.helpers import raises, warns
 from tests.io.export import run_program
 from tests.parts import CC, CLANG, SANITIZED, SANITIZERS, need
-from uplift.common.errors import UpliftWarning
-from uplift.io.export import LANGUAGES, write_program
+from uplift.common.errors import OutputError
+from uplift.io.export import LANGUAGES, rounding_error, write_program
 
 WAVELENGTHS = [300.0, 455.0, 551.5, 700.0]
+EVERY = np.arange(380.0, 781.0)
 WITHIN = 1e-4  # tolerance of reflectance in single precision: multipliers of spectra near a box reach 4e6
 LANGUAGE = {"cpp": "c"}
 
@@ -109,15 +113,42 @@ def test_colours_outside_are_clipped_and_nan_is_0(small_cube, check, style):
     check(small_cube, style, "spectra", np.array([[2, -1, 0.5], [np.nan, 0.2, np.inf]]))
 
 
-def test_what_single_precision_changes_is_stated(plain_cube, tmp_path):
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+def test_what_single_precision_changes_is_a_bound(small_cube, sigmoid_cube, warped_cube, wide, mode):
+    """At every wavelength, of colours whose answers are not moved."""
+    need(CC)
+    for cube in (small_cube, sigmoid_cube, warped_cube, *wide.values()):
+        rgb = colours(cube.data)[:4000:2]
+        rgb = rgb[stay(cube.data, mode, rgb)]
+        found = c_reflectances(cube.data, mode, rgb, EVERY)
+        assert np.abs(found - cube.reflectance(rgb, EVERY, mode)).max(initial=0) < rounding_error(cube.data, mode)
+
+
+@pytest.mark.parametrize("mode", ["spectra", "moments"])
+def test_steep_spectra_have_a_large_bound(plain_cube, mode):
     data = plain_cube.data
     step = 1e6 / np.arange(1, data.model.count + 1)  # with its edge at a wavelength of the sensor
     step[0] = -(data.model.basis([550])[:, 1:] @ step[1:])[0]
     coefficients = data.points.coefficients.astype(float)
     coefficients[5] = data.model.to_storage(step)
     steep = replace(data, points=replace(data.points, coefficients=coefficients))
-    with pytest.warns(UpliftWarning, match="single precision"):
-        write_program(steep, tmp_path / "cube.h")
+    assert rounding_error(steep, mode) > 1e-3 > rounding_error(data, mode)
+
+
+def test_programs_of_one_cube_share_a_table(small_cube, plain_cube, tmp_path):
+    """Another table is refused, and replaced only with force."""
+    data = small_cube.data
+    _, table = write_program(data, tmp_path / "a.glsl", style="glsl")
+    shared = write_program(data, tmp_path / "a.hlsl", style="hlsl")
+    assert shared == [tmp_path / "a.hlsl", table]
+    before = table.read_bytes()
+    with raises(OutputError, "file-exists"):
+        write_program(plain_cube.data, tmp_path / "a.cuh", style="cuda")
+    assert table.read_bytes() == before
+    assert not (tmp_path / "a.cuh").exists()
+    with warns("warning"):
+        write_program(plain_cube.data, tmp_path / "a.cuh", style="cuda", force=True)
+    assert table.read_bytes() != before
 
 
 MANY = r"""

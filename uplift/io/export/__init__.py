@@ -5,11 +5,17 @@ from uplift.io.export.coeff import write_coeff
 from uplift.io.export.film import write_film
 from uplift.io.export.lights import write_light_program
 from uplift.io.export.lut import write_fourier, write_lut
-from uplift.io.export.program import LANGUAGES, write_program
-from uplift.io.export.table import rounding_error
+from uplift.io.export.outputs import output_files
+from uplift.io.export.program import LANGUAGES, check_form, write_program
+from uplift.io.export.table import moved_cells, rounding_error
+from uplift.io.export.table_error import TableError
 
 __all__ = [
     "LANGUAGES",
+    "TableError",
+    "check_form",
+    "moved_cells",
+    "output_files",
     "rounding_error",
     "write_coeff",
     "write_csv",

@@ -22,13 +22,16 @@ from string import Template
 
 import numpy as np
 
+from uplift.colorimetry.delta_e import delta_e_rgb
 from uplift.colorimetry.observer import on_range
 from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Floats, StrPath, Values, blocks
 from uplift.common.errors import OptionError
 from uplift.common.files import atomic_write
 from uplift.cube import CubeData
 from uplift.io.export.program import read_source
+from uplift.io.export.table_error import TableError, find_errors
 from uplift.lookup.interpolate import around
 from uplift.models import Sigmoid
 from uplift.models.arithmetic import blocked_matmul_columns
@@ -48,8 +51,6 @@ FAINT = 1e-6
 FIRST_DAMPING, MAX_DAMPING, MAX_STEPS, SMALL_GAIN, SMALL_PART = 1e-6, 1e6, 200, 1e-2, 1e-4
 BLOCK = 1 << 10
 """Points of a level that are fitted at a time."""
-COLOURS, SEED = 20_000, 20200617
-"""Random colours of which the error is stated."""
 START, END, STEP = 360.0, 830.0, 5.0
 """Range and step in nm of rgb2spec, and of the programs that read its tables."""
 MODEL = Sigmoid(START, END)
@@ -65,13 +66,15 @@ LAYOUTS = {"coeff": {"", *SYMBOLS.values()}, "pbrt": set(SYMBOLS.values()), "lui
 """Tables that a layout can hold; that of rgb2spec has those without a name as well."""
 
 
-def write_coeff(data: CubeData, path: StrPath, *, layout: str = "coeff", res: int = RES, force: bool = False) -> float:
+def write_coeff(
+    data: CubeData, path: StrPath, *, layout: str = "coeff", res: int = RES, force: bool = False
+) -> TableError:
     """Write a cube as a table of sigmoid spectra with ``res`` points along each axis, 2 to 256.
 
     The layout is one of `LAYOUTS`; pbrt and LuisaRender are compiled for 64 points. Readers interpret RGB in the cube's
-    space under its illuminant; Mitsuba and LuisaRender assume sRGB under D65. Returns the largest difference of a
-    component of linear RGB from the cube's answers, of `COLOURS` random colours that rgb2spec interpolates. Raises
-    `ColourError` for the cube of a camera, `OptionError` for a space or an illuminant without a table in the program.
+    space under its illuminant; Mitsuba and LuisaRender assume sRGB under D65. Returns the errors of
+    colours that rgb2spec interpolates, under the light of the cube. Raises `ColourError` for the cube of a camera,
+    `OptionError` for a space or an illuminant without a table in the program.
     """
     data.sensor.require_xyz()
     if not MIN_RES <= res <= MAX_RES:
@@ -89,7 +92,7 @@ def write_coeff(data: CubeData, path: StrPath, *, layout: str = "coeff", res: in
         table = _fit(data, sensor, scale, _directions(res)).reshape(res, 3, res, res, 3).swapaxes(0, 1)
         content = _binary(sensor, scale, table) if layout == "coeff" else _source(layout, name, scale, table).encode()
         temporary.write_bytes(content)
-    return _largest_error(data, sensor, scale, table)
+    return _errors(data, sensor, scale, table)
 
 
 def _binary(sensor: Sensor, scale: Array, table: Floats) -> bytes:
@@ -193,10 +196,13 @@ def _targets(data: CubeData, rgb: Array) -> Array:
     return around(data, rgb).weighted_sum(data.points.rgb.astype(float), data.atlas.rgb)
 
 
-def _largest_error(data: CubeData, sensor: Sensor, scale: Array, table: Floats) -> float:
-    rgb = np.random.default_rng(SEED).random((COLOURS, 3))
-    spectra = evaluate_unscaled(_interpolated(scale, table, rgb), sensor.wavelengths)
-    return float(np.abs(sensor.rgb(spectra) - _targets(data, rgb)).max())
+def _errors(data: CubeData, sensor: Sensor, scale: Array, table: Floats) -> TableError:
+    def error(codes: Array) -> Array:
+        rgb = decode(codes)
+        spectra = evaluate_unscaled(_interpolated(scale, table, rgb), sensor.wavelengths)
+        return delta_e_rgb(sensor, sensor.rgb(spectra), _targets(data, rgb))
+
+    return find_errors(error, data.atlas.rgb)
 
 
 def _interpolated(scale: Array, table: Floats, rgb: Array) -> Array:
@@ -204,7 +210,7 @@ def _interpolated(scale: Array, table: Floats, rgb: Array) -> Array:
     from scipy.interpolate import RegularGridInterpolator
 
     largest, rows, even = rgb.argmax(axis=1), np.arange(len(rgb)), np.linspace(0, 1, len(scale))
-    level = rgb[rows, largest]
+    level = np.maximum(rgb[rows, largest], np.finfo(float).tiny)  # of black
     places = np.stack([level, *(rgb[rows, (largest + step) % 3] / level for step in (2, 1))], axis=-1)
     found = np.zeros((len(rgb), 3))
     for axis in range(3):

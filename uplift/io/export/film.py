@@ -29,7 +29,8 @@ from uplift.colorimetry.solid import solid
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError
-from uplift.common.files import atomic_write, write_text
+from uplift.common.files import atomic_write, check_outputs, write_text
+from uplift.io.export.outputs import output_files
 from uplift.io.export.program import read_source
 from uplift.lookup import Cube
 
@@ -82,6 +83,8 @@ def write_film(
             f"res must be from {MIN_SIZE} to {MAX_SIZE} and share in (0, 1), got {res} and {share:g}",
             hint=f"readers expect {SIZE} rows; the usual share is {SHARE}",
         )
+    files = output_files(path, "film")
+    check_outputs(files, force=force)
     scene = _scene(sensor, light)
     unit = _chromaticities(res)
     spectra, inside = _spectra(cube, scene, unit, share)
@@ -89,7 +92,7 @@ def write_film(
     described = _description(Path(path), scene.name, "irradiance" if light else "reflectance", res)
     with atomic_write(path, force=force) as temporary, temporary.open("wb") as file:
         np.save(file, table, allow_pickle=False)
-        write_text(described, Path(path).with_suffix(".toml"), force=force)
+        write_text(described, files[1], force=force)
     return FilmTable(inside, _stops(cube, scene, spectra.reshape(res, res, -1)))
 
 

@@ -16,7 +16,7 @@ Peters, Merzbach, Hanika & Dachsbacher 2019, "Spectral rendering with the bounde
 """
 
 import os
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from string import Template
 from typing import Any
@@ -29,39 +29,31 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import decode, encode
 from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError
-from uplift.common.files import atomic_write, write_text
+from uplift.common.files import atomic_write, check_outputs, write_text
 from uplift.cube import CubeData
+from uplift.io.export.outputs import output_files
 from uplift.io.export.program import identifier, literal, read_source
 from uplift.io.export.table import model_constants
+from uplift.io.export.table_error import TableError, find_errors
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
-from uplift.models import Moments, reflectance
-from uplift.models.moments import WARPS
+from uplift.models import Moments, evaluate
+from uplift.models.moments import WARPS, multipliers_of_rounded
 
 SIZE, MIN_SIZE, MAX_SIZE = 33, 2, 129
-SAMPLES, SEED = 4096, 7
-"""Random colours, even in codes, on which the table is compared with the cube."""
 CLF = "Academy/ASC Common LUT Format"
 CURVE = {"gamma": [2.4, 2.4, 2.4, 1.0], "offset": [0.055, 0.055, 0.055, 0.0]}
 """The sRGB curve, as OpenColorIO states it."""
 FOURIER_COUNT, LEVEL = 3, 16
 
 
-@dataclass(frozen=True)
-class LutError:
-    """ΔE00 between colours from the table and from the cube."""
-
-    mean: float
-    largest: float
-
-
 def write_lut(
     cube: Cube, light: str, path: StrPath, *, res: int = SIZE, adapt: bool = True, force: bool = False
-) -> LutError:
+) -> TableError:
     """Write the colours of reflectances under a light as a table of ``res``³ nodes, 2 to 129, ``.clf`` or ``.cube``.
 
     With ``adapt`` the white of the light is shown as white (Bradford); otherwise colours have its tint. Returns the
-    error of 4096 random colours with OpenColorIO's interpolation. The cube of a camera is a `ColourError`.
+    errors with OpenColorIO's interpolation. The cube of a camera is a `ColourError`.
     """
     if not MIN_SIZE <= res <= MAX_SIZE:
         raise OptionError(f"res must be from {MIN_SIZE} to {MAX_SIZE}, got {res}", hint=f"{SIZE} is usual")
@@ -77,7 +69,7 @@ def write_lut(
     title = f"uplift: {own.space} under {own.illuminant} to {screen.illuminant}"
     is_clf = os.fspath(path).lower().endswith(".clf")
     write_text(_clf(transform, title) if is_clf else cube_text(table, title, res), path, force=force)
-    return _error(cube, transform, screen)
+    return _errors(cube, transform, screen)
 
 
 def _relit(cube: Cube, codes: Array, screen: Sensor) -> Array:
@@ -116,22 +108,25 @@ def cube_text(table: Values, title: str, size: int) -> str:
     return f"# {title}\n# sRGB-encoded components in and out\nLUT_3D_SIZE {size}\n{lines}\n"
 
 
-def _error(cube: Cube, transform: Any, screen: Sensor) -> LutError:
+def _errors(cube: Cube, transform: Any, screen: Sensor) -> TableError:
     import PyOpenColorIO as ocio  # noqa: N813
 
-    codes = np.random.default_rng(SEED).random((SAMPLES, 3))
-    pixels = decode(codes).astype(np.float32)
-    ocio.Config.CreateRaw().getProcessor(transform).getDefaultCPUProcessor().applyRGB(pixels)
-    errors = delta_e_rgb(screen, pixels.astype(float), _relit(cube, codes, screen))
-    return LutError(float(errors.mean()), float(errors.max()))
+    processor = ocio.Config.CreateRaw().getProcessor(transform).getDefaultCPUProcessor()
+
+    def error(codes: Array) -> Array:
+        pixels = decode(codes).astype(np.float32)
+        processor.applyRGB(pixels)
+        return delta_e_rgb(screen, pixels.astype(float), _relit(cube, codes, screen))
+
+    return find_errors(error, cube.data.atlas.rgb)
 
 
-def write_fourier(cube: Cube, path: StrPath, *, res: int | None = None, force: bool = False) -> LutError:
+def write_fourier(cube: Cube, path: StrPath, *, res: int | None = None, force: bool = False) -> TableError:
     """Write the table from sRGB to Fourier sRGB, and the shader of its spectra as a ``.glsl`` file.
 
     The cube has three moments, and sRGB or another space with its curve; `OptionError` otherwise. A ``.cube`` file has
-    ``res`` nodes along each axis, 2 to 129, by default 33; a ``.png`` has all codes. Returns the error of random
-    colours under the light of the cube, with codes of 8 bits before and after.
+    ``res`` nodes along each axis, 2 to 129, by default 33; a ``.png`` has all codes. Returns the errors under
+    the light of the cube, with codes of 8 bits before and after.
     """
     data, path = cube.data, Path(path)
     if not isinstance(data.model, Moments) or data.model.count != FOURIER_COUNT:
@@ -141,6 +136,8 @@ def write_fourier(cube: Cube, path: StrPath, *, res: int | None = None, force: b
     is_image = path.suffix.lower() == ".png"
     if res is not None and (is_image or not MIN_SIZE <= res <= MAX_SIZE):
         raise OptionError(f"res must be from {MIN_SIZE} to {MAX_SIZE}, and of a .cube table, got {res}")
+    files = output_files(path, "fourier")
+    check_outputs(files, force=force)
     size = LEVEL**2 if is_image else res or SIZE
     matrix = _to_moments(data)
     table = _fourier_table(cube, np.linspace(0, 1, size), matrix)
@@ -150,8 +147,8 @@ def write_fourier(cube: Cube, path: StrPath, *, res: int | None = None, force: b
         else:
             title = f"uplift: {data.sensor.space} to Fourier sRGB"
             temporary.write_text(cube_text(table.transpose(2, 1, 0, 3), title, size), encoding="utf-8", newline="\n")
-        write_text(_shader(data.model, matrix, path.stem), path.with_suffix(".glsl"), force=force)
-    return _fourier_error(cube, table, matrix)
+        write_text(_shader(data.model, matrix, path.stem), files[1], force=force)
+    return _fourier_errors(cube, table, matrix)
 
 
 def _to_moments(data: CubeData) -> Array:
@@ -189,7 +186,7 @@ def _write_image(table: Floats, path: Path) -> None:
         raise TextureError(image.geterror(), path=path)
 
 
-def _codes(numbers: Floats) -> Floats:
+def _codes(numbers: Values) -> Values:
     return np.rint(255 * numbers)
 
 
@@ -201,13 +198,20 @@ def _shader(model: Moments, matrix: Array, stem: str) -> str:
     return Template(read_source("fourier.glsl")).substitute(rows, **constants, name=identifier(stem), warp=warp)
 
 
-def _fourier_error(cube: Cube, table: Floats, matrix: Array) -> LutError:
+def _fourier_errors(cube: Cube, table: Floats, matrix: Array) -> TableError:
     """Compare colours of the spectra of 8-bit codes with the requested colours, linearly between nodes."""
     from scipy.interpolate import RegularGridInterpolator
 
-    codes = np.random.default_rng(SEED).integers(0, 256, (SAMPLES, 3)) / 255
-    found = RegularGridInterpolator([np.linspace(0, 1, len(table))] * 3, table)(codes[:, ::-1])
-    moments = decode(_codes(found) / 255) @ matrix.T
-    spectra = reflectance(cube.data.model, moments, cube.data.sensor.wavelengths)
-    errors = delta_e_rgb(cube.data.sensor, cube.data.sensor.rgb(spectra), decode(codes))
-    return LutError(float(errors.mean()), float(errors.max()))
+    sensor, model = cube.data.sensor, cube.data.model
+    assert isinstance(model, Moments)
+    interpolator = RegularGridInterpolator([np.linspace(0, 1, len(table))] * 3, table)
+
+    def error(codes: Array) -> Array:
+        codes = _codes(codes) / 255
+        moments = decode(_codes(interpolator(codes[:, ::-1])) / 255) @ matrix.T
+        multipliers, valid = multipliers_of_rounded(model, moments)
+        multipliers[~valid] = 0  # medium grey: the error is not understated
+        spectra = evaluate(model, multipliers, sensor.wavelengths)
+        return delta_e_rgb(sensor, sensor.rgb(spectra), decode(codes))
+
+    return find_errors(error, cube.data.atlas.rgb)

@@ -15,16 +15,15 @@ from typing import Any
 import numpy as np
 
 from uplift.common.arrays import StrPath
-from uplift.common.errors import OptionError, UpliftWarning, unknown_name
-from uplift.common.files import atomic_write, check_output, write_text
+from uplift.common.errors import OptionError, OutputError, UpliftWarning, unknown_name
+from uplift.common.files import atomic_write, check_output, check_outputs, write_text
 from uplift.common.version import version
 from uplift.cube import CubeData, digest
-from uplift.io.export.table import COLUMNS, MODES, Table, check_complete, make_table, rounding_error
+from uplift.io.export.outputs import output_files
+from uplift.io.export.table import COLUMNS, PROGRAM_MODES, Table, check_complete, make_table
 
 LARGE = 16_000_000
 """Size in bytes above which compilation of a header is slow."""
-VISIBLE = 1e-3
-"""Error of reflectances that is stated."""
 LOOP = re.compile(
     r"^(?P<indent> *)UP_UNROLL\n *for \(int (?P<name>\w+) = (?P<start>.+); \w+ < (?P<stop>.+); \+\+\w+\) "
     r"(?P<body>\{\n(?:(?P=indent) .*\n)*(?P=indent)\}\n|[^{].*\n)",
@@ -77,15 +76,12 @@ def write_program(
     """
     if style not in LANGUAGES:
         raise unknown_name(style, LANGUAGES, "language")
-    if mode not in MODES:
-        raise unknown_name(mode, MODES, "mode")
+    if mode not in PROGRAM_MODES:
+        raise unknown_name(mode, PROGRAM_MODES, "mode")
     check_complete(data, "a program")
     path, form, table = Path(path), check_form(style, form), make_table(data, mode)
     text = cube_program(data, table, style, mode, path.stem, form)
     written = write_files(text, table, path, form, per_line=table.constants["STRIDE"], force=force)
-    if (error := rounding_error(data, mode)) > VISIBLE:
-        problem = f"single precision changes reflectances by up to {error:.1g}"
-        warnings.warn(UpliftWarning(problem, path=path, hint="use fewer coefficients"), stacklevel=2)
     size = path.stat().st_size
     if size > LARGE:
         problem = f"the header has {size / 1e6:.0f} MB and is slow to compile"
@@ -147,17 +143,43 @@ def compose(kind: str, table: Table, style: str, stem: str, form: str, words: di
 
 def write_files(text: str, table: Table, path: Path, form: str, *, per_line: int, force: bool) -> list[Path]:
     """Write a program, and its table to a file of the same stem unless it is a header; return the files."""
-    numbers = path.with_suffix(".bin")
+    files = output_files(path, form)
+    check_output(path, force=force)
+    check_outputs(files, force=True)
+    image = table.image().tobytes()
     if form == "file":
-        check_output(numbers, force=force)
+        _check_table(files[1], image, path, force=force)
     rows = np.split(table.numbers, range(per_line, len(table.numbers), per_line)) if form == "header" else []
     lines = "".join(", ".join(map(literal, row.tolist())) + ",\n" for row in rows)
     write_text(text.replace("${numbers}", lines), path, force=force)
-    if form == "header":
-        return [path]
-    with atomic_write(numbers, force=force) as temporary:
-        temporary.write_bytes(table.image().tobytes())
-    return [path, numbers]
+    if form == "file" and not _holds(files[1], image):
+        with atomic_write(files[1], force=True) as temporary:
+            temporary.write_bytes(image)
+    return files
+
+
+def _holds(path: Path, content: bytes) -> bool:
+    """Whether a file exists and has this content."""
+    return path.exists() and path.stat().st_size == len(content) and path.read_bytes() == content
+
+
+def _check_table(table: Path, image: bytes, program: Path, *, force: bool) -> None:
+    """Check that a table may be written. Programs of one cube in several languages share theirs.
+
+    Another table is an `OutputError`; with ``force`` it is replaced, with a warning if other programs read it.
+    """
+    if not table.exists() or _holds(table, image):
+        return
+    beside = (program.with_suffix(language.suffix) for language in LANGUAGES.values())
+    readers = [each.name for each in beside if each != program and each.exists()]
+    if not force:
+        owner = f"of {' and '.join(readers)}" if readers else "of another program"
+        problem = f"exists already with other numbers, {owner}"
+        hint = "pass force=True to replace it, or choose another name"
+        raise OutputError(problem, path=table, code="file-exists", hint=hint)
+    if readers:
+        problem = f"replaced; {' and '.join(readers)} can no longer read it"
+        warnings.warn(UpliftWarning(problem, path=table, hint="export them again"), stacklevel=4)
 
 
 def identifier(stem: str) -> str:

@@ -6,13 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from uplift.common.arrays import Array, Floats, Values
+from uplift.common.arrays import Array, Floats, Mask, Values
 from uplift.common.errors import OptionError
 from uplift.cube import CubeData
-from uplift.lattice import EntryBoxes, weighted_sum
-from uplift.lookup.interpolate import around
+from uplift.lattice import EntryBoxes
+from uplift.lookup.interpolate import around, fading_share
 from uplift.lookup.refine import LEAST, MOST, REACH, SLOPE, STEEP, pull
-from uplift.models import Moments, Sigmoid, evaluate
+from uplift.models import Moments, Sigmoid, reflectance
+from uplift.models.model import Model
 from uplift.models.moments import WARPS, warped
 
 BIN_COUNT = 1024
@@ -21,9 +22,14 @@ TEXEL = 4
 """Rows are padded to whole texels of four channels."""
 COLUMNS = 2048
 """Texels in a row of the table as an image: every graphics card that can run the program has textures of this width."""
-MODES = ("spectra", "moments")
-NODES, SAMPLES = 1 << 15, 1 << 10
-"""Nodes and colours of which the largest change by rounding is stated."""
+PROGRAM_MODES = ("spectra", "moments")
+"""What programs interpolate."""
+SPECTRA, SAMPLES, SEED = 1 << 13, 1 << 8, 0
+"""Spectra, and random colours of each kind, by which the change by single precision is bounded."""
+SPACING, WAVELENGTH_ERROR = 2.0, 5e-5
+"""Step of their wavelengths, and error of wavelengths in single precision, in nm."""
+OPERATIONS, LEAST_ERROR = 4, 3e-6
+"""Factor from a product of matrices to all operations, and error of the arctangent and of sums."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,33 +92,78 @@ def make_table(data: CubeData, mode: str) -> Table:
     return Table(numbers, constants)
 
 
-def rounding_error(data: CubeData, mode: str) -> float:
-    """Return by how much single precision changes reflectances: the largest change of sampled spectra.
+def moved_cells(data: CubeData, mode: str) -> Mask:
+    """Return the cells (dim³,) whose answers are moved to their colours: next to nodes that have not theirs.
 
-    In mode ``spectra`` the samples are nodes that have their own colours, whose mixtures change less. In mode
-    ``moments`` they are realisable colours, many of them dark, others in the boxes of entries, and coefficients are
-    rounded as numbers near 1 are: that much is lost in their conversion.
+    In mode ``moments`` these are all cells around corners of such cells.
     """
-    model, points, unit = data.model, np.flatnonzero(data.points.distance <= data.threshold), 2.0**24
-    if mode == "spectra":
-        exact = model.from_storage(data.points.coefficients[points[:: len(points) // NODES + 1]])
-        return float(np.abs(_rounding(data, exact, exact)).max(initial=0))
-    random, faces = np.random.default_rng(0), np.stack(data.entry_boxes.faces, axis=1).clip(0, 1)
-    rgb = random.uniform(0, 1, (SAMPLES, 3)) ** random.uniform(1, 4, (SAMPLES, 1))
-    if len(faces):
-        low, high = random.choice(faces, SAMPLES).swapaxes(0, 1)
-        rgb = np.concatenate([rgb, low + (high - low) * random.random((SAMPLES, 3))])
-    nodes = around(data, rgb[data.solid.signed_distance(rgb) < -data.threshold])
-    stored = weighted_sum(data.points.coefficients, nodes.points, nodes.weights)
-    near_one = np.round(stored * unit) / unit if isinstance(model, Moments) else stored
-    change = _rounding(data, model.from_storage(near_one.astype(np.float32).astype(float)), model.from_storage(stored))
-    return float(np.abs(nodes.hits.mix(change, np.zeros(1))).max(initial=0))
+    if data.inexact_cells is None or data.inexact_corners is None:
+        return np.zeros(data.lattice.size, dtype=bool)
+    return data.inexact_cells if mode == "spectra" else data.lattice.cells_around(data.inexact_corners)
 
 
-def _rounding(data: CubeData, rounded: Array, exact: Array) -> Array:
-    """Return the change (n, N) of spectra from exact multipliers (n, C) to those in single precision."""
-    found = evaluate(data.model, rounded.astype(np.float32).astype(float), data.sensor.wavelengths)
-    return found - evaluate(data.model, exact, data.sensor.wavelengths)
+def rounding_error(data: CubeData, mode: str) -> float:
+    """Return a bound of the change of reflectances by single precision, of colours in cells whose answers stay.
+
+    In cells next to unrealisable nodes answers are moved. They may be steps, which single precision cannot place.
+    """
+    first, last, _ = data.sensor.range
+    wavelengths = np.arange(first, last + 1, SPACING)
+    cells = data.lattice.complete_cells(data.points.present)
+    staying = data.lattice.corner_points(cells & ~moved_cells(data, mode))
+    nodes = data.smoothed_multipliers(np.flatnonzero(staying))
+    entries = data.atlas.spectra
+    arithmetic = max(
+        _arithmetic_error(data.model, nodes, wavelengths),
+        _arithmetic_error(entries.model, entries.multipliers, wavelengths),
+    )
+    mixing = _mixing_error(data, wavelengths) if mode == "moments" else 0.0
+    return LEAST_ERROR + OPERATIONS * (arithmetic + mixing)
+
+
+def _mixing_error(data: CubeData, wavelengths: Array) -> float:
+    """Return the largest change of spectra of sampled mixtures of coefficients, whose sums and weights are rounded.
+
+    Moments are rounded as numbers near 1 are: that much is lost in their conversion.
+    """
+    random = np.random.default_rng(SEED)
+    rgb = _colours(data, random)
+    points = around(data, rgb[fading_share(data, rgb) == 0])
+    corners = data.points.coefficients[points.points].astype(float)
+    mixed = (points.weights[:, :, None] * corners).sum(axis=1)
+    least = 1.0 if isinstance(data.model, Moments) else 0.0
+    unit = np.maximum(np.abs(corners).max(axis=1), least) / 2**24
+    changed = mixed + unit * random.choice([-1, 1], mixed.shape)
+    change = reflectance(data.model, changed, wavelengths) - reflectance(data.model, mixed, wavelengths)
+    return float(np.abs(change).max(initial=0))
+
+
+def _arithmetic_error(model: Model, multipliers: Array, wavelengths: Array) -> float:
+    """Return the largest change of spectra in single precision, of those with the largest multipliers (n, C)."""
+    steepest = np.argsort(-np.abs(multipliers).sum(axis=1))[:SPECTRA]
+    exact = multipliers[steepest]
+    basis = model.basis(wavelengths).T
+    x = exact @ basis
+    single = exact.astype(np.float32) @ basis.astype(np.float32)
+    shifted = exact @ model.basis(wavelengths + WAVELENGTH_ERROR).T
+    error = np.abs(single - x) + np.abs(shifted - x)
+    # Spectra change most where x is 0, which may be between two wavelengths.
+    crosses = x[:, 1:] * x[:, :-1] < 0
+    smallest = np.where(crosses, 0, np.minimum(np.abs(x[:, 1:]), np.abs(x[:, :-1])))
+    change = np.maximum(error[:, 1:], error[:, :-1]) * model.derivative(smallest)
+    return float(change.max(initial=0))
+
+
+def _colours(data: CubeData, random: np.random.Generator) -> Array:
+    """Return linear RGB (n, 3), a quarter each random, dark, level with nodes, and in boxes of entries."""
+    even, dark, level = random.random((3, SAMPLES, 3))
+    dark **= 4
+    level = np.where(random.random(level.shape) < 0.5, random.choice(data.lattice.nodes, level.shape), level)
+    faces = np.stack(data.entry_boxes.faces, axis=1).clip(0, 1)
+    boxes = random.choice(faces, SAMPLES) if len(faces) else np.zeros((0, 2, 3))
+    low, high = boxes[:, 0], boxes[:, 1]
+    inside = low + (high - low) * random.random(low.shape)
+    return np.concatenate([even, dark, level, inside])
 
 
 def concatenate(sections: Mapping[str, Values]) -> tuple[Floats, dict[str, int]]:
@@ -143,11 +194,9 @@ def _lists(data: CubeData, mode: str) -> tuple[Floats, Floats]:
     for cell, start, length in zip(numbers.tolist(), first.tolist(), count.tolist(), strict=True):
         tags[cell] = len(lists)
         lists += [length, *entries[start : start + length].tolist()]
-    if data.inexact_cells is not None and data.inexact_corners is not None:
-        corners = data.inexact_corners & (mode == "moments")
-        moved = data.inexact_cells | data.lattice.cells_around(corners)
-        tags = np.where(moved, -np.maximum(tags, 1), tags)
-        tags += np.where(corners, np.copysign(0.5, tags), 0)
+    tags = np.where(moved_cells(data, mode), -np.maximum(tags, 1), tags)
+    if data.inexact_corners is not None and mode == "moments":
+        tags += np.where(data.inexact_corners, np.copysign(0.5, tags), 0)
     return np.array(lists, dtype=np.float32), tags
 
 

@@ -1,0 +1,63 @@
+"""Errors of tables of colours: the mean of random colours, and the largest that a search finds."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from uplift.colorimetry.srgb import decode, encode
+from uplift.common.arrays import Array
+
+SAMPLES, SEED = 1 << 13, 7
+"""Random codes of the mean, from which the search begins."""
+STARTS, TRIALS = 1 << 7, 8
+"""Worst codes that the search follows, and trials near each of them in a round."""
+STEPS = np.geomspace(1 / 16, 1 / 1024, 12)
+"""Largest changes of codes by round."""
+
+ErrorFunction = Callable[[Array], Array]
+"""From codes (n, 3) in [0, 1] to errors (n,)."""
+
+
+@dataclass(frozen=True, eq=False)
+class TableError:
+    """Errors of colours from a table, ΔE00 from those of the cube."""
+
+    mean: float
+    """Mean of random colours, even in codes."""
+    largest: float
+    """Largest that a search finds."""
+    worst: Array
+    """Linear RGB (3,) of the colour with the largest error."""
+
+
+def find_errors(error: ErrorFunction, atlas: Array) -> TableError:
+    """Find the mean error, and the largest near the worst of random codes, pairs of equal ones and an atlas (E, 3).
+
+    The atlas is in linear RGB. Interpolation within tetrahedra has its largest errors where two components are equal.
+    """
+    random = np.random.default_rng(SEED)
+    even = random.random((SAMPLES, 3))
+    even_errors = error(even)
+    rows = np.arange(SAMPLES)
+    equal = even.copy()
+    equal[rows, rows % 3] = even[rows, rows % 3 - 1]
+    special = np.concatenate([equal, encode(atlas)])
+    codes = np.concatenate([even, special])
+    errors = np.concatenate([even_errors, error(special)])
+    starts = np.argsort(-errors)[:STARTS]
+    codes, errors = codes[starts], errors[starts]
+    for step in STEPS:
+        codes, errors = _climb(error, codes, errors, random.uniform(-step, step, (TRIALS, STARTS, 3)))
+    worst = errors.argmax()
+    return TableError(float(even_errors.mean()), float(errors[worst]), decode(codes[worst]))
+
+
+def _climb(error: ErrorFunction, codes: Array, errors: Array, changes: Array) -> tuple[Array, Array]:
+    """Return codes (n, 3) moved by one of changes (t, n, 3), or not, to the largest error, and the errors (n,)."""
+    trials = np.clip(codes + changes, 0, 1)
+    trial_errors = error(trials.reshape(-1, 3)).reshape(trials.shape[:2])
+    all_codes = np.concatenate([codes[None], trials])
+    all_errors = np.concatenate([errors[None], trial_errors])
+    best, columns = all_errors.argmax(axis=0), np.arange(len(codes))
+    return all_codes[best, columns], all_errors[best, columns]
