@@ -82,6 +82,13 @@ def test_programs(run, misuse, home):
     assert ".glsl" in misuse("lights", "export", "-o", "lights.wgsl")
 
 
+@pytest.mark.parametrize("words", [("-o", "lights.glsl"), ("-o", "lights.h", "--table", "file")])
+def test_no_output_replaces_the_table(refuse, home, words):
+    uplift.load_emission().save(home / "lights.bin")
+    assert refuse("lights", "export", "lights.bin", *words, "--force").code == "output-is-input"
+    assert [path.name for path in home.iterdir()] == ["lights.bin"]
+
+
 @pytest.mark.parametrize(
     "words",
     [

@@ -16,7 +16,7 @@ import numpy as np
 
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OptionError, OutputError, UpliftWarning, unknown_name
-from uplift.common.files import atomic_write, check_output, check_outputs, write_text
+from uplift.common.files import atomic_write, check_outputs, write_text
 from uplift.common.version import version
 from uplift.cube import CubeData, digest
 from uplift.io.export.outputs import output_files
@@ -144,7 +144,6 @@ def compose(kind: str, table: Table, style: str, stem: str, form: str, words: di
 def write_files(text: str, table: Table, path: Path, form: str, *, per_line: int, force: bool) -> list[Path]:
     """Write a program, and its table to a file of the same stem unless it is a header; return the files."""
     files = output_files(path, form)
-    check_output(path, force=force)
     check_outputs(files, force=True)
     image = table.image().tobytes()
     if form == "file":
@@ -170,8 +169,8 @@ def _check_table(table: Path, image: bytes, program: Path, *, force: bool) -> No
     """
     if not table.exists() or _holds(table, image):
         return
-    beside = (program.with_suffix(language.suffix) for language in LANGUAGES.values())
-    readers = [each.name for each in beside if each != program and each.exists()]
+    others = (program.with_suffix(language.suffix) for language in LANGUAGES.values())
+    readers = [each.name for each in others if each != program and each.exists()]
     if not force:
         owner = f"of {' and '.join(readers)}" if readers else "of another program"
         problem = f"exists already with other numbers, {owner}"

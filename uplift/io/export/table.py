@@ -24,8 +24,8 @@ COLUMNS = 2048
 """Texels in a row of the table as an image: every graphics card that can run the program has textures of this width."""
 PROGRAM_MODES = ("spectra", "moments")
 """What programs interpolate."""
-SPECTRA, SAMPLES, SEED = 1 << 13, 1 << 8, 0
-"""Spectra, and random colours of each kind, by which the change by single precision is bounded."""
+SPECTRA, SAMPLES, SEED = 1 << 13, 1 << 9, 0
+"""Spectra, and random colours of two kinds, by which the change by single precision is bounded."""
 SPACING, WAVELENGTH_ERROR = 2.0, 5e-5
 """Step of their wavelengths, and error of wavelengths in single precision, in nm."""
 OPERATIONS, LEAST_ERROR = 4, 3e-6
@@ -97,9 +97,11 @@ def moved_cells(data: CubeData, mode: str) -> Mask:
 
     In mode ``moments`` these are all cells around corners of such cells.
     """
-    if data.inexact_cells is None or data.inexact_corners is None:
+    if data.inexact_cells is None:
         return np.zeros(data.lattice.size, dtype=bool)
-    return data.inexact_cells if mode == "spectra" else data.lattice.cells_around(data.inexact_corners)
+    if mode == "spectra":
+        return data.inexact_cells
+    return data.lattice.cells_around(data.lattice.corner_points(data.inexact_cells))
 
 
 def rounding_error(data: CubeData, mode: str) -> float:
@@ -122,12 +124,16 @@ def rounding_error(data: CubeData, mode: str) -> float:
 
 
 def _mixing_error(data: CubeData, wavelengths: Array) -> float:
-    """Return the largest change of spectra of sampled mixtures of coefficients, whose sums and weights are rounded.
+    """Return the largest change of spectra of mixtures of coefficients, whose sums and weights are rounded.
+
+    The colours are random ones, many of them dark, and some level with nodes, where weights are 0.
 
     Moments are rounded as numbers near 1 are: that much is lost in their conversion.
     """
     random = np.random.default_rng(SEED)
-    rgb = _colours(data, random)
+    rgb = random.random((SAMPLES, 3)) ** random.uniform(1, 4, (SAMPLES, 1))
+    level = np.where(random.random(rgb.shape) < 0.5, random.choice(data.lattice.nodes, rgb.shape), rgb)
+    rgb = np.concatenate([rgb, level])
     points = around(data, rgb[fading_share(data, rgb) == 0])
     corners = data.points.coefficients[points.points].astype(float)
     mixed = (points.weights[:, :, None] * corners).sum(axis=1)
@@ -152,18 +158,6 @@ def _arithmetic_error(model: Model, multipliers: Array, wavelengths: Array) -> f
     smallest = np.where(crosses, 0, np.minimum(np.abs(x[:, 1:]), np.abs(x[:, :-1])))
     change = np.maximum(error[:, 1:], error[:, :-1]) * model.derivative(smallest)
     return float(change.max(initial=0))
-
-
-def _colours(data: CubeData, random: np.random.Generator) -> Array:
-    """Return linear RGB (n, 3), a quarter each random, dark, level with nodes, and in boxes of entries."""
-    even, dark, level = random.random((3, SAMPLES, 3))
-    dark **= 4
-    level = np.where(random.random(level.shape) < 0.5, random.choice(data.lattice.nodes, level.shape), level)
-    faces = np.stack(data.entry_boxes.faces, axis=1).clip(0, 1)
-    boxes = random.choice(faces, SAMPLES) if len(faces) else np.zeros((0, 2, 3))
-    low, high = boxes[:, 0], boxes[:, 1]
-    inside = low + (high - low) * random.random(low.shape)
-    return np.concatenate([even, dark, level, inside])
 
 
 def concatenate(sections: Mapping[str, Values]) -> tuple[Floats, dict[str, int]]:
