@@ -6,6 +6,8 @@ from typing import Any
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..inputs import expand_patterns, read_pictures
 from ..output.console import make_table, print_json, say, show
@@ -78,7 +80,9 @@ def command(
     if style == "json":
         print_json({"images": paths, "cube": cube_path, "lights": errors, "swatches": swatches})
         return
-    summary = make_table(("light",), ("expected ΔE00", "95 % of the area", f"after {len(chosen)} swatches", "95 %"))
+    summary = make_table(
+        ("light",), ("expected ΔE00", "95 % of the area", f"after {pluralise(len(chosen), 'swatch')}", "95 %")
+    )
     for name, each in errors.items():
         summary.add_row(name, *(f"{number:.2f}" for stage in each.values() for number in stage.values()))
     table = make_table(("swatch",), ("area", "expected ΔE00", "gain", "mean ΔE00 after"))

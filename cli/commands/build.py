@@ -13,7 +13,7 @@ import click
 from click.core import ParameterSource
 
 from uplift.common.errors import OptionError
-from uplift.common.text import format_value, parse_float
+from uplift.common.text import format_value, parse_float, pluralise
 
 from .. import options
 from ..inputs import expand_patterns
@@ -216,7 +216,7 @@ def command(
     if not quiet:
         _print_summary(cube, path, time.perf_counter() - begin)
         if slices is not None:
-            say(f"{slices}: {cube.data.lattice.dim} blue slices")
+            say(f"{slices}: {pluralise(cube.data.lattice.dim, 'blue slice')}")
 
 
 def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]) -> str:
@@ -239,17 +239,17 @@ def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
 
     data, counts = cube.data, cube.data.points.counts()
     size, unfitted, unrealisable = data.lattice.size, counts["unfitted"], counts["unrealisable"]
-    nodes = f"{size} nodes"
+    nodes = pluralise(size, "node")
     if data.complete_cells is not None:
         count = int(data.points.present.sum())
-        nodes = f"{count} of {size} nodes ({count / size:.1%})"
+        nodes = f"{count} of {pluralise(size, 'node')} ({count / size:.1%})"
     accuracy = f"{unfitted} EXCEED the threshold {data.threshold:g}" if unfitted else f"all within {data.threshold:g}"
     if unrealisable:
         accuracy += f" except {unrealisable} unrealisable ones, stored with less chroma"
     worst = data.points.distance[data.points.status != Status.UNREALISABLE].max(initial=0)
     measured, looks = data.atlas.measured_count, data.atlas.looks
-    entries = f"{measured} atlas entries, " if data.provenance["atlases"] else ""
-    entries += f"{looks} look{'s' * (looks != 1)}, " if looks else ""
+    entries = f"{pluralise(measured, 'atlas entry')}, " if data.provenance["atlases"] else ""
+    entries += f"{pluralise(looks, 'look')}, " if looks else ""
     steps = data.provenance["improvements"]
     improved = f"{sum(step['mended'] for step in steps)} of {steps[0]['tried']} improved" if steps else "0 improved"
     say(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from uplift.common.files import check_folder, write_text
+from uplift.common.text import pluralise
 
 from .. import options
 from ..inputs import DEFAULT_ATLASES, read_atlases
@@ -113,7 +114,8 @@ def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[str, ...], o
     pair = represent(representation, make_scene(atlases, lights), merge(atlases.values()).names)
     folder = check_folder(output, SPECTRA, inputs=files, force=force)
     write_files(folder, SPECTRA, *(partial(write_atlas, atlas) for atlas in pair), force=force)
-    say(f"{folder}: {len(pair[0])} surfaces and {len(pair[1])} lights as {representation.name}")
+    surfaces, lights_of = pluralise(len(pair[0]), "surface"), pluralise(len(pair[1]), "light")
+    say(f"{folder}: {surfaces} and {lights_of} as {representation.name}")
 
 
 def _measure(

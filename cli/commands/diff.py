@@ -6,6 +6,8 @@ from typing import Any
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..inputs import expand_patterns, read_pictures
 from ..output.console import make_table, print_json, say, show
@@ -95,6 +97,6 @@ def _print(figures: dict[str, Any]) -> None:
         if figures[f"entries_{change}"]:
             say(f"entries {change}: {', '.join(figures[f'entries_{change}'])}")
     for row in figures["lacking"]:
-        say(f"{row['set']}: {row['cubes']} cannot answer {row['colours']:,} colours")
+        say(f"{row['set']}: {row['cubes']} cannot answer {pluralise(row['colours'], 'colour')}")
     if "tolerance" in figures:
         say("passed" if figures["passed"] else f"FAILED: the tolerance is ΔE00 {figures['tolerance']:g}")

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..output.console import say
 from ..output.progress import progress_bar
@@ -141,9 +143,9 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
             largest = export.write_coeff(data, path, layout=style, **settings)
         return f"table of sigmoids, largest RGB error {largest:.1e} between its points"
     if style == "npz":
-        return f"{export.write_npz(data, path, **settings)} arrays"
+        return pluralise(export.write_npz(data, path, **settings), "array")
     if style == "csv":
-        return f"{export.write_csv(data, path, **settings)} nodes"
+        return pluralise(export.write_csv(data, path, **settings), "node")
     if style == "html":
         write_text(page(data), path, **settings)
         return f"page, {path.stat().st_size / 1e6:.1f} MB"
@@ -153,4 +155,5 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
     tables = "".join(f", table in {each}" for each in written[1:])
     rounding = export.rounding_error(data, settings.get("mode", "spectra"))
     shown = f"single precision changes reflectances by up to {rounding:.1g}{tables}"
-    return f"{data.lattice.size} nodes, {len(data.atlas.names)} atlas entries, {size:.1f} MB, {shown}"
+    entries = pluralise(len(data.atlas.names), "atlas entry")
+    return f"{pluralise(data.lattice.size, 'node')}, {entries}, {size:.1f} MB, {shown}"

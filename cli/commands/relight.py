@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..inputs import expand_patterns, read_pictures
 from ..output.console import make_table, print_json, say, show
@@ -109,7 +111,7 @@ def command(
         if style == "json":
             print_json({"output": output, "lights": names.split(", "), "pixels": conversion.counts.pixels})
         else:
-            say(f"{output}: {Path(paths[0]).name} under {names}, {conversion.counts.pixels:,} pixels")
+            say(f"{output}: {Path(paths[0]).name} under {names}, {pluralise(conversion.counts.pixels, 'pixel')}")
         return
     with progress_bar("computing spectra"):
         cubes = {SPECTRAL: load()}

@@ -2,6 +2,8 @@
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..output.console import say
 
@@ -24,4 +26,4 @@ def command(folder: str, force: bool) -> None:
     from uplift.samples import copy_samples
 
     copies = copy_samples(folder, force=force)
-    say(f"{folder}: {len(copies)} sample files")
+    say(f"{folder}: {pluralise(len(copies), 'sample file')}")

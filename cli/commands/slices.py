@@ -4,6 +4,8 @@ from pathlib import Path
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..output.console import say
 
@@ -44,7 +46,7 @@ def command(cube: str, output: str | None, sheet: str | None, force: bool) -> No
         check_sheet(sheet, force=force)
     if output is not None:
         write_slices(data, output, force=force)
-        say(f"{output}: {data.lattice.dim} blue slices")
+        say(f"{output}: {pluralise(data.lattice.dim, 'blue slice')}")
     if sheet is not None:
         write_sheet(data, sheet, force=force)
         say(f"{sheet}: contact sheet")

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from uplift.common.files import check_folder
+from uplift.common.text import pluralise
 
 from .. import options
 from ..inputs import DEFAULT_ATLASES, read_atlases
@@ -179,7 +180,8 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
     if style == "table":
         failed = [row["unfitted"] for row in records if row["unfitted"]]
         nodes = sum(row["realisable"] for row in records)
-        say(f"{len(records)} builds, {nodes} realisable nodes: {sum(failed)} unfitted in {len(failed)} builds")
+        builds, missed = pluralise(len(records), "build"), pluralise(len(failed), "build")
+        say(f"{builds}, {pluralise(nodes, 'realisable node')}: {sum(failed)} unfitted in {missed}")
 
 
 @command.command("sensitivity")

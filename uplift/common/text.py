@@ -57,6 +57,18 @@ def listed(names: Sequence[str]) -> str:
     return ", ".join(names[:MAX_LISTED]) + more
 
 
+def pluralise(count: int, noun: str) -> str:
+    """Format a count with its noun.
+
+    >>> pluralise(1, "atlas entry"), pluralise(1500, "atlas entry"), pluralise(2, "box")
+    ('1 atlas entry', '1,500 atlas entries', '2 boxes')
+    """
+    if count == 1:
+        return f"1 {noun}"
+    stem = re.sub("y$", "ie", noun)
+    return f"{count:,} {stem}{'es' if noun.endswith(('ch', 'x')) else 's'}"
+
+
 def parse_float(text: str) -> float:
     """Parse a number, which may be infinite or NaN; `ValueError` otherwise.
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Indices
+from uplift.common.text import pluralise
 from uplift.cube.container import (
     Kind,
     Stored,
@@ -237,7 +238,7 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
     if "points" in arrays:
         data = replace(data, points=_expand(data.points, arrays["points"].astype(np.int64), data.lattice))
     size, count = data.lattice.size, data.points.status.size
-    require(count == size, f"there must be {size} points, got {count}")
+    require(count == size, f"there must be {pluralise(size, 'node')}, got {count}")
     return data
 
 

@@ -19,7 +19,7 @@ from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.common.text import format_value
+from uplift.common.text import format_value, pluralise
 from uplift.common.version import VERSION
 from uplift.cube import CubeData
 from uplift.fit import growth, growth_coarse, growth_outward, growth_thesis, seeds
@@ -323,7 +323,7 @@ def build_stages(
     improvements = growth.improve(grown, growth.THESIS_STEPS if neighbours else growth.STEPS)
     points = store(grown, seeded, prior)
     if options.solver != SOLVERS[0] and (unfitted := points.counts()["unfitted"]):
-        problem_text = f"{unfitted} nodes are over the threshold with the solver '{options.solver}'"
+        problem_text = f"{pluralise(unfitted, 'node')} over the threshold with the solver '{options.solver}'"
         entries.warn(problem_text, code="nodes-unfitted", hint="use the default solver")
     points = points if kept is None else points.restricted_to(kept)
 

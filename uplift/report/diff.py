@@ -9,6 +9,7 @@ from uplift.colorimetry.observer import light
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError
 from uplift.common.machine import check_memory
+from uplift.common.text import pluralise
 from uplift.cube import CubeData, common_sensor
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
@@ -131,7 +132,7 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
     under = [light(name, sensor.observer, *sensor.range) for name in lights]
 
     size = sum(cube.data.lattice.size for cube in cubes.values())
-    check_memory(size * NODE_BYTES, f"{size:,} nodes", OptionError, "use cubes of a smaller dim")
+    check_memory(size * NODE_BYTES, pluralise(size, "node"), OptionError, "use cubes of a smaller dim")
     nodes, others = (cube.data.lattice.points for cube in (first, second))
     nodes = nodes if np.array_equal(nodes, others) else np.concatenate([nodes, others])
     colours = {NODES: nodes, **{name: rgb.reshape(-1, 3) for name, rgb in (images or {}).items()}}

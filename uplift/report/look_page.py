@@ -16,6 +16,7 @@ from uplift.colorimetry.lights import DESCRIPTIONS
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.common.text import pluralise
 from uplift.lookup import Cube
 from uplift.lookup.metamer_bounds import Bounds
 from uplift.models import Moments
@@ -32,7 +33,7 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
     if not found or len(found[0].xyz) != 1:
         count = len(found[0].xyz) if found else 0
         raise OptionError(
-            f"a page shows one colour under some lights, got {count} colours", hint="give a single colour"
+            f"a page shows one colour under some lights, got {pluralise(count, 'colour')}", hint="give a single colour"
         )
     sensor, rgb = cube.data.sensor, found[0].volumes.rgb[0]
     written = _written(cube, rgb)

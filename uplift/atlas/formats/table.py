@@ -19,7 +19,7 @@ from uplift.atlas.document import Document, SourceLocation, parse_number, withou
 from uplift.atlas.measurements import Measurements, Spectrum, find_quantity, not_used_note, wrong_quantity
 from uplift.common.csv import csv_text, plain_cell
 from uplift.common.errors import AtlasError, OutputError
-from uplift.common.text import parse_float
+from uplift.common.text import parse_float, pluralise
 
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
 LAYOUT = "write a header row of wavelengths in nm and a row per entry, or the transpose"
@@ -262,7 +262,7 @@ def _of_one_width(rows: Sequence[Row], location: SourceLocation) -> tuple[Row, .
     """Return rows that are as wide as the first one. Raise `AtlasError` for others."""
     for row in rows:
         if len(row) != len(rows[0]):
-            problem = f"a row must have {len(rows[0])} cells like the header row, got {len(row)}"
+            problem = f"a row must have {pluralise(len(rows[0]), 'cell')} like the header row, got {len(row)}"
             raise location.at(row[0].line).error(problem, "fill in the missing cells or remove the row")
     return tuple(rows)
 

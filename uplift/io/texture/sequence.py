@@ -12,6 +12,7 @@ from typing import Any
 from uplift.common.errors import OptionError, TextureError, UpliftError, needs_extra
 from uplift.common.files import check_outputs, remove_stale
 from uplift.common.progress import ProgressCallback, ignore_progress
+from uplift.common.text import pluralise
 from uplift.io.processes import tied_processes
 from uplift.io.texture import exr_file
 from uplift.io.texture.conversion import Conversion, convert
@@ -195,7 +196,7 @@ def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
             with contextlib.suppress(OSError):
                 remove_stale(job.target, seconds=0)
     return TextureError(
-        f"the workers ended unexpectedly; {len(finished)} of {len(jobs)} textures are finished",
+        f"the workers ended unexpectedly; finished: {len(finished)} of {pluralise(len(jobs), 'texture')}",
         code="workers-lost",
         hint="resume with the others, with fewer processes if memory ran out",
     )
