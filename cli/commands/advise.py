@@ -72,7 +72,7 @@ def command(
 
         shown = paths[:SHOWN]
         pictures = {path: each.rgb for path, each in zip(shown, read_pictures(shown, sensor, **pixels), strict=True)}
-        chips = [(f"−{each.gain:.2g}", colour) for each, colour in zip(chosen, rgb, strict=True)]
+        chips = [(f"ΔE00 −{each.gain:.2g}", colour) for each, colour in zip(chosen, rgb, strict=True)]
         write_figure(advice.draw_advice(cube, pictures, lit, chips), plot_path, force=force)
     stages = zip(lit, before.by_light(), after.by_light(), strict=True)
     errors = {each.name: {"before": now, "after": then} for each, now, then in stages}
@@ -85,7 +85,7 @@ def command(
     )
     for name, each in errors.items():
         summary.add_row(name, *(f"{number:.2f}" for stage in each.values() for number in stage.values()))
-    table = make_table(("swatch",), ("area", "expected ΔE00", "gain", "mean ΔE00 after"))
+    table = make_table(("swatch",), ("area", "expected ΔE00", "gain in ΔE00", "mean ΔE00 after"))
     for row in swatches:
         numbers = (f"{row[name]:.2f}" for name in ("error", "gain", "mean_after"))
         table.add_row(row["hex"], f"{row['area']:.1%}", *numbers)

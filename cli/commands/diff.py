@@ -10,7 +10,7 @@ from uplift.common.text import pluralise
 
 from .. import options
 from ..inputs import expand_patterns, read_pictures
-from ..output.console import make_table, print_json, say, show
+from ..output.console import make_table, paragraph, print_json, say, show
 from ..output.progress import progress_bar
 
 
@@ -95,7 +95,7 @@ def _print(figures: dict[str, Any]) -> None:
     show(table, *([worst] if figures["worst"] else []))
     for change in ("removed", "added"):
         if figures[f"entries_{change}"]:
-            say(f"entries {change}: {', '.join(figures[f'entries_{change}'])}")
+            paragraph(f"entries {change}: {', '.join(figures[f'entries_{change}'])}")
     for row in figures["lacking"]:
         say(f"{row['set']}: {row['cubes']} cannot answer {pluralise(row['colours'], 'colour')}")
     if "tolerance" in figures:

@@ -95,7 +95,9 @@ NOUNS = (
     "swatches|builds|answers|textures|samples|labels|slices|surfaces|boxes|candidates|points"
 )
 COUNT_BY_HAND = re.compile(rf"\{{([^{{}}:]+)(?::,)?\}}+ (?:[a-z]+ )?(?:{NOUNS})\b")
-NEVER_ONE = re.compile(r"[A-Z_]+|.*\b(name|limit|dim|size|height|rings|coefficients|model.count)|len\(images\)|'.*|.*pluralise.*")
+NEVER_ONE = re.compile(
+    r"[A-Z_]+|.*\b(name|limit|dim|size|height|rings|coefficients|model.count)|len\(images\)|'.*|.*pluralise.*"
+)
 """Limits, names, sizes and values that are at least 2."""
 
 

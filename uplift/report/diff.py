@@ -17,6 +17,8 @@ from uplift.report.measures import delta_e_under, mean_p95_max
 
 NODES, ENTRIES = "nodes", "entries"
 """Names of the sets of colours that come from the cubes."""
+INVISIBLE = 5e-4
+"""Largest ΔE00 that is shown as 0.000."""
 NODE_BYTES = 200
 """Memory of the comparison of a node."""
 
@@ -44,10 +46,10 @@ class Changes:
         return self.delta_e[self.lacking == 0]
 
     def worst(self, count: int) -> Indices:
-        """Rows of at most ``count`` colours that differ, each once, largest ΔE00 first."""
+        """Rows of at most ``count`` colours that differ visibly, each once, largest ΔE00 first."""
         _, rows = np.unique(self.rgb, axis=0, return_index=True)
         order = rows[np.argsort(-self.largest[rows], kind="stable")[:count]]
-        return order[self.largest[order] > 0]
+        return order[self.largest[order] >= INVISIBLE]
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,22 +163,26 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
 
 
 def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, object]:
-    """Return the figures of a comparison, with the worst colours of each set, for JSON."""
+    """Return the figures of a comparison, with the worst colours of each set, for JSON.
+
+    Rows without a difference come last.
+    """
+    differences = [
+        {
+            "set": each.name,
+            "light": name,
+            **mean_p95_max(values),
+            **({} if tolerance is None else {"moved": int((values > tolerance).sum())}),
+        }
+        for each in diff.sets
+        for name, values in zip(diff.lights, each.compared.T, strict=True)
+        if values.size
+    ]
     return {
         "cubes": list(diff.names),
         "largest": diff.largest,
         **({} if tolerance is None else {"tolerance": tolerance, "passed": diff.is_within(tolerance)}),
-        "differences": [
-            {
-                "set": each.name,
-                "light": name,
-                **mean_p95_max(values),
-                **({} if tolerance is None else {"moved": int((values > tolerance).sum())}),
-            }
-            for each in diff.sets
-            for name, values in zip(diff.lights, each.compared.T, strict=True)
-            if values.size
-        ],
+        "differences": sorted(differences, key=lambda row: row["max"] < INVISIBLE),
         "worst": [
             {
                 "set": each.name,

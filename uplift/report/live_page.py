@@ -40,7 +40,7 @@ def page(data: CubeData) -> str:
     }
     return render(
         "report/templates/live_page.html.j2",
-        title="Images under other lights",
+        title="Your images under other lights",
         lead=(
             f"Spectra of a cube of {data.lattice.dim}³ nodes and {pluralise(len(data.atlas.names), 'atlas entry')}, "
             f"evaluated in the browser for every pixel. Drop an image on the page."

@@ -18,6 +18,7 @@ from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 from uplift.common.text import pluralise
 from uplift.lookup import Cube
+from uplift.lookup.light_errors import LIKELY
 from uplift.lookup.metamer_bounds import Bounds
 from uplift.models import Moments
 from uplift.models.moments import MAX_COUNT
@@ -48,6 +49,7 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
         ),
         build=sensor.illuminant,
         lights=lights,
+        likely=f"{LIKELY:.0%}",
         numbers=_model(sensor, found[0].reflectance[0], rgb)
         | {"build": _view(sensor.light, conversion(sensor, SRGB) @ sensor.xyz_to_rgb), "lights": lights}
         | {"rgb": written, "luminance": SRGB.rgb_to_xyz[1].tolist()},

@@ -153,7 +153,7 @@ def plot_locality(changes: Sequence[Change], path: StrPath, *, force: bool = Fal
     for axes, distance, unit in zip(panels, distances, ("linear RGB", "ΔE*ab"), strict=True):
         _scatter(axes, distance, delta_e)
         axes.set(xlabel=f"distance from the entry, {unit}")
-    panels[0].set(ylabel=f"ΔE00 change of a lattice point, {NARROW_BAND_LIGHT}")
+    panels[0].set(ylabel=f"ΔE00 change of a node, {NARROW_BAND_LIGHT}")
     panels[1].legend(frameon=False, fontsize=9, loc="upper right")
     figure.suptitle(f"{pluralise(len(changes), 'entry')}, removed one at a time", fontsize=9, color="0.35")
     write_png(figure, path, force=force)
