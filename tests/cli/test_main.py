@@ -2,6 +2,7 @@
 
 import errno
 import json
+import re
 import time
 import warnings
 from collections.abc import Iterator
@@ -21,6 +22,7 @@ import uplift
 from uplift.common.errors import UpliftError, UpliftWarning
 from uplift.common.progress import Progress
 from uplift.common.text import printable
+from uplift.samples import sample_path
 
 from .conftest import warning_lines
 
@@ -201,6 +203,32 @@ def test_tables_wrap_texts_keep_numbers_whole_and_show_texts_as_they_are(capsys,
     assert "[r]\\x1b[2J  1234567.5  7654321.5" in lines[2]
     assert "[r]\\x1b[2J  some words of text, and" in lines[6]
     assert lines[7].split() == ["averyveryverylongword"]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "atlas macbeth",
+        "bounds #8a2a20",
+        "check moments-8-macbeth.uplift",
+        "diff moments-8.uplift sigmoid-8.uplift",
+        "info moments-8-macbeth.uplift",
+        "lights info",
+        "palette metamers.toml",
+        "query #da7b2a",
+    ],
+)
+def test_no_line_breaks_inside_a_word_at_60_columns(run, monkeypatch, cubes, command):
+    monkeypatch.chdir(sample_path(".") if command.endswith(".toml") else cubes)
+    wide, narrow = (_printed_at(columns, run, monkeypatch, *command.split()) for columns in (500, 60))
+    assert max(map(cell_len, narrow.splitlines())) <= 60
+    assert set(narrow.split()) <= set(wide.split())
+
+
+def _printed_at(columns, run, monkeypatch, *arguments):
+    """Output without rules and sparklines."""
+    monkeypatch.setenv("COLUMNS", str(columns))
+    return re.sub("[─▁-█]+", "", run(*arguments).stdout)
 
 
 def test_progress_off_terminals_is_a_line_now_and_then(monkeypatch, capsys):

@@ -189,7 +189,7 @@ def distance(problem, coefficients):
 
 
 def greys(problem, level):
-    """Multipliers of a flat spectrum per lattice point."""
+    """Multipliers of a flat spectrum per node."""
     return np.tan(np.pi * (np.asarray(level) - 0.5))[:, None] * problem.model.constant()
 
 

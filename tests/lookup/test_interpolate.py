@@ -16,7 +16,7 @@ def random_colours(count=1000, seed=3):
 
 
 def stored_spectra(data, wavelengths):
-    """(n, N) spectra of all lattice points."""
+    """(n, N) spectra of all nodes."""
     return reflectance(data.model, data.points.coefficients, wavelengths)
 
 

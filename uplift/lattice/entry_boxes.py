@@ -51,18 +51,18 @@ class Nodes:
     """The nodes around n colours: eight corners of a cell each and, for k of them, the entry of a box."""
 
     points: Indices
-    """(n, 8) lattice points."""
+    """(n, 8) nodes."""
     weights: Array
     """(n, 8) their trilinear weights w, summing to 1."""
     hits: BoxHits
     """The colours in entry boxes. There the lattice has weight t and is evaluated where the ray leaves the box."""
 
     def weighted_sum(self, lattice: Values, atlas: Values) -> Values:
-        """Σ w · values of the lattice points (dim³, K), mixed with the entries (E, K): (n, K), in their type."""
+        """Σ w · values of the nodes (dim³, K), mixed with the entries (E, K): (n, K), in their type."""
         return self.hits.mix(weighted_sum(lattice, self.points, self.weights), atlas[self.hits.entry])
 
     def nearest(self) -> tuple[Indices, Indices, Indices]:
-        """Return the nodes of largest weight: lattice points (n,), and rows and entries (m,) where it is an entry."""
+        """Return the places of largest weight: nodes (n,), and rows and entries (m,) where it is an entry."""
         best = self.weights.argmax(axis=1)[:, None]
         points = np.take_along_axis(self.points, best, axis=1)[:, 0]
         weights = np.take_along_axis(self.weights, best, axis=1)[:, 0]

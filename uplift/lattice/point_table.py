@@ -1,4 +1,4 @@
-"""The arrays that a build computes for every lattice point, and how each point was fitted."""
+"""The arrays that a build computes for every node, and how each was fitted."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -19,7 +19,7 @@ NOT_FITTED = -1
 
 
 class Status(IntEnum):
-    """How a lattice point was fitted."""
+    """How a node was fitted."""
 
     ATLAS_PRIMARY = 0
     ATLAS_CORNER = 1

@@ -57,7 +57,7 @@ class Grid(NamedTuple):
     boxes: Any
     """(E + 1, 3, 3) centre in linear RGB, and reciprocals of the distances to the lower and upper faces."""
     lattice: Any
-    """(dim³, N) values of the lattice points, float32; NaN at absent points."""
+    """(dim³, N) values of the nodes, float32; NaN at absent points."""
     atlas: Any
     """(E + 1, N) values of the entries, float32."""
     limits: Any

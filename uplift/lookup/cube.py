@@ -28,7 +28,7 @@ DEFAULT = FOLDER / "default.uplift"
 PACKAGED = {"srgb": DEFAULT, "acescg": FOLDER / "acescg.uplift"}
 """Cubes of the package by the name of their space in lower case. They have D65 and no atlas."""
 MAX_TABLE_BYTES = 1 << 28
-"""Largest table of the spectra of all lattice points that a query computes."""
+"""Largest table of the spectra of all nodes that a query computes."""
 TABULATED = ("spectra", "nearest")
 """Modes that can use a table, which are methods of `uplift.lookup.node_table.NodeTable`."""
 OBSERVER = "uplift.colorimetry.observer"
@@ -67,7 +67,7 @@ class Cube:
 
     @property
     def dim(self) -> int:
-        """Lattice points along each axis."""
+        """Nodes along each axis."""
         return self.data.lattice.dim
 
     @property
@@ -92,12 +92,12 @@ class Cube:
 
     @property
     def coefficient_count(self) -> int:
-        """Coefficients per spectrum of a lattice point."""
+        """Coefficients per spectrum of a node."""
         return self.data.model.count
 
     @property
     def entry_coefficient_count(self) -> int:
-        """Coefficients per spectrum of an atlas entry: as many as a lattice point has, or more."""
+        """Coefficients per spectrum of an atlas entry: as many as a node has, or more."""
         return self.data.atlas.spectra.model.count
 
     @property
@@ -108,7 +108,7 @@ class Cube:
     def coefficients(
         self, rgb: ArrayLike, count: int | None = None, *, dtype: DTypeLike = np.float64, threads: int = 1
     ) -> NDArray[Any]:
-        """Interpolate the coefficients of the model between the lattice points and atlas entries.
+        """Interpolate the coefficients of the model between the nodes and atlas entries.
 
         With the ``count`` of the lattice the entries have their exact colours, and spectra fitted with as few
         coefficients. With that of the entries they have their spectra, and those of the lattice do not change.
@@ -191,7 +191,7 @@ class Cube:
         return blocks.blockwise(function, colours, len(at), kind, count)
 
     def _is_table_worthwhile(self, colours: Array, row_bytes: int) -> bool:
-        """Whether to compute the spectra of all lattice points once, instead of repeatedly per block."""
+        """Whether to compute the spectra of all nodes once, instead of repeatedly per block."""
         points = self.data.points.present
         return bool(points.size * row_bytes <= MAX_TABLE_BYTES and colours.size // 3 >= np.count_nonzero(points))
 
@@ -214,7 +214,7 @@ class Cube:
         return self.data.complete_cells[self.data.entry_boxes.cell(colours.reshape(-1, 3))].reshape(colours.shape[:-1])
 
     def fill_missing(self, rgb: ArrayLike | None = None, other: Cube | None = None, *, threads: int = 1) -> Cube:
-        """Add missing lattice points of a sparse cube: its model, fitted to the spectra of another, with exact colours.
+        """Add missing nodes of a sparse cube: its model, fitted to the spectra of another, with exact colours.
 
         Parameters
         ----------

@@ -68,7 +68,7 @@ def exact(mix: Mode, data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 def mixed_spectra(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
     """Reflectance (n, N) as weighted spectra Σ w · g of the nodes, whose colours are Σ w · RGB."""
     nodes = around(data, rgb)
-    # Each lattice point is evaluated once, although neighbouring colours share points.
+    # Each node is evaluated once, although neighbouring colours share nodes.
     points, row = np.unique(nodes.points, return_inverse=True)
     values = evaluate(data.model, data.smoothed_multipliers(points), wavelengths)
     # g = Σ w g_i has the colour W g = Σ w W g_i = Σ w r_i = x, as trilinear weights reproduce x.
@@ -115,7 +115,7 @@ def mixed_refined(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
 
 
 def nearest(data: CubeData, rgb: Array, wavelengths: Array) -> Array:
-    """Reflectance (n, N) of the nearest node, lattice point or atlas entry."""
+    """Reflectance (n, N) of the nearest node, or of the atlas entry that has taken its place."""
     points, rows, entry = around(data, rgb).nearest()
     values = reflectance(data.model, data.points.coefficients[points], wavelengths)
     if rows.size:

@@ -24,7 +24,7 @@ class NodeTable:
 
     data: CubeData
     lattice: Values
-    """(dim³, K) values of the lattice points, NaN at absent points."""
+    """(dim³, K) values of the nodes, NaN at absent points."""
     atlas: Values
     """(E, K) values of the atlas entries."""
     exact: Exact | None

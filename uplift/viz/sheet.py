@@ -176,7 +176,7 @@ def _heading(data: CubeData, layout: Layout) -> Label:
     model, sensor, points = data.model, data.sensor, data.points
     present = "" if data.complete_cells is None else f"{np.count_nonzero(points.present):,} of "
     facts = (
-        f"{present}{data.lattice.dim}³ points",
+        f"{present}{data.lattice.dim}³ nodes",
         f"{model.name}, {pluralise(model.count, 'coefficient')}",
         f"{sensor.space} under {sensor.illuminant}",
         pluralise(len(data.atlas.names), "atlas entry"),
