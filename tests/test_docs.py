@@ -51,6 +51,19 @@ def test_links_resolve():
             assert (page.parent / target).exists(), f"{page.name}: {target}"
 
 
+def test_no_two_pages_have_one_title():
+    pages = [*PAGES[1:], ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md", ROOT / "atlases" / "README.md"]
+    headings = [re.search("^# .+", page.read_text(encoding="utf-8"), re.MULTILINE) for page in pages]
+    titles = [heading[0] for heading in headings if heading]
+    for module in (ROOT / "uplift").rglob("*.py"):
+        source = module.read_text(encoding="utf-8")
+        for template, title in re.findall(r'render\(\s+"(.+\.j2)",\s+title=(.+),\n', source):
+            constant = re.search(rf"^{re.escape(title)} = .+", source, re.MULTILINE)
+            suffix = re.search("block title %}.+", (ROOT / "uplift" / template).read_text(encoding="utf-8"))
+            titles.append((constant[0] if constant else title) + (suffix[0] if suffix else ""))
+    assert len(set(titles)) == len(titles) > 40
+
+
 def test_make_targets_exist():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for page in PAGES:
