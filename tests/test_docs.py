@@ -2,6 +2,8 @@
 
 import re
 import shlex
+import sys
+from types import ModuleType
 
 import click
 import pytest
@@ -13,10 +15,12 @@ from tests.conftest import ROOT
 from tests.examples import examples
 from tests.helpers import warns
 from tests.parts import MITSUBA, need
+from uplift.atlas import formats
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 REFERENCE = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
 COVERAGE = (ROOT / "docs" / "coverage.md").read_text(encoding="utf-8")
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
 PYTHON = (ROOT / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
 LINES = [each.split(" > ")[0].split(" | ")[0] for each in examples() if each.startswith("uplift ")]
@@ -43,6 +47,21 @@ def test_the_python_page_runs(tmp_path, monkeypatch):
     (code,) = re.findall(r"```python\n(.*?)```", PYTHON, re.DOTALL)
     with warns("entry-out-of-gamut"):
         exec(compile(code, "python.md", "exec"), {})
+
+
+def test_the_skeleton_of_a_reader_and_its_test_run(tmp_path, monkeypatch):
+    reader, registration, test = re.findall(r"```python\n(.*?)```", CONTRIBUTING, re.DOTALL)
+    module = ModuleType(f"{formats.__name__}.spectrograph")
+    exec(compile(reader, "reader", "exec"), module.__dict__)
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    spectrograph = eval(registration, {"Format": formats.Format})
+    monkeypatch.setattr(formats, "FORMATS", (*formats.FORMATS[:-1], spectrograph, formats.FORMATS[-1]))
+    tests: dict = {}
+    exec(compile(test, "test", "exec"), tests)
+    functions = [value for name, value in tests.items() if name.startswith("test_")]
+    assert len(functions) > 1
+    for function in functions:
+        function(tmp_path)
 
 
 def test_links_resolve():

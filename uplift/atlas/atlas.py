@@ -1,7 +1,7 @@
 """Atlases and their entries: the result of every reader and the input of every writer."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 from importlib import import_module
 from typing import overload
 
@@ -63,6 +63,7 @@ class Entry:
     name: str
     wavelengths: Array
     values: Array
+    _: KW_ONLY
     description: str = ""
     additional_description: str = ""
     device: str = ""

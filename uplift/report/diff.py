@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -167,7 +168,7 @@ def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, ob
 
     Rows without a difference come last.
     """
-    differences = [
+    differences: list[dict[str, Any]] = [
         {
             "set": each.name,
             "light": name,
