@@ -14,7 +14,6 @@ from tests.helpers import raises, warns
 from uplift.atlas import Atlas, Entry, Header, read_atlas, write_atlas
 from uplift.common.errors import AtlasError, OutputError
 
-STATEMENTS = ("description", "additional_description", "device", "measured_by", "date")
 GREY = Atlas((Entry("grey", np.array([400.0, 700.0]), np.array([0.5, 0.25])),))
 
 
@@ -115,7 +114,7 @@ def atlases(draw, one_sampling):
     for name in names:
         wavelengths = shared if one_sampling else draw(samplings())
         values = draw(st.lists(REFLECTANCES, min_size=len(wavelengths), max_size=len(wavelengths)))
-        statements = {key: draw(TEXTS) for key in STATEMENTS}
+        statements = {key: draw(TEXTS) for key in STATEMENTS[1:]}
         entries.append(Entry(name, wavelengths, np.array(values), **statements))
     return Atlas(tuple(entries))
 
