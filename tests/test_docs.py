@@ -3,6 +3,8 @@
 import itertools
 import re
 import shlex
+import sys
+from types import ModuleType
 
 import click
 import pytest
@@ -14,10 +16,12 @@ from tests.conftest import ROOT
 from tests.examples import BLOCKS, CUBE, examples, examples_by_page
 from tests.helpers import warns
 from tests.parts import MITSUBA, need
+from uplift.atlas import formats
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 REFERENCE = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
 COVERAGE = (ROOT / "docs" / "coverage.md").read_text(encoding="utf-8")
+CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
 PYTHON = (ROOT / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
 LINES = [each.split(" > ")[0].split(" | ")[0] for each in examples() if each.startswith("uplift ")]
@@ -65,6 +69,21 @@ def test_the_python_page_runs(tmp_path, monkeypatch):
         exec(compile(code, "python.md", "exec"), {})
 
 
+def test_the_skeleton_of_a_reader_and_its_test_run(tmp_path, monkeypatch):
+    reader, registration, test = re.findall(r"```python\n(.*?)```", CONTRIBUTING, re.DOTALL)
+    module = ModuleType(f"{formats.__name__}.spectrograph")
+    exec(compile(reader, "reader", "exec"), module.__dict__)
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    spectrograph = eval(registration, {"Format": formats.Format})
+    monkeypatch.setattr(formats, "FORMATS", (*formats.FORMATS[:-1], spectrograph, formats.FORMATS[-1]))
+    tests: dict = {}
+    exec(compile(test, "test", "exec"), tests)
+    functions = [value for name, value in tests.items() if name.startswith("test_")]
+    assert len(functions) > 1
+    for function in functions:
+        function(tmp_path)
+
+
 def test_links_resolve():
     for page in PAGES:
         for target in re.findall(r"\]\((?!http)([^)#]+)\)", page.read_text(encoding="utf-8")):
@@ -75,6 +94,19 @@ def test_a_block_has_one_way_to_install():
     for page in PAGES:
         for _, block in BLOCKS.findall(page.read_text("utf-8")):
             assert block.count("pip install") <= 1, page.name
+
+
+def test_no_two_pages_have_one_title():
+    pages = [*PAGES[1:], ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md", ROOT / "atlases" / "README.md"]
+    headings = [re.search("^# .+", page.read_text(encoding="utf-8"), re.MULTILINE) for page in pages]
+    titles = [heading[0] for heading in headings if heading]
+    for module in (ROOT / "uplift").rglob("*.py"):
+        source = module.read_text(encoding="utf-8")
+        for template, title in re.findall(r'render\(\s+"(.+\.j2)",\s+title=(.+),\n', source):
+            constant = re.search(rf"^{re.escape(title)} = .+", source, re.MULTILINE)
+            suffix = re.search("block title %}.+", (ROOT / "uplift" / template).read_text(encoding="utf-8"))
+            titles.append((constant[0] if constant else title) + (suffix[0] if suffix else ""))
+    assert len(set(titles)) == len(titles) > 40
 
 
 def test_make_targets_exist():

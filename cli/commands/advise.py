@@ -6,6 +6,8 @@ from typing import Any
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..inputs import expand_patterns, read_pictures
 from ..output.console import make_table, print_json, say, show
@@ -72,7 +74,7 @@ def command(
 
         shown = paths[:SHOWN]
         pictures = {path: each.rgb for path, each in zip(shown, read_pictures(shown, sensor, **pixels), strict=True)}
-        chips = [(f"−{each.gain:.2g}", colour) for each, colour in zip(chosen, rgb, strict=True)]
+        chips = [(f"ΔE00 −{each.gain:.2g}", colour) for each, colour in zip(chosen, rgb, strict=True)]
         write_figure(advice.draw_advice(cube, pictures, lit, chips), plot_path, force=force)
     stages = zip(lit, before.by_light(), after.by_light(), strict=True)
     errors = {each.name: {"before": now, "after": then} for each, now, then in stages}
@@ -80,10 +82,12 @@ def command(
     if style == "json":
         print_json({"images": paths, "cube": cube_path, "lights": errors, "swatches": swatches})
         return
-    summary = make_table(("light",), ("expected ΔE00", "95 % of the area", f"after {len(chosen)} swatches", "95 %"))
+    summary = make_table(
+        ("light",), ("expected ΔE00", "95 % of the area", f"after {pluralise(len(chosen), 'swatch')}", "95 %")
+    )
     for name, each in errors.items():
         summary.add_row(name, *(f"{number:.2f}" for stage in each.values() for number in stage.values()))
-    table = make_table(("swatch",), ("area", "expected ΔE00", "gain", "mean ΔE00 after"))
+    table = make_table(("swatch",), ("area", "expected ΔE00", "gain in ΔE00", "mean ΔE00 after"))
     for row in swatches:
         numbers = (f"{row[name]:.2f}" for name in ("error", "gain", "mean_after"))
         table.add_row(row["hex"], f"{row['area']:.1%}", *numbers)

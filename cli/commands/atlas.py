@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..output.console import has_colours, make_table, paragraph, print_csv, print_fields, print_json, say, show, swatch
 from ..outputs import check_outputs
@@ -64,7 +66,7 @@ def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, 
     atlas = read_atlas(*files, measured=scale)
     if output is not None:
         write_atlas(atlas, output, force=force)
-        say(f"{output}: {len(atlas)} entries", err=True)
+        say(f"{output}: {pluralise(len(atlas), 'entry')}", err=True)
         return
     rows, codes, smallest = _list_entries(atlas, target)
     if style == "json":
@@ -153,7 +155,8 @@ def _print_table(
         paragraph("; ".join((f"{source.name}: {source.format}", *source.notes)))
     outside = [row["name"] for row in rows if not row["in_gamut"]]
     skipped = [skipped.name for skipped in atlas.skipped]
-    text = f"{len(rows)} entries, {_count(outside, f'out of the {sensor.space} gamut')}, {_count(skipped, 'skipped')}"
+    entries = pluralise(len(rows), "entry")
+    text = f"{entries}, {_count(outside, f'out of the {sensor.space} gamut')}, {_count(skipped, 'skipped')}"
     if outside:
         text += f"; {smallest} holds all {len(rows)}" if smallest else "; no common RGB space holds all"
     paragraph(text)

@@ -33,8 +33,9 @@ DIVISIONS, SINGLE_DIVISIONS = 2, 3
     help="""Compute the bounds of all reflectances of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
 
     RGB does not identify a material: others of the same colour may differ under another light. Under each --light, the
-    bounds are the largest ΔE00 of any reflectance of the colour from the answer of the cube, and the ranges of L*, a*
-    and b* among sampled extremes; the ends of the ranges can lie some units further out.
+    bounds are the largest ΔE00 of any reflectance of the colour from the answer of the cube ("ΔE max"; "ΔE 95%" for
+    materials like the atlas), and the ranges of L*, a* and b* among sampled extremes, whose ends can lie some units
+    further out. "share" is their volume relative to all colours of reflectances under the light.
 
     \b
     Examples:
@@ -146,8 +147,7 @@ def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
             say()
         table = make_table(
             ("hex",) * (not single) + ("light",),
-            ("L* a* b*", f"likely {LIKELY:.0%}", "largest", "a*", "b*", "share"),
-            box=None,
+            ("L* a* b*", f"ΔE {LIKELY:.0%}", "ΔE max", "a* range", "b* range", "share"),
             show_header=number == 0,
         )
         for row, result in enumerate(results):
@@ -161,8 +161,8 @@ def _print_table(cube: Cube, blocks: Iterable[Block], *, single: bool) -> None:
                     " ".join(f"{value:.1f}" for value in each.lab[row]),
                     "–" if error is None else f"{error:.2f}",
                     f"{each.largest.delta_e_2000[row]:.2f}",
-                    f"{least_a:.0f} to {most_a:.0f}",
-                    f"{least_b:.0f} to {most_b:.0f}",
-                    f"{each.share[row]:.2g}",
+                    f"{round(least_a)}..{round(most_a)}",
+                    f"{round(least_b)}..{round(most_b)}",
+                    f"{100 * each.share[row]:.2g}%",
                 )
         show(table)

@@ -13,7 +13,7 @@ import click
 from click.core import ParameterSource
 
 from uplift.common.errors import OptionError
-from uplift.common.text import format_value, parse_float
+from uplift.common.text import format_value, parse_float, pluralise
 
 from .. import options
 from ..inputs import expand_patterns
@@ -222,7 +222,7 @@ def command(
         return
     _print_summary(cube, path, time.perf_counter() - begin)
     if slices is not None:
-        say(f"{slices}: {cube.data.lattice.dim} blue slices")
+        say(f"{slices}: {pluralise(cube.data.lattice.dim, 'blue slice')}")
     print_notes(cube, notes)
 
 
@@ -242,16 +242,14 @@ def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], settings: d
 
 
 def _print_summary(cube: Cube, path: Path, seconds: float) -> None:
-    from uplift.viz.format import pluralise
-
     data, counts = cube.data, cube.data.points.counts()
     measured, looks = data.atlas.measured_count, data.atlas.looks
     facts = [f"{data.lattice.dim}³ nodes"]
     if data.complete_cells is not None:
         count = int(data.points.present.sum())
-        facts = [f"{count} of {data.lattice.size} nodes ({count / data.lattice.size:.1%})"]
+        facts = [f"{count:,} of {pluralise(data.lattice.size, 'node')} ({count / data.lattice.size:.1%})"]
     if data.provenance["atlases"]:
-        facts.append(pluralise(measured, "atlas entry", "atlas entries"))
+        facts.append(pluralise(measured, "atlas entry"))
     if looks:
         facts.append(pluralise(looks, "look"))
     facts += [f"{path.stat().st_size / 1e6:.1f} MB", f"{seconds:.1f} s"]

@@ -117,18 +117,19 @@ def _print_table(records: Sequence[dict[str, Any]]) -> None:
     from uplift.report.regression import LIMITS
 
     headings = {"rgb": "RGB", "spectra_max": "spectra", "spectra_rms": "rms"}
-    table = make_table(("cube",), (headings.get(name, name.replace("delta_e_", "ΔE ")) for name in LIMITS))
-    for heading in ("nodes", "verdict"):
-        table.add_column(heading, no_wrap=True)
+    measures = [headings.get(name, name.replace("delta_e_", "ΔE ")) for name in LIMITS]
+    table = make_table(("cube", "verdict", "atlas", "nodes"), measures)
     for record in records:
-        cells = dict.fromkeys((*LIMITS, "status"), "–")
+        failures = record["failures"]
+        cells = dict.fromkeys(("atlas-changed", "status", *LIMITS), "–")
         if record["measures"]:
-            cells = {name: f"{record['measures'][name]:.1e}" for name in LIMITS}
-            cells["status"] = "differs" if "status" in record["failures"] else "same"
-        styled = (Text(text, style="bold red" if name in record["failures"] else "") for name, text in cells.items())
+            cells["atlas-changed"] = "changed" if "atlas-changed" in failures else "same"
+            cells["status"] = "differs" if "status" in failures else "same"
+            cells |= {name: f"{record['measures'][name]:.0e}" for name in LIMITS}
+        styled = (Text(text, style="bold red" if name in failures else "") for name, text in cells.items())
         verdict = Text("passed", style="green") if record["passed"] else Text("FAILED", style="bold red")
-        table.add_row(record["cube"], *styled, verdict)
-    table.add_row("limit", *(f"{limit:.0e}" for limit in LIMITS.values()), "same", "", style="dim")
+        table.add_row(record["cube"], verdict, *styled)
+    table.add_row("limit", "", "same", "same", *(f"{limit:.0e}" for limit in LIMITS.values()), style="dim")
     show(table)
     for record in records:
         for problem in (*record["atlas_changed"], *record["notes"]):

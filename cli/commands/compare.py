@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from uplift.common.files import write_text
+from uplift.common.text import pluralise
 
 from .. import options
 from ..inputs import DEFAULT_ATLASES, atlas_files, read_atlases
@@ -115,7 +116,9 @@ def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[str, ...], o
     atlases = read_atlases(files)
     pair = represent(representation, make_scene(atlases, lights), merge(atlases.values()).names)
     write_files(output, SPECTRA, *(partial(write_atlas, atlas) for atlas in pair))
-    say(f"{output}: {len(pair[0])} surfaces and {len(pair[1])} lights as {representation.name}")
+    surfaces = pluralise(len(pair[0]), "surface")
+    powers = pluralise(len(pair[1]), "light")
+    say(f"{output}: {surfaces} and {powers} as {representation.name}")
 
 
 def _measure(

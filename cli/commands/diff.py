@@ -6,9 +6,11 @@ from typing import Any
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..inputs import expand_patterns, read_pictures
-from ..output.console import make_table, print_json, say, show
+from ..output.console import make_table, paragraph, print_json, say, show
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 
@@ -96,8 +98,8 @@ def _print(figures: dict[str, Any]) -> None:
     show(table, *([worst] if figures["worst"] else []))
     for change in ("removed", "added"):
         if figures[f"entries_{change}"]:
-            say(f"entries {change}: {', '.join(figures[f'entries_{change}'])}")
+            paragraph(f"entries {change}: {', '.join(figures[f'entries_{change}'])}")
     for row in figures["lacking"]:
-        say(f"{row['set']}: {row['cubes']} cannot answer {row['colours']:,} colours")
+        say(f"{row['set']}: {row['cubes']} cannot answer {pluralise(row['colours'], 'colour')}")
     if "tolerance" in figures:
         say("passed" if figures["passed"] else f"FAILED: the tolerance is ΔE00 {figures['tolerance']:g}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from uplift.common.text import round_up
+from uplift.common.text import pluralise, round_up
 
 from .. import options
 from ..output.console import say
@@ -149,9 +149,9 @@ def _write(cube: Cube, path: Path, style: str, **settings: Any) -> str:
             error = export.write_coeff(data, path, layout=style, **settings)
         return f"table of sigmoids, {_shown(error)}"
     if style == "npz":
-        return f"{export.write_npz(data, path, **settings)} arrays"
+        return pluralise(export.write_npz(data, path, **settings), "array")
     if style == "csv":
-        return f"{export.write_csv(data, path, **settings)} nodes"
+        return pluralise(export.write_csv(data, path, **settings), "node")
     if style == "html":
         write_text(page(data), path, **settings)
         return f"page, {path.stat().st_size / 1e6:.1f} MB"
@@ -166,7 +166,8 @@ def _write_program(
 
     written = export.write_program(data, path, style=style, mode=mode, form=table, force=force)
     size = sum(each.stat().st_size for each in written) / 1e6
-    facts = [f"{data.lattice.size} nodes", f"{len(data.atlas.names)} atlas entries", f"{size:.1f} MB"]
+    nodes = pluralise(data.lattice.size, "node")
+    facts = [nodes, pluralise(len(data.atlas.names), "atlas entry"), f"{size:.1f} MB"]
     facts.append(f"single precision changes reflectances by less than {round_up(export.rounding_error(data, mode)):g}")
     moved = export.moved_cells(data, mode).sum() / (data.lattice.dim - 1) ** 3
     if moved:

@@ -1,11 +1,15 @@
 """``uplift info``: contents of a cube file."""
 
+import re
 from typing import Any
 
 import click
 
 from .. import options
 from ..output.console import print_fields, print_json, say
+
+DIGEST = re.compile(r"([0-9a-f]{16})[0-9a-f]{48}")
+"""A SHA-256, whose first digits are shown; JSON has them all."""
 
 
 @click.command(
@@ -67,4 +71,6 @@ def _text(value: Any) -> str:
         return ", ".join(f"{key} {_text(inner)}" for key, inner in value.items())
     if isinstance(value, list):
         return "; ".join(_text(inner) for inner in value)
-    return f"{value:.3g}" if isinstance(value, float) else str(value)
+    if isinstance(value, float):
+        return f"{value:.3g}"
+    return DIGEST.sub(r"\1…", str(value))

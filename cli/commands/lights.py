@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from uplift.common.files import check_output, check_outputs, write_text
+from uplift.common.text import pluralise
 
 from .. import options
 from ..colours import find_colours
@@ -87,7 +88,7 @@ def build(files: tuple[str, ...], output: str | None, space: str, observer: str,
     if not quiet:
         knots, rings = table.data.lattice.shape
         say(
-            f"{path}: {knots} × {rings} nodes, {len(table.lamp_names)} lamps, "
+            f"{path}: {knots} × {rings} nodes, {pluralise(len(table.lamp_names), 'lamp')}, "
             f"expected ΔE00 of surfaces {float(table.expected_error([1.0, 1.0, 1.0])):.1f} (white), "
             f"{path.stat().st_size / 1e6:.1f} MB, {time.perf_counter() - begin:.1f} s"
         )
@@ -159,7 +160,8 @@ def export(table_path: str, output: str, table: str | None, force: bool) -> None
     size = sum(each.stat().st_size for each in written) / 1e6
     tables = "".join(f", table in {each}" for each in written[1:])
     knots, rings = data.lattice.shape
-    say(f"{path}: {knots * rings} nodes, {len(data.entries.names)} lamps, {size:.1f} MB{tables}")
+    lamps = pluralise(len(data.entries.names), "lamp")
+    say(f"{path}: {pluralise(knots * rings, 'node')}, {lamps}, {size:.1f} MB{tables}")
 
 
 @command.command(

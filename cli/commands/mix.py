@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from uplift.common.errors import OutputError, UpliftWarning
+from uplift.common.text import pluralise
 
 from .. import options
 from ..ingredients import SpectrumResolver
@@ -209,7 +210,7 @@ def command(
         with progress_bar("rows") as progress:
             painted = convert(painter, over, output, force=force, progress=progress)
         warn(painted.warnings)
-        say(f"{output}: {painted.counts.pixels:,} pixels painted over")
+        say(f"{output}: {pluralise(painted.counts.pixels, 'pixel')} painted over")
         return
     from uplift.colorimetry.gamut import map_to_gamut
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from uplift.common.errors import OptionError
+from uplift.common.text import pluralise
 
 from .. import options
 from ..output.console import has_colours, make_table, paragraph, print_json, say, show
@@ -90,7 +91,7 @@ def command(
         _print_table(solution, colours, unmet)
     if output is not None:
         count = write_designed(solution, output, force=force)
-        say(f"{output}: {count} designed materials", err=True)
+        say(f"{output}: {pluralise(count, 'designed material')}", err=True)
     if plot_path is not None:
         plot_matrix(solution, colours, plot_path, force=force)
         say(f"{plot_path}: matrix of colours", err=True)

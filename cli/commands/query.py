@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from uplift.common.errors import UpliftWarning
-from uplift.common.text import printable
+from uplift.common.text import pluralise, printable
 
 from .. import options
 from ..colours import find_colours
@@ -113,9 +113,11 @@ class Answers:
             sys.stdout.flush()
         if mapped:
             by = f"mapped into the gamut ({self.method}), a component by up to {change:.3g}"
-            warn([UpliftWarning(f"{mapped} of {count} colours lie outside [0, 1]: {by}")])
+            warn([UpliftWarning(f"{mapped} of {pluralise(count, 'colour')} outside [0, 1]: {by}")])
         if filled:
-            problem = f"{filled} of {count} colours are not in the cube's scene: filled from the packaged cube"
+            problem = (
+                f"{filled} of {pluralise(count, 'colour')} outside the cube's scene: filled from the packaged cube"
+            )
             warn([UpliftWarning(problem)])
 
     def light_colours(self, result: QueryResult) -> dict[str, tuple[Array, str]]:
@@ -227,8 +229,8 @@ def _check(path: str, cube_path: str | None, mode: str, tolerance: float, style:
         print_json(counts | figures | {"tolerance": tolerance, "passed": passed})
     else:
         say(
-            f"{path}: {'passed' if passed else 'FAILED'}, {moved} of {len(differences)} answers differ by more than "
-            f"{tolerance:g}, the most by {differences[worst]:.2g} ({format_rgb(stored.rgb[worst])})"
+            f"{path}: {'passed' if passed else 'FAILED'}, {moved} of {pluralise(len(differences), 'answer')} "
+            f"moved by more than {tolerance:g}, the most by {differences[worst]:.2g} ({format_rgb(stored.rgb[worst])})"
         )
     if not passed:
         raise SystemExit(1)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from uplift.common.errors import UpliftWarning
+from uplift.common.text import pluralise
 
 from .. import options
 from ..inputs import expand_patterns, read_pictures
@@ -130,7 +131,7 @@ def command(
         if style == "json":
             print_json({"output": output, "lights": names.split(", "), "pixels": conversion.counts.pixels})
         else:
-            paragraph(f"{output}: {Path(paths[0]).name} under {names}, {conversion.counts.pixels:,} pixels")
+            paragraph(f"{output}: {Path(paths[0]).name} under {names}, {pluralise(conversion.counts.pixels, 'pixel')}")
     else:
         with progress_bar("computing spectra"):
             cubes = {SPECTRAL: load()}

@@ -85,16 +85,16 @@ def command(
 
 
 def _summary(assessment: Assessment) -> str:
-    from uplift.viz.format import pluralise
+    from uplift.common.text import pluralise
 
     parts = [f"{pluralise(assessment.failures['over_threshold'], 'node')} over the threshold"]
     if assessment.entries is not None:
         names, answers = assessment.entries.names, assessment.entries.answers
-        parts.append(pluralise(len(names), "entry", "entries"))
+        parts.append(pluralise(len(names), "entry"))
         parts.append(f"ΔE00 mean {answers.delta_e.mean():.2f}, worst {answers.worst[0]:.2f} ('{names[0]}')")
     if assessment.calibration is not None:
         calibration, light = assessment.calibration, assessment.data.error_illuminant
         parts.append(f"68 % within {calibration.actual:.2f} under {light}, predicted {calibration.predicted:.2f}")
     if assessment.crowding is not None:
-        parts.append(pluralise(len(assessment.crowding.entries.names), "crowded entry", "crowded entries"))
+        parts.append(pluralise(len(assessment.crowding.entries.names), "crowded entry"))
     return ", ".join(parts)

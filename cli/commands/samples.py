@@ -5,6 +5,8 @@ from pathlib import Path
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..output.console import say
 
@@ -30,7 +32,7 @@ def command(folder: str, force: bool) -> None:
     from uplift.samples import copy_samples
 
     copies = copy_samples(folder, force=force)
-    say(f"{folder}: {len(copies)} sample files, with which all examples run. Try first:")
+    say(f"{folder}: {pluralise(len(copies), 'sample file')}, with which all examples run. Try first:")
     for line in _first_commands(Path(folder)):
         say(f"  {line}")
 

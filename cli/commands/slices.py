@@ -4,6 +4,8 @@ from pathlib import Path
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..output.console import say
 from ..outputs import check_outputs
@@ -53,7 +55,7 @@ def command(cube: str, output: str | None, sheet: str | None, force: bool) -> No
     data = read(cube)
     if output is not None:
         write_slices(data, output, force=force)
-        say(f"{output}: {data.lattice.dim} blue slices")
+        say(f"{output}: {pluralise(data.lattice.dim, 'blue slice')}")
     if sheet is not None:
         write_sheet(data, sheet, force=force)
         say(f"{sheet}: contact sheet")

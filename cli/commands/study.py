@@ -8,6 +8,8 @@ from typing import Any
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..inputs import DEFAULT_ATLASES, atlas_files, read_atlases
 from ..output.console import make_table, print_csv_text, print_json, say, show
@@ -189,7 +191,8 @@ def stability(quick: bool, files: tuple[str, ...], output: str | None, style: st
     if style == "table":
         failed = [row["unfitted"] for row in records if row["unfitted"]]
         nodes = sum(row["realisable"] for row in records)
-        say(f"{len(records)} builds, {nodes} realisable nodes: {sum(failed)} unfitted in {len(failed)} builds")
+        builds, missed = pluralise(len(records), "build"), pluralise(len(failed), "build")
+        say(f"{builds}, {pluralise(nodes, 'realisable node')}: {sum(failed)} unfitted in {missed}")
 
 
 @command.command(

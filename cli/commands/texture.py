@@ -15,6 +15,7 @@ import click
 
 from uplift.common.errors import OptionError, OutputError
 from uplift.common.progress import Progress
+from uplift.common.text import pluralise
 
 from .. import options
 from ..inputs import UDIM, check_range, expand_patterns
@@ -174,7 +175,7 @@ def convert(
         size = sum(one.target.stat().st_size for one in converted) / 1e6
         spaces = ", ".join(dict.fromkeys(space for one in converted for space in one.spaces))
         say(
-            f"{target}: {len(converted)} texture{'s' * (len(converted) != 1)}{skipped}, {pixels:,} pixels, "
+            f"{target}: {pluralise(len(converted), 'texture')}{skipped}, {pluralise(pixels, 'pixel')}, "
             f"{size:.1f} MB, {time.perf_counter() - begin:.1f} s{f', read as {spaces}' * bool(spaces)}"
         )
         if size > LARGE and isinstance(settings.pixel_encoding, texture.Spectrum):
@@ -201,7 +202,7 @@ def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path
             raise OutputError("textures are OpenEXR files", path=target, hint=hint)
         return [(Path(images[0]), folder)]
     if folder.suffix.lower() == ".exr" and not folder.is_dir():
-        problem = f"is not a folder, but there are {len(images)} images"
+        problem = f"is not a folder, but there are {len(images):,} images"
         raise OutputError(problem, path=target, hint="give a folder for the textures")
     return [(Path(path), folder / f"{Path(path).stem}.exr") for path in images]
 
@@ -230,6 +231,6 @@ def _collect(results: Generator[Outcome], total: int, *, quiet: bool) -> list[Ou
                 collected.append(result)
                 progress(Progress("images", len(collected), total))
     except KeyboardInterrupt as interrupt:
-        interrupt.add_note(f"{len(collected)} of {total} images are finished, continue with --resume")
+        interrupt.add_note(f"{len(collected)} of {pluralise(total, 'image')} finished, continue with --resume")
         raise
     return collected

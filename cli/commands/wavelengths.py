@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from uplift.common.text import pluralise
+
 from .. import options
 from ..inputs import DEFAULT_ATLASES, atlas_files, check_range, read_atlases
 from ..output.console import make_table, print_csv, print_json, show
@@ -147,13 +149,17 @@ def _print(choice: Choice, camera: Sensor, materials: tuple[str, ...], style: st
     elif style == "csv":
         print_csv(["wavelength", *"XYZ", *"rgb", *(f"power {light}" for light in sampling.lights)], rows)
     else:
-        weights = make_table((), ("nm", *"XYZRGB"), title=f"{len(sampling)} wavelengths, {choice.method}: weights")
+        weights = make_table(
+            (), ("nm", *"XYZRGB"), title=f"{pluralise(len(sampling), 'wavelength')}, {choice.method}: weights"
+        )
         powers = make_table((), ("nm", *sampling.lights), title="power of the lights")
         for nm, *others in rows:
             cells = [f"{other:.4f}" for other in others]
             weights.add_row(f"{nm:.1f}", *cells[:6])
             powers.add_row(f"{nm:.1f}", *cells[6:])
-        table = make_table(("light",), ("mean", "95 %", "max"), title=f"ΔE00 of {len(materials)} materials")
+        table = make_table(
+            ("light",), ("mean", "95 %", "max"), title=f"ΔE00 of {pluralise(len(materials), 'material')}"
+        )
         table.add_column("worst material")
         for name, each in summary.items():
             table.add_row(name, *(f"{number:.3f}" for number in each.values()), worst[name])

@@ -136,11 +136,14 @@ def make_table(texts: Iterable[str] = (), numbers: Iterable[str] = (), **options
 
 
 def show(*tables: SafeTable) -> None:
-    """Print tables. Texts are wrapped to the window; rows whose names and numbers do not fit are longer than a line."""
+    """Print tables. Texts are wrapped between words; a table wider than the window is divided by columns."""
     from rich.console import Console
 
-    for number, table in enumerate(tables):
+    from .tables import table_width
+
+    parts = [part for table in tables for part in table.parts(columns())]
+    for number, part in enumerate(parts):
         if number:
             say()
-        width = max(columns(), table.narrowest())
-        Console(file=sys.stdout, width=width, highlight=False, markup=False, emoji=False).print(table)
+        width = max(columns(), table_width(part.columns))
+        Console(file=sys.stdout, width=width, highlight=False, markup=False, emoji=False).print(part)

@@ -1,9 +1,12 @@
 """Tables whose texts come from files; imported when a table is printed, as it loads rich."""
 
+import copy
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from rich.cells import cell_len
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from uplift.common.text import printable
@@ -21,6 +24,8 @@ WRAPPED = 16
 """Characters that a column of wrapped text has at least, if its text is that long."""
 GAP = 2
 """Characters between columns."""
+MAX_KEYS = 3
+"""Columns of text that every part of a wide table begins with, in at most half of the window."""
 
 
 class SafeTable(Table):
@@ -30,20 +35,58 @@ class SafeTable(Table):
         super().__init__(title=title and plain(title), caption=caption and plain(caption), **LAYOUT | options)
 
     def add_column(self, header: Any = "", *args: Any, **options: Any) -> None:
-        """Add a column with a heading of text. Long words are folded, unless ``no_wrap`` keeps cells on one line."""
+        """Add a column with a heading of text, wrapped between words unless it is ``no_wrap``."""
         super().add_column(plain(header), *args, **{"overflow": "fold"} | options)
 
     def add_row(self, *cells: Any, **options: Any) -> None:
         """Add a row of texts."""
         super().add_row(*map(plain, cells), **options)
 
-    def narrowest(self) -> int:
-        """Return the characters of the table with its texts wrapped."""
-        widths = []
+    def parts(self, width: int) -> Iterator["SafeTable"]:
+        """Divide the columns of a table that is wider than a window; the first ones are repeated in every part."""
         for column in self.columns:
-            natural = max(cell_len(str(cell)) for cell in (column.header, *column.cells))
-            widths.append(natural if column.no_wrap else min(natural, WRAPPED))
-        return sum(widths) + GAP * (len(widths) - 1)
+            column.min_width = narrowest(column)
+        keys = self._keys(width)
+        part = list(keys)
+        caption, self.caption = self.caption, None
+        for column in self.columns[len(keys) :]:
+            if len(part) > len(keys) and table_width([*part, column]) > width:
+                yield self._with_columns(part)
+                part = list(keys)
+                self.title = None
+            part.append(column)
+        self.caption = caption
+        yield self._with_columns(part)
+
+    def _keys(self, width: int) -> Sequence[Column]:
+        count = 1
+        while (
+            count < min(MAX_KEYS, len(self.columns) - 1)
+            and self.columns[count].justify == "left"
+            and table_width(self.columns[: count + 1]) <= width / 2
+        ):
+            count += 1
+        return self.columns[:count]
+
+    def _with_columns(self, columns: Sequence[Column]) -> "SafeTable":
+        part = copy.copy(self)
+        part.columns = [replace(column, _index=index) for index, column in enumerate(columns)]
+        return part
+
+
+def narrowest(column: Column) -> int:
+    """Return the characters of a column whose texts are wrapped between words."""
+    texts = [str(cell) for cell in (column.header, *column.cells)]
+    natural = max(map(cell_len, texts))
+    if column.no_wrap:
+        return natural
+    longest_word = max(cell_len(word) for text in texts for word in text.split() or [""])
+    return max(longest_word, min(natural, WRAPPED))
+
+
+def table_width(columns: Sequence[Column]) -> int:
+    """Return the characters of a table of these columns, as narrow as possible."""
+    return sum(map(narrowest, columns)) + GAP * (len(columns) - 1)
 
 
 def plain(text: str | Text) -> Text:

@@ -20,6 +20,8 @@ from uplift.atlas import (
     resample,
     write_atlas,
 )
+from uplift.atlas.document import SourceLocation
+from uplift.atlas.measurements import Spectrum
 from uplift.atlas.resample import pchip
 from uplift.common.errors import AtlasError, UnknownNameError
 
@@ -58,6 +60,12 @@ def test_an_atlas_is_a_sequence_with_names():
 def test_entries_from_python_are_validated(name, wavelengths, values):
     with raises(AtlasError, "atlas"):
         Entry(name, wavelengths, values)
+
+
+@pytest.mark.parametrize("kind", [Entry, Spectrum])
+def test_a_location_is_not_taken_for_a_statement(kind):
+    with pytest.raises(TypeError):
+        kind("red", RED.wavelengths, RED.values, SourceLocation("a.txt", 3))
 
 
 def test_distributions_of_colour_science(tmp_path):

@@ -114,7 +114,8 @@ def atlases(draw, one_sampling):
     for name in names:
         wavelengths = shared if one_sampling else draw(samplings())
         values = draw(st.lists(REFLECTANCES, min_size=len(wavelengths), max_size=len(wavelengths)))
-        entries.append(Entry(name, wavelengths, np.array(values), *(draw(TEXTS) for _ in range(5))))
+        statements = {key: draw(TEXTS) for key in STATEMENTS[1:]}
+        entries.append(Entry(name, wavelengths, np.array(values), **statements))
     return Atlas(tuple(entries))
 
 

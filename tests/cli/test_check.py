@@ -71,7 +71,7 @@ def test_failed_cubes_do_not_stop_the_others(run, shown, home, stored, modified,
     monkeypatch.setenv("COLUMNS", "1000")  # one line for each cube, however long its path is
     (home / "text.uplift").write_text("no cube")
     result = run("check", "none.uplift", "text.uplift", other_lattice, modified, stored, code=1)
-    verdicts = {line.split()[0]: line.split()[-1] for line in result.stdout.splitlines() if ".uplift" in line}
+    verdicts = {line.split()[0]: line.split()[1] for line in result.stdout.splitlines() if ".uplift" in line}
     failed = dict.fromkeys(("none.uplift", "text.uplift", str(other_lattice), str(modified)), "FAILED")
     assert verdicts == failed | {str(stored): "passed"}
     assert reported(result, shown) == [
@@ -127,6 +127,8 @@ def test_a_changed_atlas_is_explained_and_the_cube_updated(run, ask, home):
     changes = {entry["name"]: entry["change"] for entry in answer["entries"]}
     assert changes == {"grey": "moved", "dark": "removed", "new": "added"}
     assert answer["entries"][-1]["delta_e"] > 0.5
+    table = run("check", "cube.uplift", code=1).stdout.split("limit")[0]
+    assert table.splitlines()[-1].split()[:3] == ["cube.uplift", "FAILED", "changed"]
     shown = run("check", "cube.uplift", "--update").stdout
     assert "mine.csv" in shown
     assert "grey: moved" in shown

@@ -8,7 +8,7 @@ def test_json_has_all_fields(ask, cubes):
     path = cubes / "moments-8-macbeth.uplift"
     data = uplift.load(path).data
     facts = ask("info", path)
-    assert (facts["dim"], facts["points"], facts["coefficients"]) == (8, 512, 9)
+    assert (facts["dim"], facts["nodes"], facts["coefficients"]) == (8, 512, 9)
     assert facts["model"] == data.model.describe()
     assert facts["status"] == data.points.counts()
     assert facts["entries"] == list(data.atlas.names)

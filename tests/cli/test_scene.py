@@ -31,7 +31,7 @@ def test_summary_counts_nodes_and_default_name_has_scene(run, ask, home, macbeth
     names = [image["name"] for image in data.provenance["scene"]]
     assert names == ["a.exr", "b.1.exr", "b.2.exr"]
     facts = ask("info", "macbeth-8-scene.uplift")
-    assert (facts["points"], facts["lattice_points"], facts["status"]["absent"]) == (count, 512, 512 - count)
+    assert (facts["nodes"], facts["lattice_nodes"], facts["status"]["absent"]) == (count, 512, 512 - count)
     run("check", "macbeth-8-scene.uplift", "--atlas-dir", macbeth.parent)
 
 

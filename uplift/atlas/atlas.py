@@ -1,7 +1,7 @@
 """Atlases and their entries: the result of every reader and the input of every writer."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 from importlib import import_module
 from typing import overload
 
@@ -10,7 +10,7 @@ import numpy as np
 from uplift.atlas.document import SourceLocation
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning, unknown_name
-from uplift.common.text import listed
+from uplift.common.text import listed, pluralise
 
 VISIBLE = (400.0, 700.0)
 """Range in nm that every entry must cover. Wavelengths outside have little effect on colour."""
@@ -63,6 +63,7 @@ class Entry:
     name: str
     wavelengths: Array
     values: Array
+    _: KW_ONLY
     description: str = ""
     additional_description: str = ""
     device: str = ""
@@ -85,7 +86,7 @@ class Entry:
 
     def __repr__(self) -> str:
         first, last = self.wavelengths[[0, -1]]
-        return f"Entry({self.name!r}, {len(self.values)} samples, {first:g}–{last:g} nm)"
+        return f"Entry({self.name!r}, {pluralise(len(self.values), 'sample')}, {first:g}–{last:g} nm)"
 
     def _repr_html_(self) -> str:
         return Atlas((self,))._repr_html_()
@@ -239,7 +240,7 @@ class Atlas:
         raise unknown_name(key, self.names, "atlas entry")
 
     def __repr__(self) -> str:
-        parts = [f"{len(self)} {'entry' if len(self) == 1 else 'entries'}"]
+        parts = [pluralise(len(self), "entry")]
         if self.entries:
             first = min(entry.wavelengths[0] for entry in self.entries)
             last = max(entry.wavelengths[-1] for entry in self.entries)

@@ -4,7 +4,7 @@ import contextlib
 import re
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -39,6 +39,7 @@ class Spectrum:
     wavelengths: Sequence[float] | Array
     values: Sequence[float] | Array
     """(N,) Wavelengths in nm, ascending or descending, and values in units of the file."""
+    _: KW_ONLY
     line: int | None = None
     """First line of the spectrum in the file."""
     description: str = ""
@@ -52,6 +53,7 @@ class Measurements:
 
     spectra: tuple[Spectrum, ...]
     """Reflectances."""
+    _: KW_ONLY
     skipped: tuple[SkippedEntry, ...] = ()
     """Other spectra."""
     scale: float | None = None

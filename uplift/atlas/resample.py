@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from uplift.atlas.atlas import Atlas
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
-from uplift.common.text import listed
+from uplift.common.text import listed, pluralise
 
 NOISE = 1e-6
 """Distance from [0, 1] that is clipped without a warning, such as −2e−16 for black."""
@@ -94,7 +94,7 @@ def on_grid(atlas: Atlas, wavelengths: ArrayLike) -> Array:
     elif clips:
         names = listed([f"'{clip.name}'" for clip in clips])
         most = max(clips, key=lambda clip: max(-clip.value, clip.value - 1))
-        problem = f"{len(clips)} entries clipped to [0, 1]: {names}; '{most.name}' has {most}"
+        problem = f"{pluralise(len(clips), 'entry')} clipped to [0, 1]: {names}; '{most.name}' has {most}"
         warnings.warn(UpliftWarning(problem, code="entry-clipped"), stacklevel=2)
     return resampled.values
 

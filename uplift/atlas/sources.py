@@ -20,6 +20,7 @@ from uplift.atlas.measurements import MEASURED, Measured, to_atlas
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OutputError, UpliftWarning, unknown_name
 from uplift.common.files import write_text
+from uplift.common.text import pluralise
 
 PACKAGE = "uplift_atlases"
 """Name under which the folder atlases/ of the repository is installed."""
@@ -149,7 +150,8 @@ def from_distributions(distributions: Any) -> Atlas:
         if labels is None or named is distributions:
             entries.append(Entry(str(name), nm, values))
         elif np.ndim(values) != 2 or np.shape(values)[1] != len(labels):
-            problem = f"values must have shape (N, {len(labels)}) for {len(labels)} labels, got {np.shape(values)}"
+            count = pluralise(len(labels), "label")
+            problem = f"values must have shape (N, {len(labels)}) for {count}, got {np.shape(values)}"
             raise SourceLocation().error(problem, "give one column of values per label")
         else:
             entries += [

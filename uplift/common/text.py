@@ -67,6 +67,18 @@ def round_up(value: float) -> float:
     return float(decimal.Context(prec=2, rounding=decimal.ROUND_CEILING).create_decimal_from_float(value))
 
 
+def pluralise(count: int, noun: str) -> str:
+    """Format a count with its noun.
+
+    >>> pluralise(1, "atlas entry"), pluralise(1500, "atlas entry"), pluralise(2, "box")
+    ('1 atlas entry', '1,500 atlas entries', '2 boxes')
+    """
+    if count == 1:
+        return f"1 {noun}"
+    stem = re.sub("y$", "ie", noun)
+    return f"{count:,} {stem}{'es' if noun.endswith(('ch', 'x')) else 's'}"
+
+
 def parse_float(text: str) -> float:
     """Parse a number, which may be infinite or NaN; `ValueError` otherwise.
 

@@ -13,6 +13,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import Solid, solid
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
+from uplift.common.text import pluralise
 from uplift.lattice import Lattice, PointTable
 from uplift.lattice.entry_boxes import EntryBoxes, OutsideBoxes
 from uplift.models import evaluate
@@ -34,7 +35,7 @@ class EntrySpectra:
     coefficients: Array
 
     def __repr__(self) -> str:
-        return f"EntrySpectra({len(self.coefficients)} of {self.model.count} coefficients)"
+        return f"EntrySpectra({len(self.coefficients)} of {pluralise(self.model.count, 'coefficient')})"
 
     @cached_property
     def multipliers(self) -> Array:
@@ -91,7 +92,7 @@ class AtlasTable:
         return AtlasTable(names, both("rgb"), both("coefficients"), both("half_width"), both("error"), spectra)
 
     def __repr__(self) -> str:
-        return f"AtlasTable({len(self.names)} entries)"
+        return f"AtlasTable({pluralise(len(self.names), 'entry')})"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -112,11 +113,11 @@ class CubeData:
 
     def __repr__(self) -> str:
         sensor, own = self.sensor, self.atlas.spectra.model
-        more = "" if own == self.model else f" with {own.count} coefficients"
+        more = "" if own == self.model else f" with {pluralise(own.count, 'coefficient')}"
         outside = "" if self.atlas.outside is None else f" and {len(self.atlas.outside.names)} outside"
         return (
-            f"CubeData({self.model.name} with {self.model.count} coefficients, dim {self.lattice.dim}, "
-            f"{sensor.space} under {sensor.illuminant}, {len(self.atlas.names)} entries{more}{outside})"
+            f"CubeData({self.model.name} with {pluralise(self.model.count, 'coefficient')}, dim {self.lattice.dim}, "
+            f"{sensor.space} under {sensor.illuminant}, {pluralise(len(self.atlas.names), 'entry')}{more}{outside})"
         )
 
     @cached_property

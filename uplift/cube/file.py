@@ -9,6 +9,7 @@ import numpy as np
 
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Array, Indices
+from uplift.common.text import pluralise
 from uplift.cube.container import (
     Kind,
     Stored,
@@ -237,7 +238,7 @@ def _decode(tensors: Tensors, metadata: dict[str, Any]) -> CubeData:
     if "points" in arrays:
         data = replace(data, points=_expand(data.points, arrays["points"].astype(np.int64), data.lattice))
     size, count = data.lattice.size, data.points.status.size
-    require(count == size, f"there must be {size} points, got {count}")
+    require(count == size, f"there must be {pluralise(size, 'node')}, got {count}")
     return data
 
 
@@ -293,8 +294,8 @@ def summarise(data: CubeData) -> dict[str, Any]:
         "coefficients": data.model.count,
         "entry_coefficients": data.atlas.spectra.model.count,
         "dim": data.lattice.dim,
-        "points": int(np.count_nonzero(present)),
-        "lattice_points": data.lattice.size,
+        "nodes": int(np.count_nonzero(present)),
+        "lattice_nodes": data.lattice.size,
         "space": data.sensor.space,
         "illuminant": data.sensor.illuminant,
         "observer": data.sensor.observer,

@@ -21,9 +21,9 @@ NODE_BYTES = 220
 """Memory of a node in all images, without its coefficients."""
 MAX_FLOAT32 = float(np.finfo(np.float32).max)
 COMMENTS = (
-    "A blue slice of a spectral uplifting cube. A pixel is a lattice point: red rises to the right, green "
+    "A blue slice of a spectral uplifting cube. A pixel is a node: red rises to the right, green "
     "upwards (the top row has the highest). R, G, B and lattice: what the stored spectrum evaluates to; target: "
-    "the lattice point itself, both linear. distance: largest difference of the two. entry and round: -1 for none. "
+    "the node itself, both linear. distance: largest difference of the two. entry and round: -1 for none. "
     "Absent points, of a cube built for a scene, hold nothing but their status."
 )
 """The ``comments`` attribute of every part."""

@@ -1,4 +1,4 @@
-"""The colours of images as a scene: `uplift.build` fits only the lattice points that answer them."""
+"""The colours of images as a scene: `uplift.build` fits only the nodes that answer them."""
 
 import warnings
 from collections.abc import Iterator
@@ -52,7 +52,7 @@ class Images:
             )
 
     def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
-        """Return the mask (dim³,) of the lattice points that answer the colours of the images; see `SceneLike`.
+        """Return the mask (dim³,) of the nodes that answer the colours of the images; see `SceneLike`.
 
         Raises `TextureError`, and `ColourError` with ``out_of_gamut="error"``. Warns of images in another RGB space.
         """
@@ -98,12 +98,12 @@ def cells_touched(lattice: Lattice, rgb: Array) -> Indices:
 
 @dataclass(frozen=True, eq=False)
 class ColourSet:
-    """Scene of linear RGB (n, 3) for `uplift.build`: the cube gets the lattice points that the colours need."""
+    """Scene of linear RGB (n, 3) for `uplift.build`: the cube gets the nodes that the colours need."""
 
     rgb: Array
 
     def required_points(self, boxes: EntryBoxes, sensor: Sensor, progress: ProgressCallback) -> Mask:
-        """Lattice points (dim³,) that the colours need."""
+        """Nodes (dim³,) that the colours need."""
         return boxes.required_points(boxes.lattice.mask(cells_touched(boxes.lattice, self.rgb)))
 
     def describe(self) -> list[dict[str, Any]]:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from uplift.common.arrays import Array, Indices, Mask, Values
+from uplift.common.text import pluralise
 from uplift.lattice.lattice import Lattice, weighted_sum
 from uplift.lattice.point_table import NO_ENTRY
 
@@ -88,7 +89,7 @@ class EntryBoxes:
     half_width: Array
 
     def __repr__(self) -> str:
-        return f"EntryBoxes({np.count_nonzero(self.half_width)} boxes in {self.lattice})"
+        return f"EntryBoxes({pluralise(int(np.count_nonzero(self.half_width)), 'box')} in {self.lattice})"
 
     @cached_property
     def faces(self) -> tuple[Array, Array]:
@@ -189,7 +190,7 @@ class OutsideBoxes:
     half_width: Array
 
     def __repr__(self) -> str:
-        return f"OutsideBoxes({np.count_nonzero(self.half_width)} boxes)"
+        return f"OutsideBoxes({pluralise(int(np.count_nonzero(self.half_width)), 'box')})"
 
     def find(self, rgb: Values) -> BoxHits:
         """Find which of the linear RGB (n, 3) lie in boxes."""

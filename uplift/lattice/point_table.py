@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Indices, Mask
+from uplift.common.text import pluralise
 
 NO_ENTRY = -1
 """Value of `PointTable.entry` at nodes that no atlas entry seeds."""
@@ -59,7 +60,8 @@ class PointTable:
     standard_error: NDArray[np.float32] | None = None
 
     def __repr__(self) -> str:
-        return f"PointTable({len(self.status)} points, {self.coefficients.shape[-1]} coefficients each)"
+        coefficients = pluralise(self.coefficients.shape[-1], "coefficient")
+        return f"PointTable({pluralise(len(self.status), 'node')}, {coefficients} each)"
 
     @cached_property
     def present(self) -> Mask:

@@ -12,6 +12,7 @@ import numpy as np
 
 from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError
+from uplift.common.text import pluralise
 
 DENOMINATOR = np.array([1.0, 15.0, 3.0])
 """Weights of X, Y and Z in the denominator of u′ and v′."""
@@ -72,7 +73,7 @@ class ChromaticityLattice:
             raise _error("must have knots counterclockwise around the centre")
 
     def __repr__(self) -> str:
-        return f"ChromaticityLattice({len(self.knots)} knots, {len(self.rings)} rings)"
+        return f"ChromaticityLattice({pluralise(len(self.knots), 'knot')}, {pluralise(len(self.rings), 'ring')})"
 
     @property
     def shape(self) -> tuple[int, int]:

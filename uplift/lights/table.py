@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.arrays import Array
+from uplift.common.text import pluralise
 from uplift.cube.container import (
     Kind,
     Stored,
@@ -77,9 +78,10 @@ class EmissionData:
     """Version, options and files of the build."""
 
     def __repr__(self) -> str:
-        lamps = f"{len(self.entries.names)} {'lamp' if len(self.entries.names) == 1 else 'lamps'}"
+        lamps = pluralise(len(self.entries.names), "lamp")
         knots, rings = self.lattice.shape
-        return f"EmissionData({knots} × {rings} nodes, {len(self.wavelengths)} wavelengths, {self.space}, {lamps})"
+        wavelengths = pluralise(len(self.wavelengths), "wavelength")
+        return f"EmissionData({knots} × {rings} nodes, {wavelengths}, {self.space}, {lamps})"
 
     @cached_property
     def radiometry(self) -> Array:

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from uplift.colorimetry.sensor import Sensor, as_rgb
 from uplift.common.arrays import Array, Floats, Indices
 from uplift.common.machine import require_memory_of_xla
+from uplift.common.text import pluralise
 from uplift.lattice import EntryBoxes, Lattice
 from uplift.lookup.blocks import as_coefficient_count, as_colours, as_thread_count, as_wavelengths, blockwise
 from uplift.lookup.cube import Cube
@@ -192,7 +193,7 @@ class Sampler:
     exact: Exact | None = None
 
     def __repr__(self) -> str:
-        return f"Sampler({self.grid.lattice.shape[1]} values per colour, {self.nbytes / 1e6:.1f} MB)"
+        return f"Sampler({pluralise(self.grid.lattice.shape[1], 'value')} per colour, {self.nbytes / 1e6:.1f} MB)"
 
     def __call__(self, rgb: ArrayLike) -> Floats:
         """Interpolate values (…, N) at linear RGB (…, 3) in [0, 1]; `ColourError` as in `Cube.reflectance`."""

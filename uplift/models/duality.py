@@ -13,6 +13,7 @@ import numpy as np
 
 from uplift.common.arrays import Array, Complex, Mask, blocks, largest
 from uplift.common.errors import UpliftError
+from uplift.common.text import pluralise
 from uplift.models.arithmetic import arctan
 
 MAX_MULTIPLIER = 1e9
@@ -221,7 +222,8 @@ def multipliers_from_moments(moments: Any, solve: Callable[[Any], tuple[Any, Mas
     if valid.all():
         return multipliers
     raise UpliftError(
-        f"{(~valid).sum()} sets of coefficients are not the moments of any reflectance", code="invalid-moments"
+        f"not the moments of any reflectance: {pluralise((~valid).sum(), 'set')} of coefficients",
+        code="invalid-moments",
     )
 
 

@@ -19,7 +19,7 @@ from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import OptionError
 from uplift.common.machine import single_threaded_blas
 from uplift.common.progress import ProgressCallback, ignore_progress
-from uplift.common.text import format_value
+from uplift.common.text import format_value, pluralise
 from uplift.common.version import version
 from uplift.cube import CubeData
 from uplift.fit import growth, growth_coarse, growth_outward, growth_thesis, seeds
@@ -107,7 +107,7 @@ def build(
     atlas : Atlas, path-like or sequence of path-like, optional
         Measured spectra, or the files that contain them.
     dim : int or {"auto"}, default 32
-        Lattice points along each axis, at least 2. ``"auto"`` chooses the smallest lattice, and its axis, that
+        Nodes along each axis, at least 2. ``"auto"`` chooses the smallest lattice, and its axis, that
         keeps every atlas entry within ``auto_tolerance``.
     model : {"moments", "sigmoid"}, default "moments"
         Spectrum model: bounded trigonometric moments, or the sigmoid of a quadratic.
@@ -151,7 +151,7 @@ def build(
     leave_out : sequence of str, optional
         Families of the shipped library that the learnt prior must not know, for tests on them.
     threshold : float, default 1e-4
-        Largest ``|target − stored|`` of a fitted lattice point in linear RGB, in (0, 0.1].
+        Largest ``|target − stored|`` of a fitted node in linear RGB, in (0, 0.1].
     auto_tolerance : float, default 0.5
         With ``dim="auto"``: largest ΔE00, under ``lights``, between an entry and the lattice.
     seed_corners : bool, default False
@@ -159,17 +159,17 @@ def build(
         of them start half-way between entry and prior, and at colours unlike the entry's nearer to the prior.
         ``growth="neighbours"`` always does.
     growth : {"outward", "coarse-to-fine", "neighbours"}, default "outward"
-        Order in which lattice points are fitted: outward from the atlas entries, in shells, or from a coarse lattice to
+        Order in which nodes are fitted: outward from the atlas entries, in shells, or from a coarse lattice to
         finer ones. Both start from the spectrum that the atlas lets expect at a colour, and have the same answers.
         ``"neighbours"`` goes outward and starts from the spectra of fitted neighbours (Tódová 2020, section 3.1).
     solver : str or optimistix.AbstractLeastSquaresSolver, default "least-change"
-        Solver of lattice points, all of optimistix: ``"least-change"``, our own, ``"dogleg"``,
+        Solver of nodes, all of optimistix: ``"least-change"``, our own, ``"dogleg"``,
         ``"levenberg-marquardt"``, ``"gauss-newton"``, or any least-squares solver or minimiser. The default is fastest;
         answers agree except for nearly box-shaped spectra (docs/accuracy.md).
     debug : bool, default False
         Store the round of growth in which each point was fitted.
     scene : SceneLike, path-like or sequence of path-like, optional
-        Images, or another set of colours. Only the lattice points that answer these colours are fitted.
+        Images, or another set of colours. Only the nodes that answer these colours are fitted.
     progress : callable, optional
         Called with `Progress` events of the stages ``"images"``, ``"fit"`` and ``"store"``.
 
@@ -323,7 +323,7 @@ def build_stages(
     improvements = growth.improve(grown, growth.THESIS_STEPS if neighbours else growth.STEPS)
     points = store(grown, seeded, prior)
     if options.solver != SOLVERS[0] and (unfitted := points.counts()["unfitted"]):
-        problem_text = f"{unfitted} nodes are over the threshold with the solver '{options.solver}'"
+        problem_text = f"{pluralise(unfitted, 'node')} over the threshold with the solver '{options.solver}'"
         entries.warn(problem_text, code="nodes-unfitted", hint="use the default solver")
     points = points if kept is None else points.restricted_to(kept)
 

@@ -111,9 +111,7 @@ def warn_of_close(names: Sequence[str], half_width: Array, crowded: Sequence[int
         problem = "left out: an earlier entry has the same colour, which has only one answer"
         warn(f"{_listed(names, duplicates)} {problem}", code="entry-duplicate")
     if near := [row for row in crowded if half_width[row]]:
-        problem = (
-            "crowded: closer entries own the nearest lattice point. Queries at the entries' own colours stay exact"
-        )
+        problem = "crowded: closer entries own the nearest node. Queries at the entries' own colours stay exact"
         hint = 'use dim="auto" for a lattice that is large enough, or see the report of the cube'
         warn(f"{_listed(names, near)} {problem}, queries near them are less accurate", code="entry-crowded", hint=hint)
 

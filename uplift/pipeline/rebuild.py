@@ -15,6 +15,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import CubeFileError, LookError, OptionError, UnknownNameError, UpliftWarning
 from uplift.common.progress import ProgressCallback, ignore_progress
+from uplift.common.text import pluralise
 from uplift.common.version import is_older, version
 from uplift.cube import CubeData
 from uplift.lattice import EntryBoxes
@@ -197,7 +198,9 @@ def _read_options(data: CubeData, path: StrPath) -> Options:
         )
     if options.dim != data.lattice.dim:
         raise CubeFileError(
-            f"records dim {options.dim}, but has {data.lattice.dim} nodes along each axis", path=path, hint=REBUILD
+            f"records dim {options.dim}, but has {pluralise(data.lattice.dim, 'node')} along each axis",
+            path=path,
+            hint=REBUILD,
         )
     return options
 

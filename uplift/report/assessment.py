@@ -31,9 +31,9 @@ class Assessment:
     data: CubeData  # The cube
     facts: dict[str, Any]  # The result of `summarise`
     failures: dict[str, Any]  # Points over the threshold and missing entries: `collect_failures`
-    distance: Histogram  # Fitting distance of the lattice points, max |linear RGB|
+    distance: Histogram  # Fitting distance of the nodes, max |linear RGB|
     round_trips: dict[str, Histogram]  # ΔE00 of random colours under the cube's illuminant, by mode of lookup
-    # Standard errors of the lattice points, ΔE00 under ``data.error_illuminant``; None if the cube has none
+    # Standard errors of the nodes, ΔE00 under ``data.error_illuminant``; None if the cube has none
     standard_error: Histogram | None
     smoothness: Histogram  # rms difference of reflectance between neighbouring points
     steepest: Array  # (2, 3) Linear RGB of the two neighbours that differ most

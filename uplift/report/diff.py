@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from uplift.colorimetry.observer import light
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError
 from uplift.common.machine import check_memory
+from uplift.common.text import pluralise
 from uplift.cube import CubeData, common_sensor
 from uplift.lookup import Cube
 from uplift.lookup.blocks import blockwise
@@ -16,6 +18,8 @@ from uplift.report.measures import delta_e_under, mean_p95_max
 
 NODES, ENTRIES = "nodes", "entries"
 """Names of the sets of colours that come from the cubes."""
+INVISIBLE = 5e-4
+"""Largest ΔE00 that is shown as 0.000."""
 NODE_BYTES = 200
 """Memory of the comparison of a node."""
 
@@ -43,10 +47,10 @@ class Changes:
         return self.delta_e[self.lacking == 0]
 
     def worst(self, count: int) -> Indices:
-        """Rows of at most ``count`` colours that differ, each once, largest ΔE00 first."""
+        """Rows of at most ``count`` colours that differ visibly, each once, largest ΔE00 first."""
         _, rows = np.unique(self.rgb, axis=0, return_index=True)
         order = rows[np.argsort(-self.largest[rows], kind="stable")[:count]]
-        return order[self.largest[order] > 0]
+        return order[self.largest[order] >= INVISIBLE]
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +135,7 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
     under = [light(name, sensor.observer, *sensor.range) for name in lights]
 
     size = sum(cube.data.lattice.size for cube in cubes.values())
-    check_memory(size * NODE_BYTES, f"{size:,} nodes", OptionError, "use cubes of a smaller dim")
+    check_memory(size * NODE_BYTES, pluralise(size, "node"), OptionError, "use cubes of a smaller dim")
     nodes, others = (cube.data.lattice.points for cube in (first, second))
     nodes = nodes if np.array_equal(nodes, others) else np.concatenate([nodes, others])
     colours = {NODES: nodes, **{name: rgb.reshape(-1, 3) for name, rgb in (images or {}).items()}}
@@ -160,22 +164,26 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
 
 
 def to_json(diff: CubeDiff, tolerance: float | None, worst: int) -> dict[str, object]:
-    """Return the figures of a comparison, with the worst colours of each set, for JSON."""
+    """Return the figures of a comparison, with the worst colours of each set, for JSON.
+
+    Rows without a difference come last.
+    """
+    differences: list[dict[str, Any]] = [
+        {
+            "set": each.name,
+            "light": name,
+            **mean_p95_max(values),
+            **({} if tolerance is None else {"moved": int((values > tolerance).sum())}),
+        }
+        for each in diff.sets
+        for name, values in zip(diff.lights, each.compared.T, strict=True)
+        if values.size
+    ]
     return {
         "cubes": list(diff.names),
         "largest": diff.largest,
         **({} if tolerance is None else {"tolerance": tolerance, "passed": diff.is_within(tolerance)}),
-        "differences": [
-            {
-                "set": each.name,
-                "light": name,
-                **mean_p95_max(values),
-                **({} if tolerance is None else {"moved": int((values > tolerance).sum())}),
-            }
-            for each in diff.sets
-            for name, values in zip(diff.lights, each.compared.T, strict=True)
-            if values.size
-        ],
+        "differences": sorted(differences, key=lambda row: row["max"] < INVISIBLE),
         "worst": [
             {
                 "set": each.name,

@@ -12,7 +12,7 @@ from uplift.common.arrays import Array
 from uplift.io.exr import blue_slices
 from uplift.report.charts import spectra_chart
 from uplift.report.diff import Changes, CubeDiff, to_json
-from uplift.viz.figure import PALE, colour_map, new_figure, show_image, styled, to_page_svg
+from uplift.viz.figure import PALE, RAMP, colour_map, new_figure, show_image, styled, to_page_svg
 from uplift.viz.html import render
 
 MIN_LIMIT, SHARE = 1.0, 0.99
@@ -34,6 +34,8 @@ def render_diff(diff: CubeDiff, images: Mapping[str, Array], worst: int) -> str:
         lead="Where the answers of two cubes differ: ΔE00 between their spectra, the largest under any of the lights.",
         diff=diff,
         figures=to_json(diff, None, worst),
+        limit=limit,
+        ramp=RAMP,
         lattice=_map(mosaic(nodes), limit, "ΔE00 over the lattice, a tile for each blue"),
         images=[_image(diff, each, images[each.name], limit) for each in diff.images],
         spectra=[_spectra(diff, each, int(row)) for each in diff.sets for row in each.worst(worst)],
@@ -60,10 +62,7 @@ def _map(values: Array, limit: float, label: str, picture: NDArray[np.uint8] | N
         grid = figure.subplots(1, panels, squeeze=False)[0]
         if picture is not None:
             show_image(grid[0], picture, interpolation="antialiased")
-        drawn = show_image(grid[-1], values, cmap=colour_map(), vmin=0, vmax=limit, interpolation="nearest")
-        style = {"fraction": 0.03, "pad": 0.015, "extend": "max"}
-        bar = figure.colorbar(drawn, ax=list(grid), label="ΔE00 between the cubes", **style)
-        bar.outline.set_visible(False)
+        show_image(grid[-1], values, cmap=colour_map(), vmin=0, vmax=limit, interpolation="nearest")
         grid[-1].set_facecolor(PALE)
         return to_page_svg(figure, label)
 
@@ -81,10 +80,12 @@ def _spectra(diff: CubeDiff, changes: Changes, row: int) -> dict[str, object]:
     if changes is diff.entries:
         name, answers = diff.pairs.names[row], [each[row] for each in diff.pairs.spectra]
     else:
-        name, answers = changes.name, [cube.reflectance(rgb, wavelengths) for cube in diff.cubes]
+        name, answers = "", [cube.reflectance(rgb, wavelengths) for cube in diff.cubes]
+    (code,) = hex_codes(rgb[None], sensor)
     return {
-        "name": name,
-        "code": hex_codes(rgb[None], sensor)[0],
+        "title": name or code,
+        "set": changes.name,
+        "code": code,
         "light": diff.lights[int(changes.delta_e[row].argmax())],
         "delta_e": float(changes.largest[row]),
         "chart": spectra_chart(wavelengths, answers[0], answers[1], None),

@@ -8,6 +8,7 @@ from uplift.colorimetry.observer import light
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.common.text import pluralise
 from uplift.cube import CubeData
 from uplift.io.export.program import cube_program
 from uplift.io.export.table import COLUMNS, check_complete, make_table
@@ -39,10 +40,10 @@ def page(data: CubeData) -> str:
     }
     return render(
         "report/templates/live_page.html.j2",
-        title="Images under other lights",
+        title="Your images under other lights",
         lead=(
-            f"Spectra of a cube of {data.lattice.dim}³ nodes and {len(data.atlas.names)} atlas entries, evaluated in "
-            f"the browser for every pixel. Drop an image on the page."
+            f"Spectra of a cube of {data.lattice.dim}³ nodes and {pluralise(len(data.atlas.names), 'atlas entry')}, "
+            f"evaluated in the browser for every pixel. Drop an image on the page."
         ),
         lights=names,
         second=next(name for name in ("A", "FL11") if name != names[0]),

@@ -16,7 +16,9 @@ from uplift.colorimetry.lights import DESCRIPTIONS
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.common.text import pluralise
 from uplift.lookup import Cube
+from uplift.lookup.light_errors import LIKELY
 from uplift.lookup.metamer_bounds import Bounds
 from uplift.models import Moments
 from uplift.models.moments import MAX_COUNT
@@ -32,7 +34,7 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
     if not found or len(found[0].xyz) != 1:
         count = len(found[0].xyz) if found else 0
         raise OptionError(
-            f"a page shows one colour under some lights, got {count} colours", hint="give a single colour"
+            f"a page shows one colour under some lights, got {pluralise(count, 'colour')}", hint="give a single colour"
         )
     sensor, rgb = cube.data.sensor, found[0].volumes.rgb[0]
     written = _written(cube, rgb)
@@ -47,6 +49,7 @@ def page(cube: Cube, found: Sequence[Bounds]) -> str:
         ),
         build=sensor.illuminant,
         lights=lights,
+        likely=f"{LIKELY:.0%}",
         numbers=_model(sensor, found[0].reflectance[0], rgb)
         | {"build": _view(sensor.light, conversion(sensor, SRGB) @ sensor.xyz_to_rgb), "lights": lights}
         | {"rgb": written, "luminance": SRGB.rgb_to_xyz[1].tolist()},

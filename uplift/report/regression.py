@@ -23,7 +23,7 @@ LIMITS = {"rgb": 1e-6, "spectra_max": 1e-5, "spectra_rms": 1e-7} | {
     f"delta_e_{name}": 1e-4 for name in REGRESSION_LIGHTS
 }
 MOVED = LIMITS[f"delta_e_{REGRESSION_LIGHTS[0]}"]
-# Largest difference of lattice nodes. They are the same on every CPU since version 0.2. Cubes of earlier versions have
+# Largest difference of nodes. They are the same on every CPU since version 0.2. Cubes of earlier versions have
 # the powers of numpy, which instruction sets round differently.
 NODE_TOLERANCE = 1e-12
 # Linear RGB within the object-colour solid. Points of wide gamuts nearer to its boundary have spectra close to box

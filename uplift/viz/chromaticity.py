@@ -19,6 +19,7 @@ MARGINS = {"left": 0.035, "right": 0.99, "bottom": 0.085, "top": 0.93, "wspace":
 PIXELS = 320  # pixels of a picture along u′
 # Wavelengths in nm that are marked on the spectral locus.
 WAVELENGTHS = (460, 480, 490, 500, 510, 520, 540, 560, 580, 600, 620, 700)
+MAX_NAMES = 12  # lamps that are named; the report lists all
 FADED = 0.35  # opacity of colours below names
 MARGIN = 0.012  # u′v′ between the lamps and the edge of their window
 LAMP: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 4.5, "mfc": "white", "mec": INK, "mew": 0.8}
@@ -75,7 +76,7 @@ def draw_errors(axes: Any, table: EmissionTable) -> None:
 
 
 def draw_lamps(axes: Any, table: EmissionTable) -> None:
-    """Draw the part of the diagram that has the lamps, with their names as far as there is room.
+    """Draw the part of the diagram that has the lamps, and name the standard illuminants and those with large discs.
 
     Circles are the discs in which answers blend to a lamp.
     """
@@ -86,10 +87,11 @@ def draw_lamps(axes: Any, table: EmissionTable) -> None:
     for uv, radius in zip(entries.uv, entries.radius, strict=True):
         axes.add_patch(Circle(tuple(uv), radius, fill=False, edgecolor=GREY, linewidth=0.5))
     _draw_lamp_marks(axes, table)
-    order = np.argsort(-entries.radius, kind="stable")
+    is_standard = np.isin(entries.names, STANDARD_ILLUMINANTS)
+    order = np.lexsort([-entries.radius, ~is_standard])
     labels = [
-        Label(entries.names[row], tuple(entries.uv[row]), INK, entries.names[row] in STANDARD_ILLUMINANTS, "")
-        for row in order.tolist()
+        Label(entries.names[row], tuple(entries.uv[row]), INK, bool(is_standard[row]), "")
+        for row in order[:MAX_NAMES].tolist()
     ]
     draw_labels(axes, labels, entries.uv, np.empty((0, 2)))
 

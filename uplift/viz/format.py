@@ -3,6 +3,8 @@
 import math
 from collections.abc import Iterable, Sequence
 
+from uplift.common.text import pluralise
+
 __all__ = [
     "capitalise",
     "format_build_time",
@@ -65,11 +67,6 @@ def format_power_of_ten(value: float) -> str:
 def format_rgb(rgb: Iterable[float]) -> str:
     """Format linear RGB (3,) with four decimals."""
     return ", ".join(f"{value:.4f}" for value in rgb)
-
-
-def pluralise(count: int, singular: str, plural: str | None = None) -> str:
-    """Format a count with its noun."""
-    return f"{count:,} {singular if count == 1 else plural or singular + 's'}"
 
 
 def capitalise(text: str) -> str:

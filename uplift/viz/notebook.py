@@ -11,7 +11,7 @@ from uplift.atlas import Atlas, resample
 from uplift.colorimetry.observer import sensor
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
-from uplift.common.text import printable
+from uplift.common.text import pluralise, printable
 from uplift.lookup import Cube
 from uplift.viz.figure import GREY, new_figure, style_spectrum_axes, to_svg
 
@@ -79,8 +79,8 @@ def _sparkline(values: Array) -> Markup:
 def _facts(cube: Cube) -> dict[str, str]:
     points, size = cube.data.points.present, cube.data.lattice.size
     return {
-        "model": f"{cube.data.model.name}, {cube.coefficient_count} coefficients",
-        "lattice": f"dim {cube.dim}, {np.count_nonzero(points):,} of {size:,} nodes",
+        "model": f"{cube.data.model.name}, {pluralise(cube.coefficient_count, 'coefficient')}",
+        "lattice": f"dim {cube.dim}, {np.count_nonzero(points):,} of {pluralise(size, 'node')}",
         "RGB space": f"{cube.space} under {cube.illuminant}",
         "observer": cube.observer,
         "atlas entries": f"{len(cube.atlas_names):,}",

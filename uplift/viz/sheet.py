@@ -176,10 +176,10 @@ def _heading(data: CubeData, layout: Layout) -> Label:
     model, sensor, points = data.model, data.sensor, data.points
     present = "" if data.complete_cells is None else f"{np.count_nonzero(points.present):,} of "
     facts = (
-        f"{present}{data.lattice.dim}³ points",
-        f"{model.name}, {model.count} coefficients",
+        f"{present}{data.lattice.dim}³ nodes",
+        f"{model.name}, {pluralise(model.count, 'coefficient')}",
         f"{sensor.space} under {sensor.illuminant}",
-        f"{len(data.atlas.names)} atlas entries",
+        pluralise(len(data.atlas.names), "atlas entry"),
         f"threshold {data.threshold:g}",
     )
     return Label(2 * layout.em, 2.75 * layout.em, "  ·  ".join(facts), 1.4 * layout.em)
@@ -265,7 +265,7 @@ def _round_panel(rounds: NDArray[np.int16], not_fitted: Mask) -> Panel:
 
 
 def _count(mask: Mask) -> str:
-    return pluralise(int(mask.sum()), "point")
+    return pluralise(int(mask.sum()), "node")
 
 
 def _highlight_where(mask: Mask, position: Array) -> Array:

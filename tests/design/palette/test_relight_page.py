@@ -99,10 +99,11 @@ def codes(linear):
 
 
 def expected_codes(view, mix, stops=0.0):
-    """(H, W, 3) 8-bit codes: the light's coefficients times each pixel's, then the matrix."""
+    """(H, W, 3) 8-bit codes: the light's coefficients times each pixel's, then the matrix; the background is grey."""
     light = np.asarray(mix) @ view.light_coefficients
     signals = view.weights.astype(float) @ view.material_coefficients * light
-    return codes(2.0**stops * signals @ view.to_rgb.T)
+    lit = 2.0**stops * signals @ view.to_rgb.T
+    return codes(np.where(view.labels[..., None], lit, 0.025))
 
 
 def largest_difference(tab, view, gains=1.0, stops=0.0):
@@ -130,7 +131,8 @@ def test_the_numbers_of_the_page_give_the_picture(view):
     mix = [0.2, 0.5, 0.3]
     light = np.array(mix) @ np.array(numbers["light"])
     pixels = codes((coefficients.astype(float) * light) @ np.array(numbers["toRgb"]).T)
-    assert np.abs(pixels - expected_codes(view, mix)).max() <= 1
+    is_lit = view.labels > 0
+    assert np.abs(pixels - expected_codes(view, mix))[is_lit].max() <= 1
     assert (unpacked(script(text, "labels"), "u1") == view.labels.ravel()).all()
     assert numbers["materials"] == list(view.materials)
 
@@ -208,6 +210,8 @@ def test_keys_move_the_dial(opened, view):
     assert largest_difference(tab, view) <= 1
     text = tab.evaluate("document.getElementById('dial').getAttribute('aria-valuetext')")
     assert text == "light 0 0 %, light 1 100 %, light 2 0 %"
+    assert tab.evaluate("document.getElementById('share-1').textContent") == "100 % of the mix"
+    assert "%" not in tab.evaluate("document.getElementById('gain-0-text').value")  # not the share of the mix
 
 
 def test_sliders_scale_their_light_exposure_scales_all_and_reset_restores(opened, view):

@@ -38,6 +38,10 @@ def colours(data):
     return rgb.astype(np.float32).astype(float)
 
 
+def test_the_results_of_every_language_are_compared():
+    assert [name for name in LANGUAGES if not hasattr(run_program, name)] == []
+
+
 @pytest.fixture
 def check(tmp_path):
     """Function that compares reflectances of a program with those of Python."""

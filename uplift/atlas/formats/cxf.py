@@ -54,7 +54,7 @@ def _content(cxf: Any, path: str) -> Measurements:
     # the schema has values in (−0.1, 3); some programs write percent
     scale = 1.0 if all(-0.1 < value < 3 for spectrum in spectra for value in spectrum.values) else None
     notes = ("layout: an object per spectrum", *not_used_note(sorted(colours)))
-    return Measurements(tuple(spectra), tuple(skipped), scale, header, notes)
+    return Measurements(tuple(spectra), skipped=tuple(skipped), scale=scale, header=header, notes=notes)
 
 
 def _wavelength_ranges(resources: Any) -> dict[str, tuple[float, float]]:

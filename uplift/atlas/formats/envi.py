@@ -9,6 +9,7 @@ from uplift.atlas.document import MAX_BYTES, Document, SourceLocation, check_sca
 from uplift.atlas.measurements import Measurements, Spectrum, parsed_by
 from uplift.common.errors import AtlasError
 from uplift.common.files import read_bytes
+from uplift.common.text import pluralise
 
 HEADER, LIBRARY = ".hdr", ".sli"
 MAGIC = b"ENVI"
@@ -29,7 +30,7 @@ def read(document: Document) -> Measurements:
         # The library allocates what the header states: samples are wavelengths, lines are spectra.
         count = int(fields["samples"]) * int(fields["lines"])
         if count <= 0 or count > data.stat().st_size or int(fields.get("header offset", 0)) != 0:
-            problem = f"the header states {count:,} values, which the file {data.name} does not hold"
+            problem = f"the header states {pluralise(count, 'value')}, which the file {data.name} does not hold"
             raise location.error(problem, HINT)
         library = envi.open(os.fspath(header), os.fspath(data))
         names = list(map(one_line, library.names))

@@ -8,6 +8,7 @@ import numpy as np
 
 from uplift.atlas.document import EXPORT, Document, one_line, to_nanometres, truncate
 from uplift.atlas.measurements import PERCENT, Measurements, Spectrum, find_quantity, parsed_by, wrong_quantity
+from uplift.common.text import pluralise
 
 POINTS = re.compile(r"^##\s*NPOINTS\s*=\s*(\S+)", re.IGNORECASE | re.MULTILINE)
 MAX_POINTS = 1_000_000
@@ -49,7 +50,7 @@ def read(document: Document) -> Measurements:
     return Measurements(
         tuple(spectra),
         scale=scales.pop() if len(scales) == 1 else None,
-        notes=(f"layout: {len(blocks)} block{'s' * (len(blocks) != 1)}",),
+        notes=(f"layout: {pluralise(len(blocks), 'block')}",),
         material=material,
         refusal=refusal,
     )

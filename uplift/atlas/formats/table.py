@@ -19,7 +19,7 @@ from uplift.atlas.document import Document, SourceLocation, parse_number, withou
 from uplift.atlas.measurements import Measurements, Spectrum, find_quantity, not_used_note, wrong_quantity
 from uplift.common.csv import csv_text, plain_cell
 from uplift.common.errors import AtlasError, OutputError
-from uplift.common.text import parse_float
+from uplift.common.text import parse_float, pluralise
 
 NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
 LAYOUT = "write a header row of wavelengths in nm and a row per entry, or the transpose"
@@ -111,7 +111,7 @@ def read(document: Document) -> Measurements:
         raise document.location.error(f"not a readable table: {error}", LAYOUT) from None
     if len(rows) > 1 and all(len(row) == 2 and all(is_number(cell.text) for cell in row) for row in rows):
         nm, values = ([parse_float(row[column].text) for row in rows] for column in (0, 1))
-        spectrum = Spectrum(document.stem, nm, values, rows[0][0].line)
+        spectrum = Spectrum(document.stem, nm, values, line=rows[0][0].line)
         return Measurements((spectrum,), notes=("layout: wavelength and value", "name: that of the file"))
     return _read_samples(rows, document.location) or read_grid(rows, document.location, comments)
 
@@ -198,7 +198,8 @@ def read_grid(rows: Sequence[Row], location: SourceLocation, comments: str = "")
             values = [parse_float(cell.text) for cell in cells]
         except ValueError:  # the first of them is named, by its own line
             values = [parse_number(cell.text, location.at(cell.line, label), "value") for cell in cells]
-        spectra.append(Spectrum(label, table.run.nm, values, None if name is None else row[name].line))
+        line = None if name is None else row[name].line
+        spectra.append(Spectrum(label, table.run.nm, values, line=line))
     unused = not_used_note(header[index].text for index in table.others if index != name)
     refusal = _refusal(table, rows, location, comments)
     return Measurements(tuple(spectra), notes=(table.layout, *unused), refusal=refusal)
@@ -262,7 +263,7 @@ def _of_one_width(rows: Sequence[Row], location: SourceLocation) -> tuple[Row, .
     """Return rows that are as wide as the first one. Raise `AtlasError` for others."""
     for row in rows:
         if len(row) != len(rows[0]):
-            problem = f"a row must have {len(rows[0])} cells like the header row, got {len(row)}"
+            problem = f"a row must have {pluralise(len(rows[0]), 'cell')} like the header row, got {len(row)}"
             raise location.at(row[0].line).error(problem, "fill in the missing cells or remove the row")
     return tuple(rows)
 

@@ -26,6 +26,7 @@ from uplift.colorimetry.sensor import SLACK
 from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Array, Floats
 from uplift.common.errors import OptionError, UpliftWarning
+from uplift.common.text import pluralise
 from uplift.design.mixing import optics, pigments
 from uplift.design.mixing.optics import Layer, Surface
 from uplift.design.mixing.pigments import Flux, Pigment, Scattering
@@ -141,9 +142,7 @@ def make_coat(kind: str, ingredients: Ingredients, parts: ArrayLike, medium: Med
     surface, spectra = medium.surface, [*ingredients.spectra, *ingredients.measured_on_black]
     dark = sum(bool((surface.remove(one) < -SLACK).any()) for one in spectra)
     if dark:
-        problem = (
-            f"{dark} of {len(spectra)} colours are partly darker than the surface alone; they count as black there"
-        )
+        problem = f"{dark} of {pluralise(len(spectra), 'colour')} partly darker than the surface alone: black there"
         warnings.warn(UpliftWarning(problem), stacklevel=2)
     if kind == "dye":
         if ingredients.measured_on_black:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from uplift.common.arrays import Array, StrPath, Values
 from uplift.common.errors import OptionError, TextureError, unknown_name
+from uplift.common.text import pluralise
 from uplift.io.texture.colours import colour_channels
 from uplift.io.texture.image import Part, open_image
 
@@ -165,7 +166,7 @@ def _weights_of_labels(part: Part, values: Values, codes: Mapping[int, int], cou
         listed = ", ".join(f"#{code:06x}" for code in frequent)
         more = ", …" if unknown.sum() > MAX_LISTED else ""
         raise TextureError(
-            f"every colour must be a label, got {counts[unknown].sum():,} pixels of {listed}{more}",
+            f"every colour must be a label, got {pluralise(counts[unknown].sum(), 'pixel')} of {listed}{more}",
             hint="give each colour a label, and draw without antialiasing",
         )
     weights = np.zeros((*pixels.shape, count), dtype=np.float32)

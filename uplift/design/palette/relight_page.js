@@ -27,6 +27,7 @@ const CODES = Uint8Array.from({ length: STEPS + 1 }, (_, step) => Math.round(255
 const code = linear => CODES[linear > 0 ? (linear < 1 ? (linear * STEPS + 0.5) | 0 : STEPS) : 0];
 const hex = rgb => hexOfCodes(rgb.map(code));
 const opaque = (r, g, b) => 0xff000000 | (code(b) << 16) | (code(g) << 8) | code(r);
+const BACKGROUND = opaque(0.025, 0.025, 0.025); // under every light, so that black bodies show
 const TOLERANCE = 1 / 510;
 const outOfRange = linear => linear < -TOLERANCE || linear > 1 + TOLERANCE;
 const isClipped = (r, g, b) => outOfRange(r) || outOfRange(g) || outOfRange(b);
@@ -155,7 +156,7 @@ const positions = rimPositions(lights.length);
 const START = positions[numbers.start];
 const picture = byId("picture").getContext("2d");
 const image = picture.createImageData(picture.canvas.width, picture.canvas.height);
-const out = new Uint32Array(image.data.buffer).fill(opaque(0, 0, 0));
+const out = new Uint32Array(image.data.buffer).fill(BACKGROUND);
 const [pixels, labels] = await Promise.all([unpackHalves("pixels"), unpackBytes("labels", 1)]);
 const gains = lights.map((_, j) => byId(`gain-${j}`));
 const exposure = byId("exposure");
@@ -181,8 +182,8 @@ function show() {
 
 function showTexts(mix, clipped) {
   showDial(position, lights.map((name, j) => `${name} ${percent(mix[j])}`).join(", "), Math.max(...mix));
-  gains.forEach((gain, j) => (byId(`gain-${j}-text`).value = percent(gain.value / 100)));
-  mix.forEach((weight, j) => (byId(`share-${j}`).textContent = percent(weight)));
+  gains.forEach((gain, j) => (byId(`gain-${j}-text`).value = gain.value === "100" ? "full" : percent(gain.value / 100)));
+  mix.forEach((weight, j) => (byId(`share-${j}`).textContent = `${percent(weight)} of the mix`));
   byId("exposure-text").value = `${exposure.value > 0 ? "+" : ""}${Number(exposure.value).toFixed(2)} EV`;
   const share = (100 * clipped) / out.length;
   byId("clipped").textContent = clipped ? `Clipped: ${Math.max(share, 0.1).toFixed(1)} % of the picture` : "";

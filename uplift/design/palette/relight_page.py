@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from uplift.colorimetry.srgb import hex_codes
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.common.text import pluralise
 from uplift.design.palette.design import Design, matrix
-from uplift.viz.format import pluralise
 from uplift.viz.html import render, resource
 
 MAX_MATERIALS = 255  # materials that 8-bit labels distinguish, as 0 means none

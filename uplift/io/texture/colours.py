@@ -12,6 +12,7 @@ from uplift.colorimetry.spaces import ImageSpace
 from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError, UpliftWarning, unknown_name
+from uplift.common.text import pluralise
 from uplift.io.texture.image import Image, Part
 from uplift.lattice.entry_boxes import NO_ROWS, OutsideBoxes
 
@@ -179,7 +180,8 @@ class Counts:
         found = [each for each in fields(self) if each.metadata and getattr(self, each.name)]
         return tuple(
             UpliftWarning(
-                f"{getattr(self, each.name):,} of {self.pixels:,} pixels {each.metadata['text'].format(**words)}",
+                f"{getattr(self, each.name):,} of {pluralise(self.pixels, 'pixel')} "
+                f"{each.metadata['text'].format(**words)}",
                 code=each.metadata["code"],
                 path=path,
             )

@@ -17,6 +17,7 @@ from uplift.common.arrays import StrPath, Values
 from uplift.common.errors import ColourError, TextureError, UpliftError
 from uplift.common.files import check_regular
 from uplift.common.machine import check_memory
+from uplift.common.text import pluralise
 from uplift.io.texture import exr_file, png_file
 from uplift.io.texture.colour_profile import Profile, read_profile
 
@@ -186,7 +187,7 @@ def open_image(path: StrPath) -> Iterator[Image]:
             is_interlaced = start.startswith(png_file.SIGNATURE) and start[PNG_INTERLACE:] == b"\1"
             rows = part.window.height if is_interlaced else min(part.rows_per_block, part.window.height)
             need = rows * part.window.width * len(part.channels) * 4
-            check_memory(need, f"a block of {rows} rows, decoded together,", TextureError, MEMORY_HINT)
+            check_memory(need, f"a block of {pluralise(rows, 'row')}, decoded together,", TextureError, MEMORY_HINT)
         yield Image(path, parts, handle)
     except (TextureError, ColourError) as error:
         error.path = path if error.path is None else error.path

@@ -18,6 +18,7 @@ import numpy as np
 from uplift.common.arrays import Floats, Mask, StrPath, Values
 from uplift.common.errors import ColourError, OptionError, TextureError
 from uplift.common.files import file_digest
+from uplift.common.text import pluralise
 from uplift.cube import common_sensor
 from uplift.io.texture.colours import Counts, colour_channels, coloured_parts
 from uplift.io.texture.image import Image, Part, open_image
@@ -74,7 +75,7 @@ def _interpret(image: Image, part: Part, rgb: tuple[int, int, int], cubes: int) 
         return _normalised
     meanings = {2: "0 and 1, or weights up to white", 3: "0 to 2, or weights in R, G and B that are not all 0"}
     raise TextureError(
-        f"a mask of {cubes} cubes must hold {meanings.get(cubes, f'0 to {cubes - 1}')}, "
+        f"a mask of {pluralise(cubes, 'cube')} must hold {meanings.get(cubes, f'0 to {cubes - 1}')}, "
         f"got {'grey' if is_grey else 'coloured'} values from {low:g} to {high:g}",
         hint=HINT,
     )

@@ -13,6 +13,7 @@ from typing import Any
 from uplift.common.errors import OptionError, OutputError, StrPath, TextureError, UpliftError, needs_package
 from uplift.common.files import check_folder, make_folder, remove_stale
 from uplift.common.progress import ProgressCallback, ignore_progress
+from uplift.common.text import pluralise
 from uplift.io.processes import tied_processes
 from uplift.io.texture import exr_file
 from uplift.io.texture.conversion import SOURCE, Conversion, convert, source_stamp
@@ -225,7 +226,7 @@ def _workers_lost(jobs: list[Job], finished: list[Path]) -> TextureError:
             with contextlib.suppress(OSError):
                 remove_stale(job.target, seconds=0)
     return TextureError(
-        f"the workers ended unexpectedly; {len(finished)} of {len(jobs)} textures are finished",
+        f"the workers ended unexpectedly; finished: {len(finished)} of {pluralise(len(jobs), 'texture')}",
         code="workers-lost",
         hint="resume with the others, with fewer processes if memory ran out",
     )

@@ -18,6 +18,7 @@ from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Values
 from uplift.common.errors import OptionError
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.common.text import pluralise
 from uplift.io.processes import ChildError, call_in_child
 from uplift.lab.chart import cubes, mitsuba3, published
 from uplift.lab.chart.method import (
@@ -133,7 +134,7 @@ def measure_methods(methods: Sequence[Method], task: Task, progress: ProgressCal
         progress(Progress("methods", len(results), len(methods)))
     summary = (
         f"CPU time of all threads; up to {effort.runs} runs of calls of at most {effort.longest:g} s, spectra at "
-        f"{len(task.sensor.wavelengths)} wavelengths; errors of slow methods are of the colours of "
+        f"{pluralise(len(task.sensor.wavelengths), 'wavelength')}; errors of slow methods are of the colours of "
         f"{effort.seconds_per_error:g} s; {(time.perf_counter() - begin) / 60:.1f} minutes in all"
     )
     return Chart({**machine, **task.facts, "effort": summary}, tuple(results))
@@ -247,7 +248,9 @@ def _check_batch(uplift: UpliftRgb, dtype: str, effort: Effort) -> None:
     rows = np.linspace(0, count - 1, SAMPLE, dtype=int)
     difference = np.abs(uplift(rgb)[rows] - uplift(rgb[rows])).max()
     if not difference <= SAMPLE_TOLERANCE:
-        raise BrokenError(f"{count:,} colours per call give other reflectances than {SAMPLE}, by {difference:.2g}")
+        raise BrokenError(
+            f"{pluralise(count, 'colour')} per call give other reflectances than {SAMPLE}, by {difference:.2g}"
+        )
 
 
 def _summary(name: str, values: Array) -> dict[str, float]:

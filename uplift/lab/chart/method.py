@@ -19,6 +19,7 @@ from uplift.colorimetry.sensor import in_unit_cube
 from uplift.common.arrays import Array, Values
 from uplift.common.colour_science import colour_science
 from uplift.common.errors import AtlasError, OptionError
+from uplift.common.text import pluralise
 
 RANGE = (360.0, 830.0, 1.0)
 """First and last wavelength and step in nm: those of the CIE 1931 observer."""
@@ -116,8 +117,8 @@ def make_task(atlases: Mapping[str, Atlas], colours: int = COLOURS, effort: Effo
     rgb = np.concatenate([rng.random((colours, 3)), edges()])
     facts = {
         "colours": f"{colours:,} random and {len(edges())} along edges and greys of linear sRGB, under D65",
-        "spectra": f"{len(kept)} of {len(kept) + len(others)} entries of {', '.join(atlases)} (every second) build "
-        f"the cubes with an atlas; of the others, {len(unseen)} within sRGB test all methods",
+        "spectra": f"{len(kept)} of {pluralise(len(kept) + len(others), 'entry')} of {', '.join(atlases)} (every "
+        f"second) build the cubes with an atlas; of the others, {len(unseen)} within sRGB test all methods",
     }
     rgb, own, unseen = (rng.permutation(each) for each in (rgb, own, unseen))
     return Task(sensor, rgb, kept, own, unseen, effort or Effort(), facts)

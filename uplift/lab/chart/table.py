@@ -11,7 +11,7 @@ from uplift.common.arrays import StrPath
 from uplift.common.csv import csv_text, parse_csv
 from uplift.common.errors import ChartFileError, OptionError, unknown_name
 from uplift.common.files import read_bytes
-from uplift.common.text import format_value, parse_float, shorten
+from uplift.common.text import format_value, parse_float, pluralise, shorten
 from uplift.lab.chart.method import Description
 from uplift.lab.panels import CLEAR_RATIO, pareto_front
 from uplift.viz.format import format_error, format_time
@@ -159,7 +159,7 @@ class Criterion:
     @property
     def colours(self) -> str:
         """Return the number of colours per call as text."""
-        return f"{self.batch:,} colour{'s' if self.batch > 1 else ''} per call"
+        return f"{pluralise(self.batch, 'colour')} per call"
 
     @property
     def axis(self) -> str:

@@ -21,6 +21,7 @@ from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError, UpliftError, UpliftWarning
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
+from uplift.common.text import pluralise
 from uplift.lab.timing import TimingStats, environment, time_laps
 from uplift.scene.plan.candidates import front
 from uplift.scene.representations import filters, samples
@@ -157,7 +158,7 @@ def compare(
             results.append(RepresentationResult(*names, errors, floats, light_floats, ns))
         progress(Progress("representations", done, len(representations)))
     results.sort(key=lambda result: (list(sets).index(result.lights), result.statistics.mean))
-    facts = {**environment(), "products": f"{len(scene.surfaces)} surfaces under each light"}
+    facts = {**environment(), "products": f"{pluralise(len(scene.surfaces), 'surface')} under each light"}
     return Comparison(facts, sets, tuple(results))
 
 

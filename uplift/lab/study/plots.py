@@ -8,6 +8,7 @@ import numpy as np
 
 from uplift.colorimetry.lights import NARROW_BAND_LIGHT
 from uplift.common.arrays import Array, StrPath
+from uplift.common.text import pluralise
 from uplift.lab.study.moments import TECHNIQUES, MomentsStudy, Technique
 from uplift.lab.study.sensitivity import MOVED_DELTA_E, Change
 from uplift.models import Sigmoid
@@ -93,7 +94,7 @@ def _plot_spectra(study: MomentsStudy, rows: Sequence[Iterable[int]], path: StrP
         style_spectrum_axes(axes)
         # Dark entries fill their panel, with room for the legend above.
         axes.set_ylim(0, min(1.02, 1.5 * measured.max() + 0.02))
-        title = f"{study.names[entry]} ({study.atlases[entry]}), mirrored, {moments + 1} numbers"
+        title = f"{study.names[entry]} ({study.atlases[entry]}), mirrored, {pluralise(moments + 1, 'number')}"
         axes.set_title(figure_text(title), loc="left", fontsize=10)
         axes.legend(frameon=False, fontsize=9)
     for axes in panels[:, 1:].flat:
@@ -154,7 +155,7 @@ def plot_locality(changes: Sequence[Change], path: StrPath, *, force: bool = Fal
         axes.set(xlabel=f"distance from the entry, {unit}")
     panels[0].set(ylabel=f"ΔE00 change of a node, {NARROW_BAND_LIGHT}")
     panels[1].legend(frameon=False, fontsize=9, loc="upper right")
-    figure.suptitle(f"{len(changes)} entries, removed one at a time", fontsize=9, color="0.35")
+    figure.suptitle(f"{pluralise(len(changes), 'entry')}, removed one at a time", fontsize=9, color="0.35")
     write_png(figure, path, force=force)
 
 

@@ -9,12 +9,13 @@ from typing import Any
 
 from uplift.common.errors import OutputError
 from uplift.common.files import file_digest
+from uplift.common.text import pluralise
 from uplift.common.version import version
 from uplift.io.texture import Spectrum
 from uplift.scene.plan.candidates import INDEX, Candidate, Cost, cheapest_first
 from uplift.scene.plan.files import FORMAT, SUFFIX, SceneFile, cube_name
 from uplift.scene.plan.planning import Plan, cost_text
-from uplift.viz.format import format_error, format_size, pluralise
+from uplift.viz.format import format_error, format_size
 
 HEADINGS = ("ΔE00", "memory", "time", "samples", "cube", "traced", "pixel")
 CLEARLY_SMALLER = 0.95
@@ -83,8 +84,8 @@ def describe_error(plan: Plan) -> str:
     return (
         f"ΔE00 of {100 * scene.quantile:.4g} % of the textures' pixels{materials} is at most this value, under the "
         f"worst of {', '.join(scene.lights)}. Pixels are compared with a cube of the finest lattice and the most "
-        f"coefficients at all wavelengths{measured}. {len(plan.measured):,} of {plan.considered:,} candidates were "
-        "measured; the bounds of the others exclude them."
+        f"coefficients at all wavelengths{measured}. {len(plan.measured):,} of "
+        f"{pluralise(plan.considered, 'candidate')} were measured; the bounds of the others exclude them."
     )
 
 

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError, unknown_name
+from uplift.common.text import pluralise
 from uplift.scene.wavelengths import meyer, optimise
 from uplift.scene.wavelengths import sampling as setups
 from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, grid, make_setup
@@ -116,7 +117,7 @@ def choose(
         if target is None or error <= target:
             return choice
     missed = f"no count up to {MAX_COUNT} meets a {measure} ΔE00 of {target:g} by method '{method}'"
-    reached = f"{len(choice.sampling)} wavelengths reach {error:.3g}"
+    reached = f"{pluralise(len(choice.sampling), 'wavelength')} reach {error:.3g}"
     raise OptionError(f"{missed}; {reached}", hint="raise the target or choose another method")
 
 

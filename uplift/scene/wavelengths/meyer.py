@@ -12,6 +12,7 @@ import numpy as np
 
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
+from uplift.common.text import pluralise
 from uplift.scene.quadrature import QuadratureRule, gauss_rule, interpolatory_rule
 from uplift.scene.wavelengths.sampling import RenderSetup, Sampling, balanced, evaluate, interp_curves
 
@@ -144,7 +145,7 @@ def meyer(setup: RenderSetup, count: int) -> Sampling:
     if count == 4:
         candidates.append(four_wavelength_rule(channel_functions(space, setup.wavelengths, setup.cmfs)))
     if not candidates:
-        problem = f"method 'meyer' has no rule of {count} wavelengths"
+        problem = f"method 'meyer' has no rule of {pluralise(count, 'wavelength')}"
         raise OptionError(problem, code="undefined-rule", hint="give a count in [4, 30]")
     samplings = (balanced(combine_rules(setup, space, allocation)) for allocation in candidates)
     return min(samplings, key=lambda sampling: evaluate(setup, sampling).mean())

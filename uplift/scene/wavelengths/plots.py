@@ -5,6 +5,7 @@ import numpy as np
 from uplift.colorimetry.gamut import SRGB, map_to_gamut
 from uplift.colorimetry.srgb import encode
 from uplift.common.arrays import Array, StrPath
+from uplift.common.text import pluralise
 from uplift.scene.wavelengths import Choice
 from uplift.scene.wavelengths.sampling import RenderSetup, interp_curves, statistics
 from uplift.viz.figure import GREY, INK, new_figure, style_axes, styled, write_figure
@@ -47,7 +48,7 @@ def plot_choice(setup: RenderSetup, choice: Choice, path: StrPath, *, force: boo
         figure.align_ylabels()
         mean, p95, largest = statistics(choice.errors).values()
         found = f"mean {mean:.2f}, 95th percentile {p95:.2f}, max {largest:.2f}"
-        title = f"{len(sampling)} wavelengths, {choice.method}: ΔE00 {found}"
+        title = f"{pluralise(len(sampling), 'wavelength')}, {choice.method}: ΔE00 {found}"
         figure.suptitle(title, x=0.02, ha="left", fontsize=10, color=INK)
         write_figure(figure, path, force=force)
 
