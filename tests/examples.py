@@ -113,11 +113,8 @@ def run_all(names: Sequence[str]) -> int:
     with tempfile.TemporaryDirectory() as temporary:
         root = Path(temporary)
         package = unpack(build_wheel(root), root / "package")
-        samples = root / "samples"
-        samples.mkdir()
-        run_lines(["uplift samples"], package, samples)
-        # `uplift samples` may write into a folder of its own.
-        samples = next((path for path in samples.iterdir() if path.is_dir()), samples)
+        run_lines(["uplift samples"], package, root)
+        samples = root / "uplift-samples"
         run_lines([CUBE], package, root)
         outcomes = []
         for number, (name, lines) in enumerate(listed.items()):

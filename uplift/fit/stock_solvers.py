@@ -1,7 +1,7 @@
 """Solvers of optimistix in place of the default: each row of a batch is a separate problem.
 
 The problem is one of least squares: the residuals of the colour, and the difference from the prior with the small
-weight `CLOSENESS`. It has one minimum near the prior, which all solvers find.
+weight `CLOSENESS`, which selects the spectrum of the colour that is nearest to the prior.
 """
 
 from collections.abc import Callable, Iterator

@@ -246,7 +246,7 @@ class Cube:
         return Cube(fill_missing(self.data, points, source.data, blocks.as_thread_count(threads)))
 
     def standard_error(self, rgb: ArrayLike, light: str | Light | None = None) -> Array | None:
-        """Estimate the difference that 68 % of measurements have from answers, as learnt from left-out atlas entries.
+        """Estimate the difference that 68 % of measurements stay within, as learnt from left-out atlas entries.
 
         It holds for materials like those of the atlas, which colours alone do not identify; see `unlike_atlas`.
 

@@ -4,8 +4,8 @@ The arc tangent of XLA calls the scalar function of the C library. A polynomial 
 and as accurate (tests/models/test_arithmetic.py). numpy passes through memory for every term, so there the polynomial
 gains nothing, but a series for small differences of arc tangents does.
 
-The BLAS of numpy distributes products of tall and small matrices over threads at several times their cost, and at a
-hundred times if other processes use the cores. Slices below its threshold stay on one thread.
+The BLAS of numpy distributes products of tall and small matrices over threads, which costs more than it saves, most of
+all where other processes use the cores. Slices below its threshold stay on one thread.
 """
 
 from typing import Any

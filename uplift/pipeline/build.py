@@ -167,7 +167,7 @@ def build(
         ``"levenberg-marquardt"``, ``"gauss-newton"``, or any least-squares solver or minimiser. The default is fastest;
         answers agree except for nearly box-shaped spectra (docs/accuracy.md).
     debug : bool, default False
-        Store the round of growth in which each point was fitted.
+        Store the round of growth in which each node was fitted.
     scene : SceneLike, path-like or sequence of path-like, optional
         Images, or another set of colours. Only the nodes that answer these colours are fitted.
     progress : callable, optional
@@ -196,7 +196,7 @@ def build(
         Entries with the colour of another entry (``entry-duplicate``) or close to another entry
         (``entry-crowded``). Spectra of a library out of gamut (``entry-out-of-gamut``) or outside [0, 1]
         (``entry-clipped``). Looks that no reflectance meets (``look-impossible``), or that the coefficients of
-        entries do not reach (``look-not-reached``); the nearest colour is used. Entries out of gamut are no warning:
+        entries do not reach (``look-not-reached``); the nearest colour is used. Entries out of gamut give no warning:
         `Cube.outside_names` has them.
 
     Examples

@@ -63,7 +63,8 @@ def convert(
     Parameters
     ----------
     converter : Converter
-        An `Uplifter`, or a coat of paint (`uplift.design.mixing.overpainter`).
+        Made by `prepare`, `prepare_masked`, `prepare_lights` or `prepare_relighter`, or a coat of paint
+        (`uplift.design.mixing.overpainter`).
     source : path-like
         OpenEXR, Radiance HDR, PNG, JPEG or TIFF image.
     target : path-like
