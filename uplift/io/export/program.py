@@ -148,12 +148,14 @@ def write_files(text: str, table: Table, path: Path, form: str, *, per_line: int
     image = table.image().tobytes()
     if form == "file":
         _check_table(files[1], image, path, force=force)
-    rows = np.split(table.numbers, range(per_line, len(table.numbers), per_line)) if form == "header" else []
+        write_text(text, path, force=force)
+        if not _holds(files[1], image):
+            with atomic_write(files[1], force=True) as temporary:
+                temporary.write_bytes(image)
+        return files
+    rows = np.split(table.numbers, range(per_line, len(table.numbers), per_line))
     lines = "".join(", ".join(map(literal, row.tolist())) + ",\n" for row in rows)
     write_text(text.replace("${numbers}", lines), path, force=force)
-    if form == "file" and not _holds(files[1], image):
-        with atomic_write(files[1], force=True) as temporary:
-            temporary.write_bytes(image)
     return files
 
 
@@ -170,7 +172,8 @@ def _check_table(table: Path, image: bytes, program: Path, *, force: bool) -> No
     if not table.exists() or _holds(table, image):
         return
     others = (program.with_suffix(language.suffix) for language in LANGUAGES.values())
-    readers = [each.name for each in others if each != program and each.exists()]
+    existing = [path for path in others if path != program and path.exists()]
+    readers = [path.name for path in existing if table.name.encode() in path.read_bytes()]
     if not force:
         owner = f"of {' and '.join(readers)}" if readers else "of another program"
         problem = f"exists already with other numbers, {owner}"
