@@ -227,10 +227,13 @@ def _program_laws(cube: uplift.Cube, mode: str, rgb: Array) -> Iterator[str]:
 
 
 def stay(data: CubeData, mode: str, rgb: Array) -> Mask:
-    """Return which colours (n, 3) lie inside cells whose answers are not moved."""
-    moved = moved_cells(data, mode)
-    near = [moved[data.entry_boxes.cell(np.clip(rgb + NEAR * corner, 0, 1))] for corner in 2 * CORNERS - 1]
-    return ~np.any(near, axis=0)
+    """Return which colours (n, 3) are interpolated inside cells whose answers are not moved."""
+    hits = data.entry_boxes.locate(rgb)[2]
+    place = rgb.copy()
+    place[hits.rows] = hits.exit_rgb
+    moved, lattice = moved_cells(data, mode), data.lattice
+    corners = (np.clip(place + NEAR * corner, 0, 1) for corner in 2 * CORNERS - 1)
+    return ~np.any([moved[lattice.index(lattice.cell(corner)[0])] for corner in corners], axis=0)
 
 
 def broken(seed: int, kind: Kind = SMALL) -> list[str]:
