@@ -253,18 +253,16 @@ def test_compiled_code_that_cannot_be_read_is_removed(tmp_path):
     assert b"damaged" not in [entry.read_bytes() for entry in entries]
 
 
-def test_an_error_by_exchanged_compiled_code_comes_once(tmp_path):
-    codes = []
-    for number in range(3):
-        done = shell(f"{BUILD} {tmp_path}/cube.uplift", XDG_CACHE_HOME=str(tmp_path), UPLIFT_TRACEBACK="")
-        codes.append(done.returncode)
-        entries = sorted(tmp_path.glob("uplift/*-cache"))
-        if number == 0:
-            first, *_, last = entries
-            content = first.read_bytes()
-            first.write_bytes(last.read_bytes())
-            last.write_bytes(content)
-    assert codes == [0, 70, 0]
+def test_exchanged_compiled_code_is_removed_with_the_error_that_it_causes(tmp_path):
+    build = f"{BUILD} {tmp_path}/cube.uplift"
+    places = {"XDG_CACHE_HOME": str(tmp_path), "UPLIFT_TRACEBACK": ""}
+    assert shell(build, **places).returncode == 0
+    first, *_, last = entries = list(tmp_path.glob("uplift/*-cache"))
+    contents = first.read_bytes(), last.read_bytes()
+    first.write_bytes(contents[1])
+    last.write_bytes(contents[0])
+    assert shell(build, **places).returncode == 70
+    assert not any(entry.exists() for entry in entries)
 
 
 @needs_modes

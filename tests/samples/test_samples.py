@@ -22,8 +22,9 @@ def test_samples_are_copied_once(tmp_path):
 
 
 def test_folders_that_cannot_be_made_are_refused(tmp_path):
+    (tmp_path / "file").write_text("")
     with raises(OutputError, "output"):
-        copy_samples(tmp_path / "no" / "such")
+        copy_samples(tmp_path / "file" / "such")
 
 
 def test_the_still_life_holds_the_colorchecker(sensor):
