@@ -39,12 +39,11 @@ FILES = ("chart.csv", "chart.png", "chart.html")
     \b
     Examples:
       uplift chart --quick
-      uplift chart --atlas paints.csv -o paints
       uplift chart --method 'moments9-32-*' --method mallett2019 -o few
       uplift chart --recommend
       uplift chart --recommend --time-ns 500
       uplift chart --recommend --tolerance 0.5 --light FL11 --atlas-materials
-      uplift chart --recommend --from paints/chart.csv --tolerance 1
+      uplift chart --recommend --from few/chart.csv --tolerance 5
     """,
 )
 @options.output(help="Folder to write to.", metavar="DIR", default="chart")

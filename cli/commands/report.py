@@ -30,8 +30,7 @@ if TYPE_CHECKING:
       uplift report macbeth-32.uplift --light FL4 --worst 6 -o worst.html
       uplift report macbeth-32.uplift --format json | jq .failures
 
-    The measured spectra are those of the cube's atlases. Atlases are identified by name and content, and searched for
-    in --atlas-dir, the cube's folder, 'atlases' in these, and the shipped atlases.
+    The measured spectra are those of the cube's atlases, which are found by name and content, as by 'uplift check'.
 
     --atlas evaluates entries of other atlases at their own colours. This shows how well the cube predicts unseen
     materials, and whether its standard errors are calibrated.
