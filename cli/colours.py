@@ -50,16 +50,16 @@ class ColourSource:
     encoded: bool = False
     space: ImageSpace | None = None
 
+    @property
+    def single(self) -> bool:
+        """Whether there is one colour, and not a file of them."""
+        return self.path is None and (self.xyz is not None or len(_parse_words(self.words)) == 1)
+
     def blocks(self, sensor: Sensor, *, bounded: bool = False) -> Iterable[Array]:
         """Return blocks of linear RGB (n, 3) from the words or the file, which must lie in [0, 1] if ``bounded``."""
         if self.path is not None:
             return self._read(self.path, sensor, bounded)
-        # One colour: 'R G B', 'R,G,B' or '#rrggbb'
-        parts = [part for word in self.words for part in re.split(r"[,\s]+", word) if part]
-        colour = _parse(parts)
-        if colour is None or len(parts) > 3:
-            raise _not_a_colour(parts)
-        return [self._linear([colour], sensor)]
+        return [self._linear(_parse_words(self.words), sensor)]
 
     def _read(self, path: str, sensor: Sensor, bounded: bool) -> Iterator[Array]:
         try:
@@ -145,7 +145,7 @@ def find_colours(
             raise ColourError(f"y of a chromaticity must be positive, got {y:g}", hint="give CIE x and y")
         xyz = x * luminance / y, luminance, (1 - x - y) * luminance / y
     if (xyz is not None) + bool(colour) + (input_path is not None) != 1:
-        raise click.UsageError("Give one colour, --input FILE, '-', --xyz or --xy. See 'uplift query --help'.")
+        raise click.UsageError("Give colours, --input FILE, '-', --xyz or --xy.")
     return ColourSource(colour, input_path, xyz, encoded, space)
 
 
@@ -188,6 +188,21 @@ def _parse(parts: Sequence[str]) -> Colour | None:
         return [int(digits[i : i + 2], 16) for i in (0, 2, 4)], True
     numbers = [number for part in parts[:3] if (number := _number(part)) is not None]
     return (numbers, False) if len(numbers) == 3 else None
+
+
+def _parse_words(words: Sequence[str]) -> list[Colour]:
+    """Parse colours 'R G B', 'R,G,B' and '#rrggbb', one after the other."""
+    parts = [part for word in words for part in re.split(r"[,\s]+", word) if part]
+    colours = []
+    while parts:
+        numbers = [_number(part) for part in parts[:3]]
+        length = 3 if len(numbers) == 3 and None not in numbers else 1
+        colour = _parse(parts[:length])
+        if colour is None:
+            raise _not_a_colour(parts)
+        colours.append(colour)
+        parts = parts[length:]
+    return colours
 
 
 def _number(word: str) -> float | None:

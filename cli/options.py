@@ -273,9 +273,13 @@ def _remember_format(ctx: click.Context, param: click.Parameter, value: str) -> 
 
 
 def plot(help: str, option: str = "--plot", name: str = "plot_path") -> Decorator:
-    """An option for the file of a plot, as ``name``. A suffix other than .png, .svg and .pdf is an error at once."""
-    text = f"{help}, as .png, .svg or .pdf."
-    return click.option(option, name, metavar="FILE", type=PLOT, help=text)
+    """An option for the file of a plot, as ``name``. A suffix other than .png, .svg and .pdf is an error at once.
+
+    At the end of a command it needs no FILE.
+    """
+    default = f"{name.removesuffix('_path')}.png"
+    text = f"{help}, as .png, .svg or .pdf. [default of FILE: {default}]"
+    return click.option(option, name, metavar="[FILE]", type=PLOT, is_flag=False, flag_value=default, help=text)
 
 
 def page(help: str, type: OutputFile = PAGE) -> Decorator:
@@ -322,7 +326,7 @@ table = click.option(
 def colours(xyz: str, space: str) -> Decorator:
     """COLOUR and the other sources of colours, for `uplift_cli.colours.find_colours`."""
     return stacked(
-        click.argument("colour", nargs=-1),
+        click.argument("colour", metavar="[COLOUR]...", nargs=-1),
         click.option(
             "--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input."
         ),

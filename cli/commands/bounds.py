@@ -79,6 +79,7 @@ def command(
         from uplift.viz.plots import plot_bounds
 
         plot_bounds(answers.cube, [found for _, found in blocks], plot_path, force=force)
+        say(f"{plot_path}: bounds", err=True)
     if html is not None:
         from uplift.report.look_page import page
 

@@ -13,7 +13,7 @@ import click
 from uplift.common.errors import UpliftError, UpliftWarning
 
 from .. import options
-from ..output.console import make_table, print_json, say, show
+from ..output.console import make_table, paragraph, print_json, say, show
 from ..output.diagnostics import CommandFailure, error_object
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
@@ -133,7 +133,7 @@ def _print_table(records: Sequence[dict[str, Any]]) -> None:
     show(table)
     for record in records:
         for problem in (*record["atlas_changed"], *record["notes"]):
-            say(f"{record['cube']}: {problem}")
+            paragraph(f"{record['cube']}: {problem}")
         for entry in record["entries"]:
             by = "" if entry["delta_e"] is None else f", ΔE00 {entry['delta_e']:.2g}"
             say(f"  {entry['name']}: {entry['change']}{by}")

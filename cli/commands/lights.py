@@ -246,19 +246,20 @@ def query(
 
         results = list(results)
         plot_lights([(np.array(each["rgb"]), at, each["power"]) for each in results], table, plot_path, force=force)
+        say(f"{plot_path}: {pluralise(len(results), 'light')}", err=True)
     if style == "json":
         values = (result | {"power": result["power"].tolist()} for result in results)
-        print_json_answers(values, single=source.path is None)
+        print_json_answers(values, single=source.single)
     elif style == "csv":
         header = ["r", "g", "b", "expected_error", *(f"{each:g}" for each in at)]
         print_csv(header, ([*each["rgb"], each["expected_error"], *each["power"].tolist()] for each in results))
-    elif source.path is None:
+    elif source.single:
         (result,) = results
         power = result["power"]
         fields = {
             "linear RGB": f"{format_rgb(result['rgb'])} ({table.space})",
             "round trip": format_rgb(result["round_trip"]["rgb"]),
-            "exp. error": f"ΔE00 {result['expected_error']:.2g} of surfaces, to a measured lamp of this RGB",
+            "expected error": f"ΔE00 {result['expected_error']:.2g} of surfaces, to a measured lamp of this RGB",
             "peak": f"{power.max():.5g} at {at[power.argmax()]:g} nm",
         }
         print_spectrum(fields, at, power, complete=wavelengths is not None, highest=_peak(power))

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 PACKAGED = "packaged"
 """Name of the cube that answers without --cube."""
+NO_ERROR = "unknown; a cube built with --atlas, of 8 entries or more, states it"
+"""In place of an error that is learnt from the entries of an atlas."""
 LARGEST = 1e30
 """Limit of requested colours: ΔE00 of larger ones overflows."""
 
@@ -69,7 +71,7 @@ class Answers:
         from uplift.lookup import load
 
         self.source = find_colours(**colours)
-        self.single = self.source.path is None
+        self.single = self.source.single
         self.cube = load(cube_path)
         if wavelengths is not None:
             check_range(wavelengths, self.cube.wavelengths)
@@ -132,7 +134,7 @@ class Answers:
     "query",
     cls=options.Command,
     everyday=("cube_path", "encoded", "wavelengths", "lights", "style", "plot_path"),
-    help="""Query the spectrum of a COLOUR: R G B, '#rrggbb', or '-' for lines on standard input.
+    help="""Query the spectra of colours: R G B, '#rrggbb', or '-' for lines on standard input.
 
     Numbers are linear RGB from 0 to 1 in the cube's space, or in that of --input-space. Hex colours, and numbers with
     --encoded, are encoded by the transfer function of the space.
@@ -140,6 +142,7 @@ class Answers:
     \b
     Examples:
       uplift query 0.8 0.2 0.1
+      uplift query '#da7b2a' '#3366cc' --plot
       uplift query --cube macbeth-32.uplift '#cc3319' --plot red.png
       uplift query --encoded 204 51 25 --wavelengths 400:700:10 --format json
       uplift query --input colours.csv --format csv > spectra.csv
@@ -193,6 +196,7 @@ def command(
 
         results = list(results)
         plot_spectra(answers.cube, results, plot_path, force=force)
+        say(f"{plot_path}: {pluralise(len(results), 'colour')}", err=True)
     if style == "json":
         print_json_answers((result_object(answers, each) for each in results), single=answers.single)
     elif style == "csv":
@@ -210,7 +214,7 @@ def command(
         _print_lines(answers, results)
     cubes = list(Path().glob("*.uplift")) if style == "table" and colours["cube_path"] is None else []
     if len(cubes) == 1:
-        say(f"hint: the cube of this folder answers with --cube {cubes[0]}", err=True)
+        say(f"hint: to use the cube of this folder, add --cube {cubes[0]}", err=True)
 
 
 def _check(path: str, cube_path: str | None, mode: str, tolerance: float, style: str) -> None:
@@ -293,7 +297,7 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
         is_look = result.entry in atlas.names[atlas.measured_count :]
         fields["look" if is_look else "atlas entry"] = result.entry
     errors = (f"ΔE00 {error:.2g} under {name} (95 %: {bound:.2g})" for name, error, bound in _errors(cube, result))
-    fields["exp. error"] = ", ".join(errors) or "unknown: too few atlas entries"
+    fields["expected error"] = ", ".join(errors) or NO_ERROR
     return fields
 
 

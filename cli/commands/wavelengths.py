@@ -10,7 +10,7 @@ from uplift.common.text import pluralise
 
 from .. import options
 from ..inputs import DEFAULT_ATLASES, atlas_files, check_range, read_atlases
-from ..output.console import make_table, print_csv, print_json, show
+from ..output.console import make_table, print_csv, print_json, say, show
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 
@@ -115,6 +115,7 @@ def command(
         from uplift.scene.wavelengths.plots import plot_choice
 
         plot_choice(setting, choice, plot_path, force=force)
+        say(f"{plot_path}: lights, wavelengths and weights", err=True)
     _print(choice, sensor, atlas.names, style)
 
 

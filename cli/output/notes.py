@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
 
-from uplift.common.errors import UpliftWarning
+from uplift.common.errors import UpliftError, UpliftWarning
+from uplift.common.text import pluralise
 
 from .console import paragraph
 from .diagnostics import hint_for, warn
@@ -19,19 +20,30 @@ NOTES = ("entry-clipped", "entry-crowded")
 
 
 def build_quietly(make: Callable[[], Cube]) -> tuple[Cube, list[UpliftWarning]]:
-    """Build a cube, and return it with the warnings of the build, which are not shown."""
-    with warnings.catch_warnings(record=True) as caught:
-        cube = make()
-    return cube, [each.message for each in caught if isinstance(each.message, UpliftWarning)]
+    """Build a cube, and return it with the notes of the build, which are shown at once only if it fails."""
+    notes: list[UpliftWarning] = []
+    show = warnings.showwarning
 
-
-def print_notes(cube: Cube, found: Sequence[UpliftWarning], *, err: bool = False) -> None:
-    """Print the notes on a cube and on the warnings of its build, one line for each kind; show other warnings."""
-    for warning in found:
-        if warning.code in NOTES:
-            paragraph(warning.describe(hint_for(warning)), err=err)
+    def collect(message: Warning | str, *rest: Any, **options: Any) -> None:
+        if isinstance(message, UpliftWarning) and message.code in NOTES:
+            notes.append(message)
         else:
-            warn([warning])
+            show(message, *rest, **options)
+
+    with warnings.catch_warnings():
+        warnings.showwarning = collect
+        try:
+            cube = make()
+        except UpliftError:
+            warn(notes)
+            raise
+    return cube, notes
+
+
+def print_notes(cube: Cube, notes: Iterable[UpliftWarning], *, err: bool = False) -> None:
+    """Print the notes of a build and on the entries outside the space of the cube, a paragraph for each."""
+    for note in notes:
+        paragraph(note.describe(hint_for(note)), err=err)
     if cube.outside_names:
         paragraph(_describe_outside(cube), err=err)
 
@@ -47,4 +59,5 @@ def _describe_outside(cube: Cube) -> str:
     space = smallest_space(spectra, cube.illuminant, cube.observer)
     count, total = len(cube.outside_names), len(table.names) - cube.data.atlas.looks
     kept = f'--space "{space}"' if space else "wider spaces"
-    return f"{count} of {total} entries {'lies' if count == 1 else 'lie'} outside {cube.space}: kept for {kept}"
+    verb = "lies" if count == 1 else "lie"
+    return f"{count} of {pluralise(total, 'entry')} {verb} outside {cube.space}: kept for {kept}"

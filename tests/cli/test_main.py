@@ -54,7 +54,7 @@ def test_help_shows_the_options_of_every_day_and_help_all_shows_all(run):
         ("txture", "Did you mean 'texture'?"),
         ("build --dimm 8", "Did you mean '--dim'?"),
         ("help mods", "neither a topic nor a command"),
-        ("query", "Give one colour"),
+        ("query", "Give colours"),
         ("build --dim many", "neither a whole number nor 'auto'"),
         ("info a b", "unexpected extra argument"),
     ],

@@ -68,7 +68,7 @@ def test_json_reproduces_the_matrix(ask, spec):
 
 def test_files_are_written(run, refuse, spec, home):
     files = ("-o", "new.txt", "--plot", "m.png", "--plot-spectra", "s.png")
-    assert "new.txt: 1 designed materials" in run("palette", spec(), *files).stderr
+    assert "new.txt: 1 designed material\n" in run("palette", spec(), *files).stderr
     assert uplift.read_atlas("new.txt").names == ("new",)
     assert all((home / name).read_bytes()[1:4] == b"PNG" for name in ("m.png", "s.png"))
     assert refuse("palette", spec(), "--plot", "m.png").code == "file-exists"

@@ -61,6 +61,16 @@ def test_syntax_of_colours(ask, words, rgb):
     np.testing.assert_allclose(ask("query", *words)["rgb"], rgb, rtol=0, atol=1e-15)
 
 
+def test_several_colours_have_a_row_each(ask, run, refuse, home):
+    words = ("#cc3319", "0.8", "0.2", "0.1", "#c31", "0.5,0.5,0.5")
+    rows = ask("query", *words)
+    alone = [ask("query", *part) for part in (words[:1], words[1:4], words[4:5], words[5:])]
+    assert [row["rgb"] for row in rows] == [one["rgb"] for one in alone]
+    assert run("query", *words, "--plot").stdout.count("#") == 4
+    assert (home / "plot.png").is_file()
+    assert refuse("query", *words, "0.5").code == "colour"
+
+
 @pytest.mark.parametrize(("method", "rgb"), [("clip", [1, 0.3, 0]), ("desaturate-oklab", [1, 0.4215, 0.1069])])
 def test_out_of_gamut_colours_are_mapped_with_a_warning(run, method, rgb):
     words = ("query", "-", "--out-of-gamut", method)
