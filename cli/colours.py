@@ -13,10 +13,11 @@ from typing import IO, TYPE_CHECKING
 
 import click
 
-from uplift.common.errors import ColourError
+from uplift.common.errors import ColourError, UpliftWarning
 from uplift.common.text import format_value, parse_float
 
 from .inputs import find_input_space
+from .output.diagnostics import warn
 
 if TYPE_CHECKING:
     from uplift.colorimetry.sensor import Sensor
@@ -59,7 +60,10 @@ class ColourSource:
         """Return blocks of linear RGB (n, 3) from the words or the file, which must lie in [0, 1] if ``bounded``."""
         if self.path is not None:
             return self._read(self.path, sensor, bounded)
-        return [self._linear(_parse_words(self.words), sensor)]
+        colours = _parse_words(self.words)
+        if self.encoded:
+            _warn_of_fractions(colours)
+        return [self._linear(colours, sensor)]
 
     def _read(self, path: str, sensor: Sensor, bounded: bool) -> Iterator[Array]:
         try:
@@ -203,6 +207,15 @@ def _parse_words(words: Sequence[str]) -> list[Colour]:
         colours.append(colour)
         parts = parts[length:]
     return colours
+
+
+def _warn_of_fractions(colours: Sequence[Colour]) -> None:
+    """Warn of codes that look like numbers from 0 to 1."""
+    values = [number for numbers, is_hex in colours for number in numbers if not is_hex]
+    if values and max(values) <= 1 and any(value % 1 for value in values):
+        codes = " ".join(f"{255 * value:.0f}" for value in values[:3])
+        problem = f"8-bit codes run from 0 to 255, got numbers up to {max(values):g}"
+        warn([UpliftWarning(problem, hint=f"for encoded numbers from 0 to 1 give 255 times as much: {codes}")])
 
 
 def _number(word: str) -> float | None:

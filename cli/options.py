@@ -31,12 +31,13 @@ class Command(click.Command):
     """A command with many options, which reads '-0.1' as a number, not as an option.
 
     ``--help`` shows the options of every day, by the names of their parameters, and the text before a form feed.
-    ``--help-all`` shows everything.
+    ``--help-all`` shows everything. ``no_arguments`` is said where a command without arguments is given some.
     """
 
-    def __init__(self, *args: Any, everyday: Collection[str], **settings: Any) -> None:
+    def __init__(self, *args: Any, everyday: Collection[str], no_arguments: str = "", **settings: Any) -> None:
         super().__init__(*args, **settings)
         self.everyday = everyday
+        self.no_arguments = no_arguments
         self.params.append(click.Option(["--help-all"], is_flag=True, expose_value=False, help="Show all options."))
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -44,7 +45,12 @@ class Command(click.Command):
         if "--help-all" in args:
             ctx.meta[HELP_ALL] = True
             args = ["--help"]
-        return super().parse_args(ctx, [f" {arg}" if NEGATIVE_NUMBER.match(arg) else arg for arg in args])
+        try:
+            return super().parse_args(ctx, [f" {arg}" if NEGATIVE_NUMBER.match(arg) else arg for arg in args])
+        except click.UsageError as error:
+            if self.no_arguments and "extra argument" in error.message:
+                raise click.UsageError(f"{error.message}. {self.no_arguments}", ctx) from error
+            raise
 
     def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the text, after the form feed for --help-all only."""
@@ -343,7 +349,13 @@ def colours(xyz: str, space: str) -> Decorator:
 fill = click.option(
     "--fill-missing", is_flag=True, help="Take colours that a cube built with --scene lacks from the packaged cube."
 )
-atlas_folders = repeatable("--atlas-dir", "folders", "Folder to search for atlases", metavar="DIR")
+atlas_folders = repeatable(
+    "--atlas-dir",
+    "folders",
+    "Folder to search for atlases",
+    metavar="DIR",
+    type=click.Path(exists=True, file_okay=False),
+)
 force = click.option("--force", is_flag=True, help="Replace existing files.")
 quiet = click.option("-q", "--quiet", is_flag=True, help="Print only warnings and errors.")
 verbose = click.option("-v", "--verbose", is_flag=True, help="Print a line for every round and improvement step.")

@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Mapping
+from operator import attrgetter
 from typing import Any
 
 import colour
@@ -19,7 +20,7 @@ def tables() -> dict[str, np.ndarray]:
         "bradford": colour.adaptation.CHROMATIC_ADAPTATION_TRANSFORMS["Bradford"],
     }
     for kind, table in TABLES.items():
-        found: Mapping[str, Any] = getattr(colour, table)
+        found: Mapping[str, Any] = attrgetter(table)(colour)
         arrays[f"{kind}: names"] = np.array(list(found))
         arrays[f"{kind}: stated"] = np.array([each.name for each in found.values()])
         if kind in SPECTRA:

@@ -47,6 +47,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
     "build",
     cls=options.Command,
     everyday=("files", "output", "dim", "space", "coefficients", "force"),
+    no_arguments="Measured spectra are named with --atlas: uplift build --atlas macbeth.",
     help="""Build an uplifting cube constrained by measured spectra.
 
     \b

@@ -14,7 +14,7 @@ from uplift.common.errors import UpliftError, UpliftWarning
 
 from .. import options
 from ..output.console import make_table, paragraph, print_json, say, show
-from ..output.diagnostics import CommandFailure, error_object
+from ..output.diagnostics import BAD_INPUT, FAILED_CHECK, CommandFailure, error_object
 from ..output.progress import progress_bar
 from ..startup import enable_jit_cache
 
@@ -71,8 +71,10 @@ def command(
             is_failed = True
             if error and style != "json":
                 CommandFailure(error).show()
+    if any(error for _, _, error in results):
+        raise SystemExit(BAD_INPUT)
     if is_failed:
-        raise SystemExit(1)
+        raise SystemExit(FAILED_CHECK)
 
 
 def _check(

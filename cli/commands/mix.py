@@ -220,7 +220,10 @@ def command(
     else:
         mixed = mix(kind, ingredients, amounts, medium, resolver.spectrum(ground or "white"))
     count = len(sensor.wavelengths)
-    mapped = map_to_gamut(sensor.rgb(mixed[:, :count]), sensor, method)
+    rgb = sensor.rgb(mixed[:, :count])
+    inside = np.clip(rgb, 0, 1)
+    rounded = np.abs(rgb - inside).max(axis=1, keepdims=True) <= cube.data.threshold
+    mapped = map_to_gamut(np.where(rounded, inside, rgb), sensor, method)
     if mapped.outside[0]:
         problem = f"the mixture lies outside [0, 1]: mapped into the gamut ({method})"
         warn([UpliftWarning(problem)])

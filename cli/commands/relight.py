@@ -54,9 +54,9 @@ def _check_output(path: str) -> str:
     help="""Show images under other lights: RGB multiplied by the light, next to spectra.
 
     Without IMAGE, a sample painted in colours of the ColorChecker is shown, with the ColorChecker as its atlas. Spectra
-    come from the packaged cube, which knows no atlas ('spectral'), and from --cube or --atlas. The page has a line to
-    drag between two of the methods or the original, and maps of ΔE00. Figures and pages show images with at most 960
-    pixels per side.
+    come from the packaged cube, which knows no atlas ('spectral'), and from --cube or --atlas; from --cube alone if it
+    has another RGB space, illuminant or observer. The page has a line to drag between two of the methods or the
+    original, and maps of ΔE00. Figures and pages show images with at most 960 pixels per side.
 
     With -o relit.exr, one image is written at full size, linear and in its own RGB space, by the spectra of --cube or
     --atlas if there is one. R, G and B are the colours under the first light; each further light is a layer of its
@@ -134,12 +134,16 @@ def command(
             paragraph(f"{output}: {Path(paths[0]).name} under {names}, {pluralise(conversion.counts.pixels, 'pixel')}")
     else:
         with progress_bar("computing spectra"):
-            cubes = {SPECTRAL: load()}
-            pictures = read_pictures(paths, cubes[SPECTRAL].data.sensor, **pixels)
+            packaged = load()
             extra, notes = _cube_of_user(cube_path, atlases)
+            cubes = {}
+            if extra is None or _setting(extra) == _setting(packaged):
+                cubes[SPECTRAL] = packaged
             if extra is not None:
                 stems = [Path(path).stem for path in atlases or [cube_path or ""]]
                 cubes[f"{SPECTRAL} with {', '.join(stems)}"] = extra
+            first, *_ = cubes.values()
+            pictures = read_pictures(paths, first.data.sensor, **pixels)
             relit = []
             for path, picture in zip(paths, pictures, strict=True):
                 image = relight(
@@ -153,6 +157,12 @@ def command(
         _print_differences(relit, output, style)
     if extra is not None and files:
         print_notes(extra, notes, err=style == "json")
+
+
+def _setting(cube: Cube) -> tuple[str, str, str]:
+    """Return what cubes that are compared must have in common."""
+    sensor = cube.data.sensor
+    return sensor.space, sensor.illuminant, sensor.observer
 
 
 def _print_differences(relit: Sequence[Relit], output: str, style: str) -> None:

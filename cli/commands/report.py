@@ -60,6 +60,7 @@ def command(
     from uplift.colorimetry.lights import REPORT_LIGHTS
     from uplift.common.files import write_text
     from uplift.lookup import load
+    from uplift.lookup.cube import find_file
     from uplift.pipeline.rebuild import recorded_atlas, recorded_files
     from uplift.report.assessment import assess
     from uplift.report.page import render_report, to_json
@@ -73,7 +74,7 @@ def command(
     check_outputs(path, inputs=recorded)
     atlas = read_atlas(*files) if files else recorded_atlas(loaded.data, cube, folders)
     with progress_bar("evaluating the cube"):
-        size = Path(cube).stat().st_size
+        size = Path(find_file(cube)).stat().st_size
         assessment = assess(loaded, Path(cube).name, size, atlas, lights or REPORT_LIGHTS)
         text = json_text(to_json(assessment)) + "\n" if style == "json" else render_report(assessment, worst)
     if path is None:

@@ -49,10 +49,11 @@ def command(cube: str, output: str | None, sheet: str | None, force: bool) -> No
         output = f"{Path(cube).stem}.exr"
     from uplift.cube import read
     from uplift.io.exr import write_slices
+    from uplift.lookup.cube import find_file
     from uplift.viz.sheet import write_sheet
 
     check_outputs(output, sheet)
-    data = read(cube)
+    data = read(find_file(cube))
     if output is not None:
         write_slices(data, output, force=force)
         say(f"{output}: {pluralise(data.lattice.dim, 'blue slice')}")

@@ -196,7 +196,7 @@ def _texture_paths(sources: Sequence[str], target: str) -> list[tuple[Path, Path
         return _tiles(sources, images, target)
     folder = Path(target)
     is_single = len(sources) == 1 and images == [sources[0]]
-    if is_single and not folder.is_dir() and not target.endswith(os.sep):
+    if is_single and folder.suffix and not folder.is_dir() and not target.endswith(os.sep):
         if folder.suffix.lower() != ".exr":
             hint = "give a file name ending in .exr, or a folder"
             raise OutputError("textures are OpenEXR files", path=target, hint=hint)

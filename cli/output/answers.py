@@ -102,5 +102,10 @@ def describe_coordinates(values: dict[str, Any]) -> dict[str, str]:
     kind = "complement of " if values["complementary"] else ""
     wavelength = values["dominant_wavelength"]
     hue = "grey" if wavelength is None else f"{kind}{wavelength:.0f} nm, purity {values['purity']:.2f}"
-    codes = (f"{name.upper()} {' '.join(f'{x:.2f}' for x in values[name])}" for name in ("hsv", "hsl", "yiq"))
+    codes = []
+    for name in ("hsv", "hsl", "yiq"):
+        first, second, third = (round(value, 2) for value in values[name])
+        if name != "yiq":
+            first %= 1  # a hue of 1 is 0
+        codes.append(f"{name.upper()} {first:.2f} {second:.2f} {third:.2f}")
     return {"hue": hue, "encoded": ", ".join(codes)}

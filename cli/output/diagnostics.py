@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import re
 import signal
 import sys
 import warnings
@@ -11,7 +12,7 @@ from typing import Any
 
 import click
 
-from uplift.common.errors import Diagnostic, OptionError, OutputError, UpliftError, UpliftWarning
+from uplift.common.errors import CubeFileError, Diagnostic, OptionError, OutputError, UpliftError, UpliftWarning
 from uplift.common.text import printable
 
 from ..startup import remove_compiled_code
@@ -24,6 +25,7 @@ EXIT_CODES = {"internal-error": INTERNAL_ERROR, "interrupted": 128 + signal.SIGI
 MAX_DETAIL = 200
 """Characters of the message of an internal error."""
 HINTS = {
+    "atlas-out-of-gamut": "use --scale percent if the values are in percent, or else a wider --space",
     "atlas-changed": "name the folder of the recorded file with --atlas-dir, or build the cube again",
     "atlas-not-found": "name its folder with --atlas-dir, or build the cube again",
     "colour-not-a-light": "use --out-of-gamut clip for the nearest colour towards white",
@@ -36,19 +38,40 @@ HINTS = {
     "mixed-scales": "correct the row, or use --scale percent or fraction if it is right",
     "not-a-cube": "name a cube by 'uplift build', or use 'uplift lights' for an emission table",
     "not-an-emission-table": "build one with 'uplift lights build', or use 'uplift query' and the like for a cube",
-    "rgb-out-of-gamut": "map it inside with --out-of-gamut, or use --encoded for 8-bit codes",
+    "rgb-like-codes": "use --encoded for 8-bit codes",
+    "rgb-out-of-gamut": "map it inside with --out-of-gamut",
     "sparse-cube": "use --fill-missing where the command has it, or a cube built without --scene",
     "texture-differs": "use --resume with --force to convert the image again, or choose another name",
-    "unknown-illuminant": "{} 'uplift help illuminants' lists all names",
 }
 """Hints in place of the library's, {}, which name parameters of Python, by the code of an error or a warning."""
+TOPICS = {"RGB space": "spaces", "illuminant": "illuminants", "observer": "observers"}
+"""Topics of help that list the names of a kind."""
 MEMORY_PROBLEMS = ("RESOURCE_EXHAUSTED", "failed to map segment")
 """Texts of JAX and of the loader of libraries without memory."""
 
 
 def hint_for(diagnostic: Diagnostic) -> str:
     """Return the hint of the command line for an error or warning, or else the library's own."""
+    if isinstance(diagnostic, CubeFileError) and diagnostic.code == "file-not-found":
+        return _hint_of_missing_cube(str(diagnostic.path)) or diagnostic.hint
+    if not diagnostic.hint:
+        for kind, topic in TOPICS.items():
+            if diagnostic.problem.startswith(f"unknown {kind} "):
+                return f"'uplift help {topic}' lists all"
     return HINTS.get(diagnostic.code, "{}").format(diagnostic.hint)
+
+
+def _hint_of_missing_cube(path: str) -> str:
+    """Return how the cube of a name is built, or a file of nearly this name; empty where neither is known."""
+    from uplift.atlas import shipped_atlases
+
+    if os.path.isfile(f"{path}.uplift"):
+        return f"did you mean {path}.uplift?"
+    match = re.fullmatch(r"(.+?)(?:-(\d+))?(?:\.uplift)?", os.path.basename(path))
+    if match is None or match[1] not in [atlas.path.stem for atlas in shipped_atlases()]:
+        return ""
+    dim = f" --dim {match[2]}" if match[2] else ""
+    return f"'{match[1]}' is an atlas: build its cube with 'uplift build --atlas {match[1]}{dim}'"
 
 
 class CommandFailure(click.ClickException):

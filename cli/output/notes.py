@@ -35,6 +35,7 @@ def build_quietly(make: Callable[[], Cube]) -> tuple[Cube, list[UpliftWarning]]:
         try:
             cube = make()
         except UpliftError:
+            warnings.showwarning = show
             warn(notes)
             raise
     return cube, notes

@@ -10,6 +10,7 @@ import pytest
 from tests.helpers import raises
 from uplift.atlas import on_grid, read_atlas
 from uplift.colorimetry import observer, tables
+from uplift.colorimetry.dominant import GREY, dominant_wavelength
 from uplift.colorimetry.gamut import SRGB, conversion
 from uplift.colorimetry.observer import COMMON_SPACES, smallest_space
 from uplift.colorimetry.spaces import BUILT_IN, find_space, look_up_space, primaries_of
@@ -49,6 +50,22 @@ def test_colours_agree_with_colour_science(sensor):
         np.testing.assert_allclose(sensor.xyz(sensor.rgb(samples.values)), xyz, rtol=1e-9)
     decoding = colour.RGB_COLOURSPACES["sRGB"].cctf_decoding(np.arange(256) / 255)
     np.testing.assert_allclose(sensor.decoding, decoding, rtol=1e-14)  # powers differ between instruction sets
+
+
+@pytest.mark.parametrize("name", tables.names("observer"))
+def test_observers_agree_on_hues(name, sensor):
+    """Those of RGB and of cones, which XYZ are computed from by a matrix, are not observers."""
+    own = observer.sensor(observer=name)
+    for rgb in ([0, 0.35, 0.05], [0.7, 0.2, 0.02]):
+        hue = dominant_wavelength(own.xyz(np.array(rgb)), own).wavelength
+        usual = dominant_wavelength(sensor.xyz(np.array(rgb)), sensor).wavelength
+        assert hue == pytest.approx(usual, abs=6)
+    assert dominant_wavelength(own.xyz(np.full(3, 0.5)), own) == GREY
+
+
+def test_cone_fundamentals_are_refused():
+    with raises(OptionError, "option"):
+        observer.sensor(observer="Stockman & Sharpe 2 Degree Cone Fundamentals")
 
 
 @pytest.mark.parametrize("kind", ["observer", "camera", "illuminant"])

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import AtlasError
-from uplift.common.files import read_bytes
+from uplift.common.files import content_kind, read_bytes
 from uplift.common.text import parse_float, printable, shorten
 
 MAX_BYTES = 64 << 20
@@ -84,6 +84,9 @@ class Document:
                 raise self.location.at(1).error("the UTF-16 text is damaged", hint) from None
             text = data.decode("latin-1")
         if "\0" in text:
+            content = content_kind(self.data)
+            if content:
+                raise self.location.error(f"is {content}, not an atlas", "name a file of measured spectra")
             line = text[: text.index("\0")].count("\n") + 1
             raise self.location.at(line).error("binary data (a NUL character) instead of text", hint)
         if not text.strip():

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, Mask, Values
 from uplift.common.errors import ColourError
+from uplift.common.text import format_value
 
 SLACK = 1e-9
 """Distance from [0, 1] that counts as rounding."""
@@ -25,19 +26,24 @@ def as_rgb(rgb: ArrayLike) -> Values:
     try:
         array: Values = np.asarray(rgb) if is_single else np.asarray(rgb, dtype=float)
     except (TypeError, ValueError) as error:
-        raise ColourError("a colour is three numbers") from error
+        raise ColourError(f"a colour is three numbers, got {format_value(rgb)}", hint="pass R, G and B") from error
     if array.ndim == 0 or array.shape[-1] != 3:
-        raise ColourError(f"a colour is three numbers, got an array of shape {array.shape}")
+        hint = "pass [R, G, B], or colours of shape (…, 3), without alpha"
+        raise ColourError(f"a colour is three numbers, got an array of shape {array.shape}", hint=hint)
     return array
 
 
 def raise_out_of_gamut(outside: Array) -> NoReturn:
     """Raise the error for colours outside [0, 1]. Shapes: ``outside`` (n, 3)."""
-    raise ColourError(
-        f"linear RGB {format_rgb(outside[0])} lies outside [0, 1]",
-        code="rgb-out-of-gamut",
-        hint="map it with uplift.colorimetry.gamut.map_to_gamut, or convert 8-bit codes with Cube.decode",
-    )
+    colour = outside[0]
+    text = f"linear RGB {format_rgb(colour)}"
+    if not np.isfinite(colour).all():
+        raise ColourError(f"{text} is not finite", hint="pass numbers in [0, 1]")
+    problem = f"{text} lies outside [0, 1]"
+    if (colour == np.round(colour)).all() and colour.min() >= 0 and 1 < colour.max() <= 255:
+        raise ColourError(problem, code="rgb-like-codes", hint="convert 8-bit codes with Cube.decode")
+    hint = "map it with uplift.colorimetry.gamut.map_to_gamut"
+    raise ColourError(problem, code="rgb-out-of-gamut", hint=hint)
 
 
 def format_rgb(rgb: Array) -> str:

@@ -6,6 +6,7 @@ Copyright 2013 Colour Developers, BSD-3-Clause, as part of colour-science.
 """
 
 import functools
+import operator
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,12 +18,12 @@ import numpy as np
 from uplift.colorimetry import lights
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
-from uplift.common.errors import unknown_name
+from uplift.common.errors import OptionError, unknown_name
 
 PATH = Path(__file__).parent / "tables.npz"
 START, END, STEP = WAVELENGTHS = (380.0, 780.0, 5.0)
 """Range and step in nm of the spectra of the file."""
-SPECTRA = {"illuminant": "SDS_ILLUMINANTS", "observer": "MSDS_CMFS"}
+SPECTRA = {"illuminant": "SDS_ILLUMINANTS", "observer": "colorimetry.MSDS_CMFS_STANDARD_OBSERVER"}
 """Tables of colour-science whose spectra the file has, by the kind of their names."""
 TABLES = {
     **SPECTRA,
@@ -132,8 +133,11 @@ def bradford(source: Array, target: Array) -> Array:
 
 def look_up(kind: str, name: str) -> Any:
     """Return an object of colour-science by its name, for an illuminant also by the names of `lights`."""
-    table = getattr(colour_science(), TABLES[kind])
+    table = operator.attrgetter(TABLES[kind])(colour_science())
     known = list(table)
+    if kind == "observer" and name not in table and name in colour_science().MSDS_CMFS:
+        hint = "that of CIE 2015 has the cone fundamentals of Stockman & Sharpe as XYZ"
+        raise OptionError(f"observer must have colour-matching functions of XYZ, got '{name}'", hint=hint)
     if kind == "illuminant":
         (name, kelvin), known = lights.standard_name(name), [*known, *lights.COMMON_NAMES, "3200K"]
         if kelvin is not None:

@@ -145,6 +145,10 @@ class UpliftWarning(Diagnostic, UserWarning):
     code = "warning"
 
 
+MAX_CHOICES = 6
+"""Names that are listed where none is near."""
+
+
 def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError:
     """Make the error for an unknown name of a ``kind``, with the nearest known names as its hint.
 
@@ -155,7 +159,9 @@ def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError
     import difflib
 
     by_folded = {entry.casefold(): entry for entry in known}
-    near = difflib.get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.4) or list(by_folded)[:6]
+    near = difflib.get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.4)
+    if not near and len(by_folded) <= MAX_CHOICES:
+        near = list(by_folded)
     choices = ", ".join(f"'{by_folded[entry]}'" for entry in near)
     return UnknownNameError(f"unknown {kind} '{name}'", hint=f"did you mean {choices}?" if near else "")
 

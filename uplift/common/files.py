@@ -21,6 +21,8 @@ KERNEL = "/proc"
 FOLDER_HINT = "name a folder to write to"
 PREFIX = ".{}."
 """First characters of temporary files, by the name of the file."""
+IMAGES = (b"\x89PNG", b"\xff\xd8\xff", b"v/1\x01", b"II*\0", b"MM\0*", b"#?RADIANCE", b"GIF8")
+"""First bytes of PNG, JPEG, OpenEXR, TIFF, Radiance HDR and GIF."""
 _TEMPORARIES: set[Path] = set()
 """Temporary files that this process is writing."""
 
@@ -54,6 +56,15 @@ def file_digest(path: StrPath, error: type[UpliftError] = UpliftError) -> str:
     check_regular(path, error, hint="name a file")
     with _reading(path, error, "name a file"), open(path, "rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def content_kind(start: bytes) -> str | None:
+    """Name what a file is by its first bytes, if it is an image, a cube or a text."""
+    if start.startswith(IMAGES):
+        return "an image"
+    if b"\0" in start:
+        return "a cube or an emission table" if start[8:9] == b"{" else None
+    return "a text file" if start else None
 
 
 @contextlib.contextmanager

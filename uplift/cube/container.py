@@ -14,9 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.errors import CubeFileError, OutputError, UpliftError
-from uplift.common.files import atomic_write, check_regular
+from uplift.common.files import atomic_write, check_regular, content_kind
 from uplift.common.text import format_value, parse_json, printable
 
+START_BYTES = 512
+"""First bytes of a file that tell an image or a text."""
 KEY = "uplift"
 """The only metadata entry: safetensors does not keep the order of several."""
 STORED_TYPES = ("F64", "F32", "U8", "I32", "I16", "U32")
@@ -98,7 +100,11 @@ def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Con
                 raise ValueError("an array of an unknown type")
             tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
     except (SafetensorError, ValueError, TypeError, OSError, MemoryError) as error:
-        problem = f"is not a {kind.noun} file, or is truncated ({str(error)[:200]})"
+        with open(path, "rb") as file:
+            content = content_kind(file.read(START_BYTES))
+        problem = f"is not a {kind.noun} file, or is truncated"
+        if content in ("an image", "a text file"):
+            problem = f"is {content}, not a {kind.noun}"
         raise CubeFileError(problem, code=kind.foreign, path=path, hint=again) from error
     stated = metadata.get("format") if isinstance(metadata, dict) else None
     if stated != kind.format:

@@ -195,7 +195,7 @@ def _method(options: CubeOptions, lookup: str) -> Method:
         call = f"uplift export CUBE -o cube.h --mode {mode}; cube_reflectances(rgb, wavelengths, count, out)"
         fields |= {"note": f"cc {' '.join(FLAGS[:5])}, called by ctypes", "needs": COMPILER}
     elif mode == "bulk":
-        label, prepare, call = f"{label} f32", prepare_bulk, "uplift.lookup.bulk.spectra(cube)(rgb)"
+        label, prepare, call = f"{label} f32", prepare_bulk, "uplift.bulk.spectra(cube)(rgb)"
     else:
         of_dtype = ', dtype="float32"' if lookup.endswith(FLOAT32) else ""
         label += " f32" if of_dtype else ""
