@@ -18,6 +18,10 @@ DAY = 86_400.0
 """Seconds without a change after which a temporary file belongs to a writer that was killed."""
 KERNEL = "/proc"
 """Folder of the files of the kernel, where there is one."""
+IMAGES = (b"\x89PNG", b"v/1\x01", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"#?")
+"""First bytes of PNG, OpenEXR, JPEG, both orders of TIFF, and HDR."""
+CONTAINERS = {b"uplift cube": "a cube", b"uplift emission table": "an emission table"}
+"""Kinds of files by their mark in the header of safetensors."""
 FOLDER_HINT = "name a folder to write to"
 PREFIX = ".{}."
 """First characters of temporary files, by the name of the file."""
@@ -45,6 +49,15 @@ def read_bytes(path: StrPath, error: type[UpliftError], *, limit: int, hint: str
     if len(data) > limit:
         raise error(f"must not exceed {limit:,} bytes", code="file-unreadable", path=path, hint=hint)
     return data
+
+
+def recognise(data: bytes) -> str:
+    """Name what a file is by its bytes: an image, a cube, an emission table or text; empty for all others."""
+    if data.startswith(IMAGES):
+        return "an image"
+    if data[8:9] == b"{":  # safetensors: the length of a header, and the header as JSON
+        return next((kind for mark, kind in CONTAINERS.items() if mark in data), "")
+    return "" if b"\0" in data else "text"
 
 
 def file_digest(path: StrPath, error: type[UpliftError] = UpliftError) -> str:

@@ -3,6 +3,7 @@
 Equal contents have equal bytes.
 """
 
+import contextlib
 import hashlib
 import json
 import os
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.errors import CubeFileError, OutputError, UpliftError
-from uplift.common.files import atomic_write, check_regular
+from uplift.common.files import atomic_write, check_regular, recognise
 from uplift.common.text import format_value, parse_json, printable
 
 KEY = "uplift"
@@ -98,7 +99,10 @@ def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Con
                 raise ValueError("an array of an unknown type")
             tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
     except (SafetensorError, ValueError, TypeError, OSError, MemoryError) as error:
-        problem = f"is not a {kind.noun} file, or is truncated ({str(error)[:200]})"
+        got = _recognise_file(path)
+        if not got or got.endswith(kind.noun):
+            got = "a damaged or another file"
+        problem = f"must be an {kind.format}, got {got}"
         raise CubeFileError(problem, code=kind.foreign, path=path, hint=again) from error
     stated = metadata.get("format") if isinstance(metadata, dict) else None
     if stated != kind.format:
@@ -115,6 +119,13 @@ def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Con
         reason = error.problem if isinstance(error, CubeFileError) else f"{type(error).__name__}: {str(error)[:200]}"
         problem = f"is not a valid {kind.noun}: {reason}"
         raise CubeFileError(problem, path=path, hint=again) from error
+
+
+def _recognise_file(path: Path) -> str:
+    """Name what a file is by its first bytes, see `recognise`; empty if they cannot be read."""
+    with contextlib.suppress(OSError), path.open("rb") as file:
+        return recognise(file.read(MAX_TEXT))
+    return ""
 
 
 def _check_readable(metadata: dict[str, Any], kind: Kind, path: Path) -> None:
