@@ -109,7 +109,7 @@ TOPICS: dict[str, tuple[str, Callable[[], list[Part]]]] = {
     "gamut": ("colours outside [0, 1]: --out-of-gamut", lambda: [GAMUT_MEANINGS]),
     "illuminants": ("names of lights: --light, --illuminant", _illuminants),
     "modes": ("ways to interpolate a cube: query --mode", lambda: [MODE_MEANINGS]),
-    "observers": ("names of standard observers: --observer", lambda: _names("observer")),
+    "observers": ("names of observers and cameras: --observer", lambda: [*_names("observer"), *_names("camera")]),
     "spaces": ("names of RGB spaces: --space, --input-space", lambda: _names("RGB space")),
 }
 """Summary and parts by topic. No topic has the name of a command."""

@@ -30,35 +30,50 @@ HINTS = {
     "atlas-not-found": "name its folder with --atlas-dir, or build the cube again",
     "colour-not-a-light": "use --out-of-gamut clip for the nearest colour towards white",
     "colour-not-in-scene": "use --fill-missing, or build the cube with the image in --scene",
-    "encoded-floats-not-mapped": "use --out-of-gamut clip, or --encoding linear",
-    "entry-crowded": "use --dim auto for a lattice that is large enough; 'uplift report' shows details",
     "entry-skipped": "'uplift atlas' states the reason for each",
-    "file-exists": "use --force to replace it, or choose another name",
     "invalid-codes": "leave out --encoded for linear floats",
     "mixed-scales": "correct the row, or use --scale percent or fraction if it is right",
-    "not-a-cube": "name a cube by 'uplift build', or use 'uplift lights' for an emission table",
+    "not-a-cube": "'uplift build --atlas FILE' makes one of spectra, and 'uplift lights' reads emission tables",
     "not-an-emission-table": "build one with 'uplift lights build', or use 'uplift query' and the like for a cube",
+    "not-spectra": "name an atlas; a cube is used with --cube, an image with 'uplift texture' and 'uplift relight'",
     "rgb-like-codes": "use --encoded for 8-bit codes",
     "rgb-out-of-gamut": "map it inside with --out-of-gamut",
     "sparse-cube": "use --fill-missing where the command has it, or a cube built without --scene",
     "texture-differs": "use --resume with --force to convert the image again, or choose another name",
 }
-"""Hints in place of the library's, {}, which name parameters of Python, by the code of an error or a warning."""
-TOPICS = {"RGB space": "spaces", "illuminant": "illuminants", "observer": "observers"}
-"""Topics of help that list the names of a kind."""
+"""Hints in place of the library's, by the code of an error or a warning."""
+LISTS = {
+    "shipped_atlases()": "'uplift atlas'",
+    "tables.names('RGB space')": "'uplift help spaces'",
+    "tables.names('camera')": "'uplift help observers'",
+    "tables.names('illuminant')": "'uplift help illuminants'",
+    "tables.names('observer')": "'uplift help observers'",
+}
+"""Commands in place of the functions that hints of the library name."""
+PARAMETER = re.compile(r"""(?<![\w'"-])([a-z_]+)=(True|[\w.]+|'[^']*'|"[^"]*")""")
+"""A parameter of Python and its value."""
+QUOTES = "'\""
 MEMORY_PROBLEMS = ("RESOURCE_EXHAUSTED", "failed to map segment")
 """Texts of JAX and of the loader of libraries without memory."""
 
 
 def hint_for(diagnostic: Diagnostic) -> str:
-    """Return the hint of the command line for an error or warning, or else the library's own."""
+    """Return the hint of the command line for an error or warning, or else the library's own in its terms."""
     if isinstance(diagnostic, CubeFileError) and diagnostic.code == "file-not-found":
         return _hint_of_missing_cube(str(diagnostic.path)) or diagnostic.hint
-    if not diagnostic.hint:
-        for kind, topic in TOPICS.items():
-            if diagnostic.problem.startswith(f"unknown {kind} "):
-                return f"'uplift help {topic}' lists all"
-    return HINTS.get(diagnostic.code, "{}").format(diagnostic.hint)
+    if diagnostic.code in HINTS:
+        return HINTS[diagnostic.code]
+    hint = PARAMETER.sub(_as_option, diagnostic.hint)
+    for function, command in LISTS.items():
+        hint = hint.replace(function, command)
+    return hint
+
+
+def _as_option(parameter: re.Match[str]) -> str:
+    """Return ``--name value`` for ``name=value``, and ``--name`` for ``name=True``."""
+    name, value = parameter.groups()
+    option = "--" + name.replace("_", "-")
+    return option if value == "True" else f"{option} {value.strip(QUOTES)}"
 
 
 def _hint_of_missing_cube(path: str) -> str:

@@ -85,7 +85,7 @@ BAD = [[0.1, 0.2, 0.3], [0.5, 0.5, np.nan], [2, 0, 0]]
 @pytest.mark.parametrize(
     ("rgb", "method", "error", "code"),
     [
-        (BAD, "error", ColourError, "rgb-out-of-gamut"),
+        (BAD, "error", ColourError, "colour"),
         *((BAD, method, ColourError, "colour") for method in MOVERS),
         (0.5, "clip", ColourError, "colour"),
         ("red", "clip", ColourError, "colour"),

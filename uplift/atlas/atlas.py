@@ -214,7 +214,9 @@ class Atlas:
             if first is not entry:
                 where = "" if first.path is None else f": first used at {first.path}:{first.line}"
                 location = SourceLocation(entry.path, entry.line, entry.name)
-                raise location.error(f"the name is taken{where}", "rename or remove one of the two")
+                is_copy = first.wavelengths.shape == entry.wavelengths.shape and np.allclose(first.values, entry.values)
+                hint = "leave out one of the two files" if is_copy else "rename or remove one of the two"
+                raise location.error(f"the name is taken{where}", hint)
 
     def __len__(self) -> int:
         return len(self.entries)
@@ -312,4 +314,4 @@ def _faults(name: str, wavelengths: Array, values: Array) -> Iterator[tuple[str,
         yield problem, "add the missing samples and give wavelengths in nm"
     for i in np.flatnonzero((values > HIGHEST) | (values < LOWEST)):
         problem = f"reflectance must be in [{LOWEST:g}, {HIGHEST:g}], got {values[i]:g} at {wavelengths[i]:g} nm"
-        yield problem, "the scale (in atlas text 'Maximum sample value') is probably missing or wrong"
+        yield problem, "correct the value, or the scale of the file"

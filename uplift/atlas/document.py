@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import AtlasError
-from uplift.common.files import content_kind, read_bytes
+from uplift.common.files import IMAGES, read_bytes, recognise
 from uplift.common.text import parse_float, printable, shorten
 
 MAX_BYTES = 64 << 20
@@ -83,10 +83,10 @@ class Document:
             if encoding is not None:
                 raise self.location.at(1).error("the UTF-16 text is damaged", hint) from None
             text = data.decode("latin-1")
-        if "\0" in text:
-            content = content_kind(self.data)
-            if content:
-                raise self.location.error(f"is {content}, not an atlas", "name a file of measured spectra")
+        if "\0" in text or data.startswith(IMAGES):
+            if kind := recognise(data):
+                problem = f"must be a file of spectra, got {kind}"
+                raise self.location.error(problem, "name an atlas", code="not-spectra")
             line = text[: text.index("\0")].count("\n") + 1
             raise self.location.at(line).error("binary data (a NUL character) instead of text", hint)
         if not text.strip():
@@ -129,7 +129,7 @@ class Document:
 
 def read_document(path: StrPath) -> Document:
     """Read a file. Raise `AtlasError` if it is missing, unreadable or too large."""
-    data = read_bytes(path, AtlasError, limit=MAX_BYTES, hint="name an atlas file that can be read")
+    data = read_bytes(path, AtlasError, limit=MAX_BYTES, hint="name a file, or an atlas that shipped_atlases() lists")
     path = os.fspath(path)
     digest = hashlib.sha256(data).hexdigest()
     return Document(path, SourceLocation(path), printable(os.path.basename(path)), data, digest)
@@ -140,7 +140,7 @@ def parse_number(token: str, location: SourceLocation, label: str) -> float:
     try:
         return parse_float(token)
     except ValueError:
-        problem = f"{label} '{truncate(token)}' is not a number"
+        problem = f"{label} '{truncate(token)}' is not a number" if token.strip() else f"{label} is empty"
         raise location.error(problem, "write a plain number such as 0.125") from None
 
 

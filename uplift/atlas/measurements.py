@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from uplift.atlas.atlas import HIGHEST, Atlas, Entry, Header, SkippedEntry, Source
+from uplift.atlas.atlas import HIGHEST, LOWEST, Atlas, Entry, Header, SkippedEntry, Source
 from uplift.atlas.document import EXPORT, Document, SourceLocation, truncate
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, UpliftWarning, needs_package
@@ -78,6 +78,13 @@ def to_atlas(document: Document, measurements: Measurements, format_name: str, m
     entries, notes, descending = list[Entry](), list(measurements.notes), 0
     for spectrum, values in zip(measurements.spectra, rows, strict=True):
         nm, scaled = np.asarray(spectrum.wavelengths, dtype=float), values / scale
+        outside = (scaled > HIGHEST) | (scaled < LOWEST)
+        if scale != 1 and outside.any():  # an entry would name the scaled value, which is not in the file
+            at = int(np.argmax(outside))
+            limits = f"[{LOWEST * scale:g}, {HIGHEST * scale:g}] on the scale to {scale:g}"
+            problem = f"values must be in {limits}, got {values[at]:g} at {nm[at]:g} nm"
+            location = document.location.at(spectrum.line, spectrum.name)
+            raise location.error(problem, "correct the value, or the scale")
         if len(nm) > 1 and (nm[1:] < nm[:-1]).all():
             nm, scaled = nm[::-1], scaled[::-1]
             descending += 1

@@ -6,7 +6,7 @@ import hashlib
 import os
 import warnings
 from collections.abc import Mapping
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from uplift.atlas.atlas import Atlas, Entry, Header, Source, merge, skipped_warning
-from uplift.atlas.document import SourceLocation, read_document
+from uplift.atlas.document import Document, SourceLocation, read_document
 from uplift.atlas.formats import art, read_any
 from uplift.atlas.measurements import MEASURED, Measured, to_atlas
 from uplift.common.arrays import StrPath
@@ -69,7 +69,7 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
     if measured not in MEASURED:
         raise unknown_name(str(measured), MEASURED, "scale")
     atlases = []
-    for document in map(read_document, list(map(find_atlas_file, paths))):
+    for document in map(read_named, list(map(find_atlas_file, paths))):
         chosen, found = read_any(document)
         atlases.append(found if isinstance(found, Atlas) else to_atlas(document, found, chosen.name, measured))
     atlas = merge(atlases)
@@ -220,6 +220,14 @@ def _shipped_paths() -> dict[str, Path]:
     except ModuleNotFoundError:
         return {}
     return {path.stem: path for path in sorted(folder.glob("*.txt"))}
+
+
+def read_named(file: StrPath) -> Document:
+    """Read a file that `find_atlas_file` found. Messages have the name of a shipped atlas, not its path."""
+    document = read_document(file)
+    if file not in _shipped_paths().values():
+        return document
+    return replace(document, path=document.stem, location=SourceLocation(document.stem))
 
 
 def find_atlas_file(path: StrPath, folder: StrPath = "") -> StrPath:

@@ -34,6 +34,7 @@ MAX_PRIMARIES_DIFFERENCE = 5e-3
 """Largest difference in linear RGB between primaries that count as equal."""
 MAX_CURVE_DIFFERENCE = 0.5
 """Largest difference in 8-bit sRGB codes between tone curves that count as equal."""
+ALL_SPACES = "tables.names('RGB space')"
 NUMBERS = re.compile(r"[-+\d.eE,;\s]+")
 
 
@@ -126,7 +127,7 @@ def find_space(text: str) -> ImageSpace:
         if (found := find_ocio_space(text)) is not None:
             return found.as_image_space()
         names = _configuration(BUILT_IN).getColorSpaceNames()
-        raise unknown_name(text, (*tables.names("RGB space"), *names), "RGB space") from None
+        raise unknown_name(text, (*tables.names("RGB space"), *names), "RGB space", ALL_SPACES) from None
     return ImageSpace(space.name, primaries_of(space), space.cctf_decoding)
 
 
@@ -140,7 +141,7 @@ def look_up_space(name: str, *, ocio: bool = True) -> RgbSpace:
                 difference = space.matrix - conversion(primaries_of(each), AP0)
                 if np.abs(difference).max() <= MAX_MATRIX_DIFFERENCE:
                     return each
-    raise unknown_name(name, tables.names("RGB space"), "RGB space")
+    raise unknown_name(name, tables.names("RGB space"), "RGB space", ALL_SPACES)
 
 
 def primaries_of(space: RgbSpace) -> Primaries:

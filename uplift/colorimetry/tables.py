@@ -145,7 +145,7 @@ def look_up(kind: str, name: str) -> Any:
     try:
         return table[name]
     except KeyError:
-        raise unknown_name(name, known, kind) from None
+        raise unknown_name(name, known, kind, f"tables.names('{kind}')") from None
 
 
 def _of_temperature(kelvin: float, name: str) -> Any:

@@ -5,7 +5,7 @@ import os
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from uplift.common.text import printable
+from uplift.common.text import listed, printable
 
 StrPath = str | os.PathLike[str]
 
@@ -145,12 +145,8 @@ class UpliftWarning(Diagnostic, UserWarning):
     code = "warning"
 
 
-MAX_CHOICES = 6
-"""Names that are listed where none is near."""
-
-
-def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError:
-    """Make the error for an unknown name of a ``kind``, with the nearest known names as its hint.
+def unknown_name(name: str, known: Iterable[str], kind: str, lister: str = "") -> UnknownNameError:
+    """Make the error for an unknown name of a ``kind``. Its hint has the nearest names, or the ``lister`` of all.
 
     >>> error = unknown_name("srbg", ("sRGB", "P3-D65"), "RGB space")
     >>> print(error.code, "|", error)
@@ -159,11 +155,10 @@ def unknown_name(name: str, known: Iterable[str], kind: str) -> UnknownNameError
     import difflib
 
     by_folded = {entry.casefold(): entry for entry in known}
-    near = difflib.get_close_matches(name.casefold(), by_folded, n=3, cutoff=0.4)
-    if not near and len(by_folded) <= MAX_CHOICES:
-        near = list(by_folded)
+    near = difflib.get_close_matches(name.casefold(), by_folded, n=3)
+    everything = f"{lister} lists all" if lister else f"known: {listed(list(by_folded.values()))}"
     choices = ", ".join(f"'{by_folded[entry]}'" for entry in near)
-    return UnknownNameError(f"unknown {kind} '{name}'", hint=f"did you mean {choices}?" if near else "")
+    return UnknownNameError(f"unknown {kind} '{name}'", hint=f"did you mean {choices}?" if near else everything)
 
 
 @contextlib.contextmanager

@@ -18,11 +18,13 @@ DAY = 86_400.0
 """Seconds without a change after which a temporary file belongs to a writer that was killed."""
 KERNEL = "/proc"
 """Folder of the files of the kernel, where there is one."""
+IMAGES = (b"\x89PNG", b"v/1\x01", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"#?")
+"""First bytes of PNG, OpenEXR, JPEG, both orders of TIFF, and HDR."""
+CONTAINERS = {b"uplift cube": "a cube", b"uplift emission table": "an emission table"}
+"""Kinds of files by their mark in the header of safetensors."""
 FOLDER_HINT = "name a folder to write to"
 PREFIX = ".{}."
 """First characters of temporary files, by the name of the file."""
-IMAGES = (b"\x89PNG", b"\xff\xd8\xff", b"v/1\x01", b"II*\0", b"MM\0*", b"#?RADIANCE", b"GIF8")
-"""First bytes of PNG, JPEG, OpenEXR, TIFF, Radiance HDR and GIF."""
 _TEMPORARIES: set[Path] = set()
 """Temporary files that this process is writing."""
 
@@ -49,6 +51,15 @@ def read_bytes(path: StrPath, error: type[UpliftError], *, limit: int, hint: str
     return data
 
 
+def recognise(data: bytes) -> str:
+    """Name what a file is by its bytes: an image, a cube, an emission table or text; empty for all others."""
+    if data.startswith(IMAGES):
+        return "an image"
+    if data[8:9] == b"{":  # safetensors: the length of a header, and the header as JSON
+        return next((kind for mark, kind in CONTAINERS.items() if mark in data), "")
+    return "" if b"\0" in data else "text"
+
+
 def file_digest(path: StrPath, error: type[UpliftError] = UpliftError) -> str:
     """Return the SHA-256 digest of a regular file in hexadecimal; raise ``error`` for others."""
     import hashlib
@@ -56,15 +67,6 @@ def file_digest(path: StrPath, error: type[UpliftError] = UpliftError) -> str:
     check_regular(path, error, hint="name a file")
     with _reading(path, error, "name a file"), open(path, "rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def content_kind(start: bytes) -> str | None:
-    """Name what a file is by its first bytes, if it is an image, a cube or a text."""
-    if start.startswith(IMAGES):
-        return "an image"
-    if b"\0" in start:
-        return "a cube or an emission table" if start[8:9] == b"{" else None
-    return "a text file" if start else None
 
 
 @contextlib.contextmanager

@@ -3,6 +3,7 @@
 Equal contents have equal bytes.
 """
 
+import contextlib
 import hashlib
 import json
 import os
@@ -14,11 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uplift.common.errors import CubeFileError, OutputError, UpliftError
-from uplift.common.files import atomic_write, check_regular, content_kind
+from uplift.common.files import atomic_write, check_regular, recognise
 from uplift.common.text import format_value, parse_json, printable
 
-START_BYTES = 512
-"""First bytes of a file that tell an image or a text."""
 KEY = "uplift"
 """The only metadata entry: safetensors does not keep the order of several."""
 STORED_TYPES = ("F64", "F32", "U8", "I32", "I16", "U32")
@@ -100,11 +99,10 @@ def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Con
                 raise ValueError("an array of an unknown type")
             tensors = {name: file.get_tensor(name) for name in sorted(file.keys())}
     except (SafetensorError, ValueError, TypeError, OSError, MemoryError) as error:
-        with open(path, "rb") as file:
-            content = content_kind(file.read(START_BYTES))
-        problem = f"is not a {kind.noun} file, or is truncated"
-        if content in ("an image", "a text file"):
-            problem = f"is {content}, not a {kind.noun}"
+        got = _recognise_file(path)
+        if not got or got.endswith(kind.noun):
+            got = "a damaged or another file"
+        problem = f"must be an {kind.format}, got {got}"
         raise CubeFileError(problem, code=kind.foreign, path=path, hint=again) from error
     stated = metadata.get("format") if isinstance(metadata, dict) else None
     if stated != kind.format:
@@ -121,6 +119,13 @@ def load(path: Path, kind: Kind, decode: Callable[[Tensors, dict[str, Any]], Con
         reason = error.problem if isinstance(error, CubeFileError) else f"{type(error).__name__}: {str(error)[:200]}"
         problem = f"is not a valid {kind.noun}: {reason}"
         raise CubeFileError(problem, path=path, hint=again) from error
+
+
+def _recognise_file(path: Path) -> str:
+    """Name what a file is by its first bytes, see `recognise`; empty if they cannot be read."""
+    with contextlib.suppress(OSError), path.open("rb") as file:
+        return recognise(file.read(MAX_TEXT))
+    return ""
 
 
 def _check_readable(metadata: dict[str, Any], kind: Kind, path: Path) -> None:

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from uplift.atlas.atlas import Atlas, merge, skipped_warning
-from uplift.atlas.document import Document, read_document, truncate
+from uplift.atlas.document import Document, truncate
 from uplift.atlas.formats import read_any
 from uplift.atlas.measurements import Measurements, to_atlas
+from uplift.atlas.sources import find_atlas_file, read_named
 from uplift.colorimetry import tables
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, matching_functions
 from uplift.common.arrays import Array, StrPath
@@ -47,7 +48,7 @@ def read_lamps(*paths: StrPath) -> Atlas:
     Powers have no common scale: the largest one of each lamp is 1. `AtlasError` for files of reflectances and lamps
     without power.
     """
-    atlas = merge(map(_read, map(read_document, paths)))
+    atlas = merge(map(_read, map(read_named, map(find_atlas_file, paths))))
     if atlas.skipped:
         warnings.warn(skipped_warning(atlas.skipped, code="lamp-skipped"), stacklevel=2)
     return atlas

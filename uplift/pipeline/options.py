@@ -111,7 +111,7 @@ class Options:
             multiple = f"the range must be a multiple of the step of {self.step:g} nm"
             yield f"{multiple}, got {self.shortest:g} to {self.longest:g}", "use a step of 1"
         if self.neutral == "flat" and self.growth == "neighbours":
-            problem = "neutral='flat' does not apply to growth='neighbours', whose nodes start from their neighbours"
+            problem = "neutral 'flat' does not apply to growth 'neighbours', whose nodes start from their neighbours"
             yield problem, "use another growth"
         if self.dim != AUTO and self.dim < 2:
             yield f"dim must be at least 2, got {format_value(self.dim)}", "use dim=2"

@@ -264,7 +264,10 @@ def _of_one_width(rows: Sequence[Row], location: SourceLocation) -> tuple[Row, .
     for row in rows:
         if len(row) != len(rows[0]):
             problem = f"a row must have {pluralise(len(rows[0]), 'cell')} like the header row, got {len(row)}"
-            raise location.at(row[0].line).error(problem, "fill in the missing cells or remove the row")
+            hint = "fill in the missing cells"
+            if len(row) > len(rows[0]):
+                hint = "put a name that contains the separator in quotes, or remove the other cells"
+            raise location.at(row[0].line).error(problem, hint)
     return tuple(rows)
 
 

@@ -189,7 +189,7 @@ def _samples(wavelengths: Array) -> Samples:
     if len(wavelengths) < 2 or np.abs(wavelengths - even).max() > EVEN:
         raise TextureError(
             "wavelengths of a spectral texture must be at least two and equidistant",
-            hint="write the texture with --wavelengths START:END:STEP",
+            hint="write the texture with equidistant wavelengths",
         )
     return Samples(float(wavelengths[0]), float(wavelengths[-1]), len(wavelengths))
 
@@ -210,6 +210,6 @@ def _multipliers(model: Moments, moments: Array) -> Array:
     if not valid.all():
         raise TextureError(
             "the moments of a texel belong to no reflectance in [0, 1]",
-            hint="write the texture with --depth float, and do not sharpen it",
+            hint="write the texture with depth='float', and do not sharpen it",
         )
     return multipliers
