@@ -13,10 +13,11 @@ from uplift_cli.main import COMMANDS, main
 import uplift
 from benchmarks.__main__ import pages
 from tests.conftest import ROOT
-from tests.examples import BLOCKS, CUBE, examples, examples_by_page
+from tests.examples import BLOCKS, CUBE, examples, examples_by_page, page_examples
 from tests.helpers import warns
 from tests.parts import MITSUBA, need
 from uplift.atlas import formats
+from uplift.samples import sample_path
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 REFERENCE = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
@@ -94,6 +95,15 @@ def test_a_block_has_one_way_to_install():
     for page in PAGES:
         for _, block in BLOCKS.findall(page.read_text("utf-8")):
             assert block.count("pip install") <= 1, page.name
+
+
+def test_pages_whose_examples_use_sample_files_say_so():
+    samples = [path.name for path in sample_path(".").iterdir()]
+    for page in PAGES:
+        text = page.read_text("utf-8")
+        lines = page_examples(text)
+        if any(name in line.split() for name in samples for line in lines):
+            assert "uplift samples" in text, page.name
 
 
 def test_no_two_pages_have_one_title():
