@@ -210,7 +210,7 @@ def command(
         _print_lines(answers, results)
     cubes = list(Path().glob("*.uplift")) if style == "table" and colours["cube_path"] is None else []
     if len(cubes) == 1:
-        say(f"hint: the cube of this folder answers with --cube {cubes[0]}", err=True)
+        say(f"hint: the cube of this folder is used with --cube {cubes[0]}", err=True)
 
 
 def _check(path: str, cube_path: str | None, mode: str, tolerance: float, style: str) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from uplift.common.errors import UpliftWarning
+from uplift.common.text import pluralise
 
 from .console import paragraph
 from .diagnostics import hint_for, warn
@@ -47,4 +48,4 @@ def _describe_outside(cube: Cube) -> str:
     space = smallest_space(spectra, cube.illuminant, cube.observer)
     count, total = len(cube.outside_names), len(table.names) - cube.data.atlas.looks
     kept = f'--space "{space}"' if space else "wider spaces"
-    return f"{count} of {total} entries {'lies' if count == 1 else 'lie'} outside {cube.space}: kept for {kept}"
+    return f"{count} of {pluralise(total, 'entry')} {'lies' if count == 1 else 'lie'} outside {cube.space}: kept for {kept}"

@@ -16,7 +16,7 @@ from uplift.colorimetry.spaces import look_up_space, primaries_of
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.machine import single_threaded_blas
-from uplift.common.text import format_value, listed
+from uplift.common.text import format_value, listed, pluralise
 from uplift.common.version import version
 from uplift.lights.discs import Lamps, lamp_entries
 from uplift.lights.fit import locus_lattice, mix_with_locus, nearest_lights
@@ -118,7 +118,7 @@ def build_emission(
     entries, duplicates = lamp_entries(exact, others, lattice, radiometry)
     if duplicates:
         pairs = listed([f"'{name}' that of '{other}'" for name, other in duplicates])
-        problem = f"{len(duplicates)} lamps left out, with the chromaticity of an earlier one: {pairs}"
+        problem = f"{pluralise(len(duplicates), 'lamp')} left out, with the chromaticity of an earlier one: {pairs}"
         warnings.warn(UpliftWarning(problem, code="entry-duplicate"), stacklevel=STACK_LEVEL)
     return EmissionTable(
         EmissionData(

@@ -13,7 +13,7 @@ from uplift.atlas.atlas import HIGHEST, LOWEST
 from uplift.colorimetry import delta_e_rgb
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import PaletteError, UpliftWarning
-from uplift.common.text import listed
+from uplift.common.text import listed, pluralise
 from uplift.design.palette.colours import screen_matrix
 from uplift.design.palette.equations import equations, solve, unknowns
 from uplift.design.palette.factor import FactorModel
@@ -226,7 +226,8 @@ def write_designed(design: Design, path: StrPath, *, force: bool = False) -> int
         description = f"designed for its colours under {', '.join(lights)}" if lights else "designed"
         entries.append(Entry(material.name, design.palette.sensor.wavelengths, values, description=description))
     if skipped:
-        text = f"{len(skipped)} materials left out of the atlas: reflectance must be in [{LOWEST:g}, {HIGHEST:g}]"
+        count = pluralise(len(skipped), "material")
+        text = f"{count} left out of the atlas: reflectance must be in [{LOWEST:g}, {HIGHEST:g}]"
         warnings.warn(UpliftWarning(f"{text}, but {listed(skipped)}", code="material-skipped"), stacklevel=2)
     if not entries:
         raise PaletteError(
