@@ -1,5 +1,6 @@
 """Settings of the process: streams, signals, and variables that must precede the import of JAX or numpy."""
 
+import codecs
 import contextlib
 import io
 import os
@@ -19,6 +20,8 @@ ENDING = ("SIGTERM", "SIGHUP", "SIGBREAK")
 """Signals that end a command and its worker processes, as well as Ctrl-C."""
 GRACE = 5.0
 """Seconds between Ctrl-C and the end of a command that does not react."""
+SPELLINGS = dict(zip("▁▂▃▄▅▆▇█Δ–−×±", "_.-:=+*#d--x~", strict=True)) | {"²": "^2", "³": "^3", "…": "..."}
+"""Characters of messages and plots of text in ASCII."""
 _CACHES: set[Path] = set()
 """The folder of compiled code that is checked and in use."""
 
@@ -28,7 +31,7 @@ def prepare_process() -> None:
     _open_closed_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # characters that the encoding lacks
+            stream.reconfigure(errors=_respell.__name__)
     for name in ENDING:
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # not under nohup
@@ -46,6 +49,16 @@ def prepare_process() -> None:
         with contextlib.chdir(os.sep), contextlib.suppress(ImportError):
             import matplotlib  # noqa: F401
     sys.warnoptions.append("ignore:resource_tracker:UserWarning")  # of multiprocessing, about a process that was ended
+
+
+def _respell(error: UnicodeError) -> tuple[str, int]:
+    """Spell characters that the encoding of a stream lacks in ASCII."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(SPELLINGS.get(letter, "?") for letter in error.object[error.start : error.end]), error.end
+
+
+codecs.register_error(_respell.__name__, _respell)
 
 
 def _open_closed_streams() -> None:

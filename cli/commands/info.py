@@ -1,6 +1,7 @@
 """``uplift info``: contents of a cube file."""
 
 import re
+import shlex
 from typing import Any
 
 import click
@@ -10,6 +11,13 @@ from ..output.console import print_fields, print_json, say
 
 DIGEST = re.compile(r"([0-9a-f]{16})[0-9a-f]{48}")
 """A SHA-256, whose first digits are shown; JSON has them all."""
+
+
+EMPTY: tuple[Any, ...] = (None, [], {})
+INTERNAL = ("format", "lattice_nodes", "entry_coefficients", "threshold", "debug", "rounds", "prior")
+"""Facts that are in JSON only: options, too, and what a developer looks for."""
+OPTIONS = {"auto_tolerance": "tolerance", "leave_out": "exclude-family", "lights": "light"}
+"""Options of `uplift build` that have another name in Python."""
 
 
 @click.command(
@@ -38,13 +46,39 @@ def print_facts(name: str, fields: dict[str, Any], style: str) -> None:
         return
     provenance = fields.pop("provenance")
     if fields.get("outside"):  # the same names
-        provenance = {key: value for key, value in provenance.items() if key != "left_out"}
-    settings = {f"option {key}": value for key, value in provenance.pop("options", {}).items()}
+        del provenance["left_out"]
+    settings = provenance.pop("options", {})
     looks = {f"look {each['name'].removeprefix('look ')}": _look(each) for each in provenance.pop("looks", ())}
+    facts = fields | looks | provenance
+    if "status" in facts:  # of a cube
+        facts["model"] = facts["model"]["name"]
+        facts["status"] = {status: count for status, count in facts["status"].items() if count}
+        facts["options"] = _as_options(settings)
     say(name)
     print_fields(
-        {key.replace("_", " "): _text(value) for key, value in (fields | looks | provenance | settings).items()}
+        {
+            key.replace("_", " "): _text(value)
+            for key, value in facts.items()
+            if key not in INTERNAL and value not in EMPTY
+        }
     )
+
+
+def _as_options(settings: dict[str, Any]) -> str:
+    """Return recorded parameters of `uplift.build` as options of `uplift build`."""
+    settings.pop("start", None)  # of earlier versions
+    first, last = settings.pop("shortest", 380), settings.pop("longest", 780)
+    words = []
+    for key, value in (settings | {"range": f"{first:g}:{last:g}"}).items():
+        option = "--" + OPTIONS.get(key, key).replace("_", "-")
+        if isinstance(value, bool):
+            words += [option] * value
+        else:
+            values = value if isinstance(value, list) else [value]
+            words += [
+                f"{option} {shlex.quote(f'{each:g}' if isinstance(each, float) else str(each))}" for each in values
+            ]
+    return " ".join(words)
 
 
 def _look(record: dict[str, Any]) -> str:
@@ -63,10 +97,8 @@ def _look(record: dict[str, Any]) -> str:
 
 def _text(value: Any) -> str:
     """Format a value, nested or not, on one line with three significant digits."""
-    if value is None or value in ([], {}):
-        return "none"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
+    if isinstance(value, int):
+        return f"{value:,}"
     if isinstance(value, dict):
         return ", ".join(f"{key} {_text(inner)}" for key, inner in value.items())
     if isinstance(value, list):

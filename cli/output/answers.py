@@ -61,7 +61,7 @@ def hex_code(cube: Cube, rgb: Array) -> str:
 
 def format_rgb(rgb: Iterable[float]) -> str:
     """Return numbers with six decimals, separated by spaces."""
-    return " ".join(f"{value:.6f}" for value in rgb)
+    return " ".join(f"{round(value, 6) + 0.0:.6f}" for value in rgb)  # -0.0 + 0.0 is 0.0
 
 
 def sparkline(values: Array, width: int = 40) -> str:

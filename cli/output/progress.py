@@ -45,5 +45,5 @@ def progress_bar(title: str = "", *, quiet: bool = False, verbose: bool = False)
 
     columns = (TextColumn("{task.description}"), BarColumn(bar_width=None), TaskProgressColumn(), TimeElapsedColumn())
     with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(title, total=None)
+        task = bar.add_task(title or "preparing", total=None)
         yield lambda event: bar.update(task, description=describe(event), completed=event.done, total=event.total)
