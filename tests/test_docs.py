@@ -25,6 +25,7 @@ COVERAGE = (ROOT / "docs" / "coverage.md").read_text(encoding="utf-8")
 CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 TUTORIAL = (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8")
 PYTHON = (ROOT / "docs" / "reference" / "python.md").read_text(encoding="utf-8")
+CODE = ("uplift", "cli", "benchmarks", "tools")
 LINES = [each.split(" > ")[0].split(" | ")[0] for each in examples() if each.startswith("uplift ")]
 
 
@@ -126,11 +127,29 @@ def test_make_targets_exist():
             assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
 
 
+FILE = r"(?:uplift|cli|tests|benchmarks|tools|docs|atlases)/[\w./-]*\w"
+
+
+def missing(names):
+    """Files that are neither in the repository nor in the package; NAME and PAGE in a name stand for any."""
+    names = [name for name in names if not re.search("NAME|PAGE", name)]
+    return [name for name in names if not (ROOT / name).exists() and not (ROOT / "uplift" / name).exists()]
+
+
 def test_files_that_the_pages_name_exist():
     for page in [*PAGES, ROOT / "CONTRIBUTING.md"]:
-        named = re.findall(r"`((?:uplift|cli|tests|benchmarks|tools|docs|atlases)/[\w./-]+)`", page.read_text("utf-8"))
-        missing = [name for name in named if "NAME" not in name and not (ROOT / name).exists()]
-        assert missing == [], page.name
+        assert missing(re.findall(rf"`({FILE}|[\w-]+/[\w./-]+\.py)/?`", page.read_text("utf-8"))) == [], page.name
+
+
+def test_files_and_names_in_docstrings_exist():
+    """A name in backticks also stands somewhere outside of them."""
+    texts = {path: path.read_text("utf-8") for folder in CODE for path in (ROOT / folder).rglob("*.py")}
+    words = {path.stem for path in texts}
+    words |= {word for text in texts.values() for word in re.findall(r"\w+", re.sub("`[^`]*`", "", text))}
+    for path, text in texts.items():
+        names = re.findall(r"(?<!`)`([A-Za-z_][\w.]*?(?<!\.py)(?<!\.toml))`(?!`)", text)
+        assert [each for each in names if not words.issuperset(each.split("."))] == [], path
+        assert missing(re.findall(rf"\b{FILE}", text)) == [], path
 
 
 REASONS = ("background", "not done", "not offered", "cannot be repeated")
