@@ -48,4 +48,5 @@ def _describe_outside(cube: Cube) -> str:
     space = smallest_space(spectra, cube.illuminant, cube.observer)
     count, total = len(cube.outside_names), len(table.names) - cube.data.atlas.looks
     kept = f'--space "{space}"' if space else "wider spaces"
-    return f"{count} of {pluralise(total, 'entry')} {'lies' if count == 1 else 'lie'} outside {cube.space}: kept for {kept}"
+    verb = "lies" if count == 1 else "lie"
+    return f"{count} of {pluralise(total, 'entry')} {verb} outside {cube.space}: kept for {kept}"
