@@ -113,25 +113,30 @@ def _check(
     return record, rebuilt, error
 
 
+def _short(value: float) -> str:
+    """Format a number with one digit and a short exponent."""
+    return f"{value:.0e}".replace("e-0", "e-") if value else "0"
+
+
 def _print_table(records: Sequence[dict[str, Any]]) -> None:
     from rich.text import Text
 
     from uplift.report.regression import LIMITS
 
-    headings = {"rgb": "RGB", "spectra_max": "spectra", "spectra_rms": "rms"}
-    measures = [headings.get(name, name.replace("delta_e_", "ΔE ")) for name in LIMITS]
-    table = make_table(("cube", "verdict", "atlas", "nodes"), measures)
+    headings = {"rgb": "RGB", "spectra_max": "spectra", "spectra_rms": "rms", "delta_e_D65": "ΔE D65"}
+    measures = [headings.get(name, name.removeprefix("delta_e_")) for name in LIMITS]
+    table = make_table(("cube", "result", "atlas", "nodes"), measures)
     for record in records:
         failures = record["failures"]
         cells = dict.fromkeys(("atlas-changed", "status", *LIMITS), "–")
         if record["measures"]:
             cells["atlas-changed"] = "changed" if "atlas-changed" in failures else "same"
             cells["status"] = "differs" if "status" in failures else "same"
-            cells |= {name: f"{record['measures'][name]:.0e}" for name in LIMITS}
+            cells |= {name: _short(record["measures"][name]) for name in LIMITS}
         styled = (Text(text, style="bold red" if name in failures else "") for name, text in cells.items())
         verdict = Text("passed", style="green") if record["passed"] else Text("FAILED", style="bold red")
         table.add_row(record["cube"], verdict, *styled)
-    table.add_row("limit", "", "same", "same", *(f"{limit:.0e}" for limit in LIMITS.values()), style="dim")
+    table.add_row("limit", "", "same", "same", *map(_short, LIMITS.values()), style="dim")
     show(table)
     for record in records:
         for problem in (*record["atlas_changed"], *record["notes"]):

@@ -14,7 +14,7 @@ from .. import options
 from ..ingredients import SpectrumResolver
 from ..inputs import check_range, find_input_space
 from ..output.answers import coordinates, describe_coordinates, format_rgb, hex_code, patch, print_spectrum
-from ..output.console import print_fields, print_json, say
+from ..output.console import has_colours, make_table, print_json, say, show
 from ..output.diagnostics import warn
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
@@ -253,6 +253,7 @@ def command(
 
 def _print_theories(cube: Cube, names: tuple[str, ...], parts: Array, spectra: Array, method: str, style: str) -> None:
     import numpy as np
+    from rich.text import Text
 
     from uplift.colorimetry.gamut import map_to_gamut
     from uplift.design.mixing.theories import mixers
@@ -264,8 +265,15 @@ def _print_theories(cube: Cube, names: tuple[str, ...], parts: Array, spectra: A
         rows = [{"theory": title, **_colour(cube, rgb)} for title, rgb in mixed.items()]
         print_json({"names": names, "theories": rows}, indent=None)
         return
-    patches = {title: patch(cube, rgb) for title, rgb in mixed.items()}
-    print_fields({title: f"{hex_code(cube, rgb)}  {format_rgb(rgb)}" for title, rgb in mixed.items()}, patches)
+    table = make_table()
+    table.add_column("theory")
+    for heading in ("hex", "linear RGB"):
+        table.add_column(heading, no_wrap=True)
+    for title, rgb in mixed.items():
+        code = hex_code(cube, rgb)
+        cell = Text(code).append("        " * has_colours(), style=f"on {code}")
+        table.add_row(title, cell, format_rgb(rgb))
+    show(table)
 
 
 def _colour(cube: Cube, rgb: Array) -> dict[str, Any]:

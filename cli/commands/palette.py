@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from uplift.design.palette.design import Design, Matrix
     from uplift.design.palette.palette import Palette, SpectrumSpec
 
-LEGEND = "requested, obtained, factor model; ΔE00 of the obtained colour, of the model. * designed"
+LEGEND = "requested, obtained, factor model, ΔE00 of obtained/model; * designed"
 
 
 @click.command(
@@ -133,7 +133,7 @@ def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
     coloured = has_colours()
     table = make_table(("material",))
     for light in design.palette.lights:
-        table.add_column(light.name + "*" * light.designed)
+        table.add_column(light.name + "*" * light.designed, no_wrap=True)
     for row, material in enumerate(design.palette.materials):
         cells = []
         for at in ((row, column) for column in range(len(design.palette.lights))):
@@ -144,7 +144,7 @@ def _print_table(design: Design, colours: Matrix, unmet: Sequence[str]) -> None:
                 cell.append("    " if coloured else code, style=f"on {code}" if coloured else "")
                 cell.append(" ")
             error = f"{colours.delta_e[at]:.2f}" if has_goal else "–"
-            cells.append(cell.append(f" {error}, {colours.model_error[at]:.2f}"))
+            cells.append(cell.append(f"{error}/{colours.model_error[at]:.2f}"))
         table.add_row(material.name + "*" * material.designed, *cells)
     show(table)
     say()

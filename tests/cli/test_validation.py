@@ -94,7 +94,7 @@ file-not-found diff {} {} wood.png none.png -o x.html
 unknown-name diff {} {} -o x.html --light none
 unknown-name diff {} {} wood.png --input-space none -o x.html
 file-not-found info none.uplift
-file-not-found lights build --atlas macbeth --atlas none.csv
+file-not-found lights build --atlas none.csv
 unknown-name lights build --space none
 unknown-name lights build --observer none
 file-not-found lights info none.uplift --plot x.png --html x.html
