@@ -80,11 +80,11 @@ class ColourSource:
         empty = True
         for rows in _row_blocks(file, name):
             colours = []
-            for line, row in rows:
+            for line, text, row in rows:
                 colour = _parse(row[:1] if row[0].startswith("#") else row)
                 if colour is None:
-                    raise _not_a_colour(row, name, line)
-                self._check_range(colour, name, line, bounded)
+                    raise _not_a_colour(text, name, line)
+                self._check_range(colour, text, name, line, bounded)
                 colours.append(colour)
             if colours:
                 empty = False
@@ -92,12 +92,12 @@ class ColourSource:
         if empty:
             raise ColourError("has no colours", path=name, hint="give lines of r,g,b or of hex colours")
 
-    def _check_range(self, colour: Colour, name: str, line: int, bounded: bool) -> None:
+    def _check_range(self, colour: Colour, text: str, name: str, line: int, bounded: bool) -> None:
         """Check the range as the cube does, but report the line."""
         from uplift.colorimetry.sensor import SLACK
 
         numbers, encoded = colour
-        values = "(" + ", ".join(f"{number:g}" for number in numbers) + ")"
+        values = format_value(text)
         if self.encoded or encoded:
             if not all(0 <= number <= 255 for number in numbers):
                 problem = f"8-bit codes must be in [0, 255], got {values}"
@@ -153,8 +153,8 @@ def find_colours(
     return ColourSource(colour, input_path, xyz, encoded, space)
 
 
-def _row_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, list[str]]]]:
-    """Yield line numbers and cells in blocks, each as soon as it can be read: a stream may never end."""
+def _row_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, str, list[str]]]]:
+    """Yield line numbers, texts and cells in blocks, each as soon as it can be read: a stream may never end."""
     decoder = io.IncrementalNewlineDecoder(codecs.getincrementaldecoder("utf-8-sig")(), translate=True)
     read = getattr(file, "read1", file.read)
     first, rest, at_end = 1, "", False
@@ -169,8 +169,8 @@ def _row_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, list[str
         for line, text in numbered:
             if len(text) > MAX_LINE:
                 raise ColourError(f"lines must not exceed {MAX_LINE:,} characters", path=name, line=line, hint=TABLE)
-        rows = ((line, _cells(text, name, line)) for line, text in numbered[: None if at_end else -1])
-        yield [(line, row) for line, row in rows if row]
+        rows = ((line, text.strip(), _cells(text, name, line)) for line, text in numbered[: None if at_end else -1])
+        yield [(line, text, row) for line, text, row in rows if row]
         first += len(lines)
 
 
@@ -203,7 +203,7 @@ def _parse_words(words: Sequence[str]) -> list[Colour]:
         length = 3 if len(numbers) == 3 and None not in numbers else 1
         colour = _parse(parts[:length])
         if colour is None:
-            raise _not_a_colour(parts)
+            raise _not_a_colour(" ".join(parts[:4]))
         colours.append(colour)
         parts = parts[length:]
     return colours
@@ -225,5 +225,5 @@ def _number(word: str) -> float | None:
         return None
 
 
-def _not_a_colour(parts: Sequence[str], path: str | None = None, line: int | None = None) -> ColourError:
-    return ColourError(f"{format_value(' '.join(parts[:4]))} is not a colour", path=path, line=line, hint=SYNTAX)
+def _not_a_colour(text: str, path: str | None = None, line: int | None = None) -> ColourError:
+    return ColourError(f"{format_value(text)} is not a colour", path=path, line=line, hint=SYNTAX)

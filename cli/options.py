@@ -247,10 +247,7 @@ PIXELS = "clip", "as images often have a few, which are counted"
 def out_of_gamut(default: str, why: str, subject: str = "colours", name: str = "method") -> Decorator:
     """``--out-of-gamut``: names of `uplift.colorimetry.gamut.METHODS`, which is not imported here."""
     methods = ("error", "clip", "scale", "desaturate", "desaturate-oklab")
-    text = (
-        f"Treatment of {subject} outside [0, 1]: raise an error, clip, darken, or desaturate at constant luminance and "
-        f"dominant wavelength or at constant lightness and hue of Oklab. [default: {default}, {why}]"
-    )
+    text = f"Treatment of {subject} outside [0, 1]; 'uplift help gamut' describes it. [default: {default}, {why}]"
     return choice("--out-of-gamut", *methods, name=name, default=default, help=text, show_default=False)
 
 

@@ -1,5 +1,6 @@
 """The documentation is valid: its commands and options exist, its Python runs, its links resolve."""
 
+import fnmatch
 import itertools
 import re
 import shlex
@@ -196,3 +197,12 @@ def test_the_tutorial_runs(tmp_path, monkeypatch):
     written = {path.name for path in tmp_path.iterdir()}
     assert written >= {"orange.png", "macbeth-32.html", "chart.exr", "chart-moments.exr", "fl11.png"}
     assert uplift.load("macbeth-32.uplift").dim == 32
+
+
+def test_pages_that_use_a_sample_file_say_where_it_comes_from():
+    samples = {path.name for path in sample_path(".").iterdir()}
+    for name, lines in examples_by_page().items():
+        words = {word for line in lines for word in re.split(r"[\s='\":]+", line)}
+        used = {sample for word in words for sample in fnmatch.filter(samples, word)}
+        if name.endswith(".md") and used:
+            assert "uplift samples" in (ROOT / name).read_text(encoding="utf-8"), f"{name}: {used}"

@@ -38,6 +38,10 @@ Without --light, 'relight', 'bounds' and 'advise' take A, FL11 and HP1, under wh
 'diff' take the lights of ordinary scenes, D65, A, FL2, FL11 and LED-B3, and 'report' adds FL7, which builds do not use.
 'compare' has a smooth set and a spiky one, 'wavelengths' the illuminant of sRGB, and 'query' none: errors cost time.
 """
+OCIO_SPACES = """
+Spaces of the configuration $OCIO, or else of OpenColorIO's built-in ACES studio configuration, are valid too, and for
+--input-space x,y of red, green, blue and white.
+"""
 Part = str | Mapping[str, str]
 """A paragraph, or a table of names and their meanings."""
 
@@ -98,6 +102,14 @@ def _illuminants() -> list[Part]:
     return [DESCRIPTIONS, f"Names in words: {words}. {TEMPERATURES}", DEFAULT_LIGHTS, *_names("illuminant")]
 
 
+def _spaces() -> list[Part]:
+    from uplift.colorimetry.tables import SHORT_NAMES, names
+
+    words = ", ".join(f"{name} ({space})" for name, space in SHORT_NAMES.items())
+    listed = ", ".join(names("RGB space"))
+    return [f"Short names: {words}.", "Names of colour-science, some of them from OpenColorIO:", listed, OCIO_SPACES]
+
+
 def _names(kind: str) -> list[Part]:
     from uplift.colorimetry.tables import names
 
@@ -110,6 +122,6 @@ TOPICS: dict[str, tuple[str, Callable[[], list[Part]]]] = {
     "illuminants": ("names of lights: --light, --illuminant", _illuminants),
     "modes": ("ways to interpolate a cube: query --mode", lambda: [MODE_MEANINGS]),
     "observers": ("names of observers and cameras: --observer", lambda: [*_names("observer"), *_names("camera")]),
-    "spaces": ("names of RGB spaces: --space, --input-space", lambda: _names("RGB space")),
+    "spaces": ("names of RGB spaces: --space, --input-space", _spaces),
 }
 """Summary and parts by topic. No topic has the name of a command."""

@@ -42,14 +42,15 @@ HINTS = {
     "texture-differs": "use --resume with --force to convert the image again, or choose another name",
 }
 """Hints in place of the library's, by the code of an error or a warning."""
-LISTS = {
+IN_COMMANDS = {
+    "an emission table": "'uplift lights texture'",
     "shipped_atlases()": "'uplift atlas'",
     "tables.names('RGB space')": "'uplift help spaces'",
     "tables.names('camera')": "'uplift help observers'",
     "tables.names('illuminant')": "'uplift help illuminants'",
     "tables.names('observer')": "'uplift help observers'",
 }
-"""Commands in place of the functions that hints of the library name."""
+"""Commands in place of what hints of the library name."""
 PARAMETER = re.compile(r"""(?<![\w'"-])([a-z_]+)=(True|[\w.]+|'[^']*'|"[^"]*")""")
 """A parameter of Python and its value."""
 QUOTES = "'\""
@@ -64,7 +65,7 @@ def hint_for(diagnostic: Diagnostic) -> str:
     if diagnostic.code in HINTS:
         return HINTS[diagnostic.code]
     hint = PARAMETER.sub(_as_option, diagnostic.hint)
-    for function, command in LISTS.items():
+    for function, command in IN_COMMANDS.items():
         hint = hint.replace(function, command)
     return hint
 

@@ -159,7 +159,7 @@ def test_lines_and_their_numbers_do_not_depend_on_the_blocks(ask, run, table, mo
     answers = ask("query", "--input", path)
     np.testing.assert_array_equal([answer["rgb"] for answer in answers], [[0.1, 0.2, 0.3], [0.5] * 3])
     path.write_bytes(path.read_bytes() + b"\r\n0.5,0.5")
-    assert f"{path}:6: '0.5 0.5' is not a colour" in run("query", "--input", path, code=2).stderr
+    assert f"{path}:6: '0.5,0.5' is not a colour" in run("query", "--input", path, code=2).stderr
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="needs /dev/zero")

@@ -27,6 +27,9 @@ PAST_TENSE = {
 }
 """Words for messages, by the names in `uplift.colorimetry.gamut.METHODS`."""
 COLOUR_TYPES = {"uint8", "uint16", "half", "float", "double"}
+BRIGHT = 10.0
+"""Change of a component by gamut mapping that makes lights of an image likely."""
+LIGHTS = "if they are lights, convert them with an emission table"
 HALF_ROUNDING = 1e-3
 """Linear RGB by which half floats, converted or divided by one another, can leave [0, 1] by rounding."""
 SRGB_SPACE = ImageSpace("sRGB", SRGB, decode)
@@ -144,17 +147,15 @@ class Counts:
     """
 
     pixels: int = 0
-    outside: int = _counted("pixels-out-of-gamut", "lie outside [0, 1]: {mapped}, a component by up to {change:.3g}")
-    not_finite: int = _counted("pixels-not-finite", "are not finite: NaN is replaced by 0, infinity is clamped")
-    unrealisable: int = _counted("pixels-unrealisable", "are unrealisable colours: their spectra have less chroma")
+    outside: int = _counted("pixels-out-of-gamut", "outside [0, 1]: {mapped}, a component by up to {change:.3g}")
+    not_finite: int = _counted("pixels-not-finite", "not finite: NaN is replaced by 0, infinity is clamped")
+    unrealisable: int = _counted("pixels-unrealisable", "of unrealisable colours: their spectra have less chroma")
     max_change: float = 0.0
-    painted_outside: int = _counted("painted-pixels-out-of-gamut", "lie outside [0, 1] after painting: {mapped}")
+    painted_outside: int = _counted("painted-pixels-out-of-gamut", "outside [0, 1] after painting: {mapped}")
     not_lights: int = _counted(
-        "pixels-not-lights", "have colours that no light has: moved towards white of the same luminance"
+        "pixels-not-lights", "of colours that no light has: moved towards white of the same luminance"
     )
-    too_bright: int = _counted(
-        "pixels-too-bright", "are brighter than half floats can store: clamped; use 32-bit channels"
-    )
+    too_bright: int = _counted("pixels-too-bright", "brighter than half floats can store: clamped; use 32-bit channels")
 
     def __add__(self, other: "Counts") -> "Counts":
         """Counts of both."""
@@ -184,6 +185,7 @@ class Counts:
                 f"{each.metadata['text'].format(**words)}",
                 code=each.metadata["code"],
                 path=path,
+                hint=LIGHTS if each.name == "outside" and self.max_change > BRIGHT else "",
             )
             for each in found
         )
