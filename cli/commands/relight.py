@@ -135,6 +135,7 @@ def command(
     else:
         with progress_bar("computing spectra"):
             packaged = load()
+            pictures = read_pictures(paths, load(cube_path).data.sensor, **pixels)
             extra, notes = _cube_of_user(cube_path, atlases)
             cubes = {}
             if extra is None or _setting(extra) == _setting(packaged):
@@ -142,8 +143,6 @@ def command(
             if extra is not None:
                 stems = [Path(path).stem for path in atlases or [cube_path or ""]]
                 cubes[f"{SPECTRAL} with {', '.join(stems)}"] = extra
-            first, *_ = cubes.values()
-            pictures = read_pictures(paths, first.data.sensor, **pixels)
             relit = []
             for path, picture in zip(paths, pictures, strict=True):
                 image = relight(

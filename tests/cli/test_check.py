@@ -70,7 +70,7 @@ def reported(result, shown):
 def test_failed_cubes_do_not_stop_the_others(run, shown, home, stored, modified, other_lattice, monkeypatch):
     monkeypatch.setenv("COLUMNS", "1000")  # one line for each cube, however long its path is
     (home / "text.uplift").write_text("no cube")
-    result = run("check", "none.uplift", "text.uplift", other_lattice, modified, stored, code=1)
+    result = run("check", "none.uplift", "text.uplift", other_lattice, modified, stored, code=2)
     verdicts = {line.split()[0]: line.split()[1] for line in result.stdout.splitlines() if ".uplift" in line}
     failed = dict.fromkeys(("none.uplift", "text.uplift", str(other_lattice), str(modified)), "FAILED")
     assert verdicts == failed | {str(stored): "passed"}
@@ -82,7 +82,7 @@ def test_failed_cubes_do_not_stop_the_others(run, shown, home, stored, modified,
 
 
 def test_json_has_the_errors_of_failed_cubes(run, other_lattice):
-    result = run("check", other_lattice, "--format", "json", code=1)
+    result = run("check", other_lattice, "--format", "json", code=2)
     (failed,) = json.loads(result.stdout)
     assert (failed["passed"], failed["failures"], failed["measures"]) == (False, ["cube-file"], {})
     assert (failed["error"]["code"], failed["error"]["where"], result.stderr) == ("cube-file", str(other_lattice), "")
@@ -90,7 +90,7 @@ def test_json_has_the_errors_of_failed_cubes(run, other_lattice):
 
 def test_update_replaces_failed_cubes_that_can_be_rebuilt(run, shown, stored, modified, other_lattice):
     before = stored.read_bytes()
-    result = run("check", "-q", "--update", "none.uplift", stored, modified, other_lattice, code=1)
+    result = run("check", "-q", "--update", "none.uplift", stored, modified, other_lattice, code=2)
     assert [failure.error.code for failure in shown] == ["file-not-found"]
     assert result.stderr.splitlines()[1:] == [f"{modified}: replaced", f"{other_lattice}: replaced"]
     assert before == stored.read_bytes() == modified.read_bytes() == other_lattice.read_bytes()
@@ -101,7 +101,7 @@ def test_atlases_are_searched_for_in_given_folders(run, shown, home, monkeypatch
     monkeypatch.setattr("uplift.pipeline.rebuild.shipped_atlases", tuple)
     with pytest.warns(uplift.UpliftWarning):
         uplift.build(macbeth, dim=3, coefficients=4).save(home / "cube.uplift")
-    result = run("check", "cube.uplift", code=1)
+    result = run("check", "cube.uplift", code=2)
     assert reported(result, shown) == [("atlas-not-found", "cube.uplift")]
     assert "macbeth.txt" in shown.pop().error.problem
     (home / "there").mkdir()

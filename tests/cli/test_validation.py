@@ -129,8 +129,8 @@ colour query 0.1 0.2 0.3 0.4
 colour query #cc3319 0.5
 rgb-out-of-gamut query 0.1 1.2 0.3
 rgb-out-of-gamut query 0.3 -.1 0.3
-rgb-out-of-gamut query nan 0.2 0.3
-rgb-out-of-gamut query 204 51 25
+colour query nan 0.2 0.3
+rgb-like-codes query 204 51 25
 invalid-codes query --encoded 256 0 0
 invalid-codes query --encoded -1 0 0
 invalid-codes query --encoded nan 0 0 --out-of-gamut clip

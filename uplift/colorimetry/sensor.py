@@ -13,6 +13,8 @@ from uplift.common.text import format_value
 
 SLACK = 1e-9
 """Distance from [0, 1] that counts as rounding."""
+MIN_CODE = 10
+"""Largest of three whole numbers from which they are taken for 8-bit codes."""
 
 
 def in_unit_cube(rgb: Values) -> Mask:
@@ -40,7 +42,7 @@ def raise_out_of_gamut(outside: Array) -> NoReturn:
     if not np.isfinite(colour).all():
         raise ColourError(f"{text} is not finite", hint="pass numbers in [0, 1]")
     problem = f"{text} lies outside [0, 1]"
-    if (colour == np.round(colour)).all() and colour.min() >= 0 and 1 < colour.max() <= 255:
+    if (colour == np.round(colour)).all() and colour.min() >= 0 and MIN_CODE <= colour.max() <= 255:
         raise ColourError(problem, code="rgb-like-codes", hint="convert 8-bit codes with Cube.decode")
     hint = "map it with uplift.colorimetry.gamut.map_to_gamut"
     raise ColourError(problem, code="rgb-out-of-gamut", hint=hint)
