@@ -39,7 +39,7 @@ def collect(root: Path = ROOT) -> list[dict[str, Any]]:
     for path in sorted((root / "uplift").rglob("*.py")):
         package = ".".join(path.relative_to(root).parent.parts)
         for name, code in codes(ast.parse(path.read_text(encoding="utf-8"))):
-            kind = "warning" if name.endswith(("Warning", "warn", "_warn")) else "error"
+            kind = "warning" if "warn" in name.lower() else "error"
             found.setdefault((code, kind), set()).add(package)
     return [
         {"code": code, "kind": kind, "packages": sorted(packages)} for (code, kind), packages in sorted(found.items())

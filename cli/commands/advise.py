@@ -69,16 +69,18 @@ def command(
         before = advice.uncertainty(cube, colours, lit)
         chosen, after = advice.advise(before, count)
     rgb = colours.rgb[[each.colour for each in chosen]]
+    codes = hex_codes(rgb, sensor)
     if plot_path is not None:
         from uplift.viz.figure import write_figure
 
         shown = paths[:SHOWN]
         pictures = {path: each.rgb for path, each in zip(shown, read_pictures(shown, sensor, **pixels), strict=True)}
-        chips = [(f"ΔE00 −{each.gain:.2g}", colour) for each, colour in zip(chosen, rgb, strict=True)]
+        texts = [f"{code}\nlowers the mean\nby ΔE00 {each.gain:.2f}" for code, each in zip(codes, chosen, strict=True)]
+        chips = list(zip(texts, rgb, strict=True))
         write_figure(advice.draw_advice(cube, pictures, lit, chips), plot_path, force=force)
     stages = zip(lit, before.by_light(), after.by_light(), strict=True)
     errors = {each.name: {"before": now, "after": then} for each, now, then in stages}
-    swatches = [{"hex": code, **asdict(each)} for code, each in zip(hex_codes(rgb, sensor), chosen, strict=True)]
+    swatches = [{"hex": code, **asdict(each)} for code, each in zip(codes, chosen, strict=True)]
     if style == "json":
         print_json({"images": paths, "cube": cube_path, "lights": errors, "swatches": swatches})
         return

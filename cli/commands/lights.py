@@ -103,6 +103,9 @@ def build(files: tuple[str, ...], output: str | None, space: str, observer: str,
       uplift lights info
       uplift lights info --plot lights.png --html lights.html
       uplift lights info lights.uplift --format json
+
+    Expected errors are ΔE00 of the ColorChecker under the light, over the nodes of the table; the page has those of
+    random lights, which differ.
     """,
 )
 @table_argument

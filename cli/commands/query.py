@@ -290,7 +290,7 @@ def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
         fields["realisable"] = "no: the spectrum has less chroma, because no reflectance has this colour"
     if result.light_xyz:
         relit = answers.light_colours(result).items()
-        fields["sRGB under"] = ", ".join(f"{code} {name} ({format_rgb(lit)})" for name, (lit, code) in relit)
+        fields["sRGB under"] = ", ".join(f"{name}: {code} ({format_rgb(lit)})" for name, (lit, code) in relit)
     if result.entry is None:
         fields["atlas entry"] = "none, and none is near: unlike the atlas" if result.unlike_atlas else "none"
     else:

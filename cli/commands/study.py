@@ -24,6 +24,22 @@ MACBETH = "macbeth"
 Row = Mapping[str, Any]
 
 
+HEADINGS = {
+    "rms_mean": "mean rms",
+    "rms_most": "max rms",
+    "largest": "max ΔR",
+    "light_mean": "ΔE00 FL11",
+    "light_most": "max FL11",
+    "own_mean": "ΔE00 build light",
+    "own_most": "max build light",
+    "rgb_radius": "RGB radius",
+    "lab_radius": "ΔE*ab radius",
+    "delta_e_mean": "ΔE00 FL11",
+    "delta_e_most": "max FL11",
+}
+"""Columns of the sensitivity study by the keys of its records."""
+
+
 @click.group(
     "study",
     cls=options.Group,
@@ -42,7 +58,7 @@ def command() -> None:
     """Hold the subcommands."""
 
 
-def _print(style: str, records: Any, rows: Sequence[Row], table: Sequence[Row]) -> None:
+def _print(style: str, records: Any, rows: Sequence[Row], table: Sequence[Row], title: str | None = None) -> None:
     """Print JSON of the records, CSV of rows, or a table, in which floats have three digits."""
     from uplift.lab.timing import records_csv
 
@@ -51,13 +67,13 @@ def _print(style: str, records: Any, rows: Sequence[Row], table: Sequence[Row]) 
     elif style == "csv":
         print_csv_text(records_csv(rows))
     else:
-        _print_table(table)
+        _print_table(table, title)
 
 
-def _print_table(rows: Sequence[Row]) -> None:
+def _print_table(rows: Sequence[Row], title: str | None = None) -> None:
     texts = [key for key, value in rows[0].items() if isinstance(value, str)]
     numbers = [key for key in rows[0] if key not in texts]
-    table = make_table(texts, numbers)
+    table = make_table(*([HEADINGS.get(key, key) for key in keys] for keys in (texts, numbers)), title=title)
     for row in rows:
         cells = ("" if row[key] is None else row[key] for key in (*texts, *numbers))
         table.add_row(*(f"{cell:.3g}" if isinstance(cell, float) else str(cell) for cell in cells))
@@ -107,7 +123,7 @@ def moments(files: tuple[str, ...], max_moments: int, output: str | None, style:
         for count, row in enumerate(results)
     ]
     records = study.records()
-    _print(style, records, records, table)
+    _print(style, records, records, table, "mean / largest ΔE76 under D65")
 
 
 @command.command(

@@ -120,7 +120,7 @@ class SkippedEntry:
     line: int | None = None
 
 
-def skipped_warning(skipped: Sequence[SkippedEntry], code: str = "entry-skipped") -> UpliftWarning:
+def skipped_warning(skipped: Sequence[SkippedEntry], *, code: str) -> UpliftWarning:
     """Create one warning for all skipped entries, with the location and the reason of the first one."""
     first, *others = skipped
     problem = f"skipped: {first.reason}"

@@ -74,7 +74,7 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
         atlases.append(found if isinstance(found, Atlas) else to_atlas(document, found, chosen.name, measured))
     atlas = merge(atlases)
     if atlas.skipped:
-        warnings.warn(skipped_warning(atlas.skipped), stacklevel=2)
+        warnings.warn(skipped_warning(atlas.skipped, code="entry-skipped"), stacklevel=2)
     return atlas
 
 

@@ -29,7 +29,7 @@ FORMAT = "uplift cube"
 VERSION = 4
 FEATURES = ("debug", "errors", "left-out", "camera", "sparse", "outside", "outside-measured")
 """Optional parts of a file, in the order in which the metadata list them. Earlier readers refuse a new one."""
-KIND = Kind(FORMAT, (3, VERSION), "cube", "not-a-cube", FEATURES)
+KIND = Kind(FORMAT, (3, VERSION), "cube", foreign="not-a-cube", features=FEATURES)
 """Versions that are read. The entries of version 3 have as many coefficients as the nodes."""
 MAX_POINTS = 1 << 27
 """Nodes of the largest lattice of a sparse file, as a small file must not claim all memory."""

@@ -173,13 +173,13 @@ def _warn_of_missed(looks: Sequence[Look], records: Sequence[Mapping[str, Any]])
             impossible.append((look, missed))
         elif missed:
             unreached.append((look, missed))
-    _warn_of_worst(impossible, "look-impossible", "no reflectance meets it")
+    _warn_of_worst(impossible, "no reflectance meets it", code="look-impossible")
     problem = "the coefficients of its spectrum do not reach it"
-    _warn_of_worst(unreached, "look-not-reached", problem, hint="use more entry_coefficients")
+    _warn_of_worst(unreached, problem, code="look-not-reached", hint="use more entry_coefficients")
 
 
 def _warn_of_worst(
-    missed: Sequence[tuple[Look, Sequence[Mapping[str, Any]]]], code: str, problem: str, hint: str = ""
+    missed: Sequence[tuple[Look, Sequence[Mapping[str, Any]]]], problem: str, *, code: str, hint: str = ""
 ) -> None:
     """Warn of looks and the lights under which they are missed, by the one that is missed by most."""
     if not missed:

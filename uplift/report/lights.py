@@ -17,7 +17,7 @@ from uplift.viz.figure import styled, to_page_svg
 from uplift.viz.html import render
 from uplift.viz.scatter import new_panels
 
-MIN_DISTANCE = 1e-9  # smaller distances in u′v′ are rounding errors and are counted in the lowest bin
+MIN_DISTANCE = 1e-12  # smaller distances in u′v′ are rounding errors and are counted in the lowest bin
 PEAKS = 40  # exponent of the random powers: large ones leave few wavelengths, so that colours reach the spectral locus
 PANEL = (4.2, 4.05)  # inches of a diagram; the page scales it to its columns
 MARGINS = {"left": 0.11, "right": 0.98, "bottom": 0.11, "top": 0.98}

@@ -202,6 +202,7 @@ function draw() {
   gl.uniform1f(at("share"), share);
   gl.uniform1f(at("exposure"), 2 ** byId("exposure").value);
   gl.uniform1f(at("split"), byId("split").value);
+  canvas.parentElement.style.setProperty("--split", `${(100 * byId("split").value) / canvas.width}%`);
   gl.uniform1i(at("height"), state.height);
   gl.uniform2fv(at("cursor"), document.activeElement === canvas ? state.place : [-99, -99]);
   gl.drawArrays(gl.TRIANGLES, 0, 3);
@@ -252,11 +253,12 @@ function sample() {
     context.fillRect(x, 0, 1, 416);
   }
   const patches = entries.length ? entries.slice(0, 48) : ["#000", "#444", "#888", "#ccc", "#fff"];
-  const across = Math.min(patches.length, 24), step = 768 / across;
+  const across = Math.min(patches.length, 24), step = 384 / across;
   const down = 96 / Math.ceil(patches.length / across);
   patches.forEach((code, k) => {
     context.fillStyle = code;
-    context.fillRect((k % across) * step, 416 + Math.floor(k / across) * down, Math.ceil(step), Math.ceil(down));
+    for (const side of [0, 384])  // each patch on both sides of the line
+      context.fillRect(side + (k % across) * step, 416 + Math.floor(k / across) * down, Math.ceil(step), Math.ceil(down));
   });
   return picture;
 }

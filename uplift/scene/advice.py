@@ -161,8 +161,8 @@ def draw_advice(
     maps = {name: np.mean([estimate(rgb)[:, 0] for estimate in estimates], axis=0) for name, rgb in flat.items()}
     largest = max(float(np.quantile(each, 0.99)) for each in maps.values())
     heights = [3.5 * rgb.shape[0] / rgb.shape[1] + 0.3 for rgb in pictures.values()]
-    figure = new_figure(7.6, sum(heights) + 1.1)
-    *rows, last = figure.subfigures(len(pictures) + 1, 1, height_ratios=[*heights, 1.1], squeeze=False)[:, 0]
+    figure = new_figure(7.6, sum(heights) + 1.5)
+    *rows, last = figure.subfigures(len(pictures) + 1, 1, height_ratios=[*heights, 1.5], squeeze=False)[:, 0]
     chips, panels = last.subplots(1, max(len(swatches), MIN_CHIPS)), {}
     for row, (name, rgb) in zip(rows, pictures.items(), strict=True):
         panels[name], errors = row.subplots(1, 2)
@@ -170,7 +170,7 @@ def draw_advice(
         panels[name].set_title(figure_text(Path(name).name), fontsize=9, loc="left")
         shown = show_image(errors, maps[name].reshape(rgb.shape[:2]), cmap=colour_map(), vmin=0, vmax=largest)
         names = ", ".join(light.name for light in lights)
-        title = f"expected ΔE00 between answer and measurement\nmean under {names}"
+        title = f"expected ΔE00 between answer and measurement\naveraged over {names}; dark: large"
         errors.set_title(title, fontsize=9, loc="left")
         row.colorbar(shown, ax=errors, format="%.1f")
     box = {"boxstyle": "circle", "facecolor": "white", "edgecolor": ACCENT}
