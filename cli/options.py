@@ -31,7 +31,7 @@ class Command(click.Command):
     """A command with many options, which reads '-0.1' as a number, not as an option.
 
     ``--help`` shows the options of every day, by the names of their parameters, and the text before a form feed.
-    ``--help-all`` shows everything. ``no_arguments`` is said where a command without arguments is given some.
+    ``--help-all`` shows everything. ``no_arguments`` is stated where a command without arguments is given some.
     """
 
     def __init__(self, *args: Any, everyday: Collection[str], no_arguments: str = "", **settings: Any) -> None:
