@@ -17,7 +17,7 @@ from .. import options
 from ..colours import find_colours
 from ..inputs import check_range
 from ..output.answers import coordinates, describe_coordinates, format_rgb, hex_code, patch, print_spectrum, sparkline
-from ..output.console import emit, has_colours, print_csv, print_json, print_json_answers, say
+from ..output.console import emit, has_colours, paragraph, print_csv, print_json, print_json_answers, say
 from ..output.diagnostics import warn
 from ..outputs import check_outputs
 
@@ -214,7 +214,7 @@ def command(
         _print_lines(answers, results)
     cubes = list(Path().glob("*.uplift")) if style == "table" and colours["cube_path"] is None else []
     if len(cubes) == 1:
-        say(f"hint: to use the cube of this folder, add --cube {cubes[0]}", err=True)
+        paragraph(f"hint: to use the cube of this folder, add --cube {cubes[0]}", err=True)
 
 
 def _check(path: str, cube_path: str | None, mode: str, tolerance: float, style: str) -> None:

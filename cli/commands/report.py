@@ -9,7 +9,7 @@ import click
 
 from .. import options
 from ..inputs import check_figure_page
-from ..output.console import emit, json_text, say
+from ..output.console import emit, json_text, paragraph
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 
@@ -81,7 +81,7 @@ def command(
         emit(text, nl=False)
     else:
         write_text(text, path, force=force)
-        say(f"{path}: {_summary(assessment)}")
+        paragraph(f"{path}: {_summary(assessment)}")
 
 
 def _summary(assessment: Assessment) -> str:

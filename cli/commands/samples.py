@@ -8,7 +8,7 @@ import click
 from uplift.common.text import pluralise
 
 from .. import options
-from ..output.console import say
+from ..output.console import paragraph, say
 
 
 @click.command(
@@ -32,7 +32,7 @@ def command(folder: str, force: bool) -> None:
     from uplift.samples import copy_samples
 
     copies = copy_samples(folder, force=force)
-    say(f"{folder}: {pluralise(len(copies), 'sample file')}, with which all examples run. Try first:")
+    paragraph(f"{folder}: {pluralise(len(copies), 'sample file')}, with which all examples run. Try first:")
     for line in _first_commands(Path(folder)):
         say(f"  {line}")
 
