@@ -60,7 +60,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 
     \b
     More examples:
-      uplift build --atlas paints.csv --dim auto --tolerance 1 --coefficients 17 -o close.uplift
+      uplift build --atlas fabrics.csv --dim auto --tolerance 1 --coefficients 17
       uplift build --atlas paints.csv --dim 64 --scene wood.png --scene 'shot.*'
       uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
       uplift build --atlas macbeth --look looks.toml -o looks.uplift

@@ -23,7 +23,8 @@ from ..outputs import check_outputs
     Examples:
       uplift diff macbeth-32.uplift sRGB
       uplift diff macbeth-32.uplift sRGB wood.png -o wood-diff.html
-      uplift diff macbeth-32.uplift sRGB --tolerance 50 --format json
+      uplift build --atlas macbeth --library fabrics.csv -o fabrics.uplift
+      uplift diff macbeth-32.uplift fabrics.uplift --tolerance 50 --format json
 
     The cubes may have different lattices, models, atlases and ranges, in one RGB space. Entries are compared by name.
     Without --tolerance the exit code is 0.
