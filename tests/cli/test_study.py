@@ -49,9 +49,10 @@ def as_text(objects):
     return [{key: str(value) for key, value in one.items()} for one in objects]
 
 
-def test_moments(run, rows, home, macbeth, tcs):
+def test_moments(run, rows, home, macbeth, tcs, monkeypatch):
     """The errors of nine floats are those of table 4.1 of the thesis."""
     words = ("moments", "--atlas", macbeth, "--atlas", tcs, "--max-moments", 9)
+    monkeypatch.setenv("COLUMNS", "120")  # one part
     table = run("study", *words, "-o", "out")
     check_plots(home / "out", ["moments.png", "moments-patches.png", "moments-worst.png"], table.stderr)
     found = rows(*words)
