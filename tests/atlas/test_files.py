@@ -210,3 +210,19 @@ def test_endless_cells_and_numbers_raise(save):
             read_atlas(save(text))
     with np.errstate(over="raise"), warns("values-in-percent"), raises(AtlasError, "atlas"):
         read_atlas(save("name,400,550,700\nred,1e308,1e308,1e308\n"))
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [
+        ("blue,30,1000,50", "got 1000 at 550 nm"),
+        ("blue,30,,50", "value is empty"),
+        ("blue, dark,30,40,50", "got 5; put a name that contains the separator in quotes"),
+        ("blue,30,40", "got 3; fill in the missing cells"),
+    ],
+)
+def test_errors_of_a_row_show_what_is_in_the_file(save, row, words):
+    with raises(AtlasError, "atlas") as caught:
+        read_atlas(save(f"name,400,550,700\nred,10,20,60\n{row}\ngrey,50,50,50\n"))
+    assert words in str(caught.value)

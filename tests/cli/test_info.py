@@ -1,5 +1,9 @@
 """``uplift info``."""
 
+import shlex
+
+from uplift_cli.commands.build import command as build
+
 import uplift
 from uplift.cube import digest
 
@@ -16,6 +20,16 @@ def test_json_has_all_fields(ask, cubes):
     assert facts["rounds"] == data.points.round.max() + 1
     assert facts["provenance"]["left_out"] == ["cyan"]
     assert facts["digest"] == digest(data)
+
+
+def test_options_are_those_of_the_command_line(run, cubes, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "2000")
+    for path in cubes.iterdir():
+        (line,) = [line for line in run("info", path).stdout.splitlines() if line.startswith("options")]
+        words = shlex.split(line)[1:]
+        values = build.make_context("build", words).params
+        data = uplift.load(path).data
+        assert (values["dim"], values["limits"], values["model"]) == (data.lattice.dim, (380, 780), data.model.name)
 
 
 def test_default_is_the_packaged_cube(run, ask):

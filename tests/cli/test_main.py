@@ -20,6 +20,7 @@ from uplift_cli.output import progress as progress_module
 from uplift_cli.output.console import make_table, show
 from uplift_cli.output.diagnostics import HINTS, hint_for
 from uplift_cli.output.progress import progress_bar
+from uplift_cli.startup import _respell
 
 import uplift
 from tests.conftest import ROOT
@@ -320,3 +321,31 @@ def test_progress_off_terminals_is_a_line_now_and_then(monkeypatch, capsys):
             for _ in range(4):
                 report(event)
         assert capsys.readouterr().err.splitlines() == lines
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ("info wood.png", "must be an uplift cube, got an image"),
+        ("report paints.csv", "must be an uplift cube, got text"),
+        ("lights info wood.png", "got an image"),
+        ("build --atlas wood.png", "must be a file of spectra, got an image"),
+        ("build --atlas {}", "must be a file of spectra, got a cube"),
+        ("build --space nosuch", "; 'uplift help spaces' lists all"),
+        ("build --illuminant nosuch", "; 'uplift help illuminants' lists all"),
+        ("build --observer nosuch", "; 'uplift help observers' lists all"),
+        ("build --observer paints.csv", "use --space camera"),
+        ("lights build --atlas macbeth", "macbeth: the file states 'reflectance'"),
+        ("build --atlas colorchecker", "'uplift atlas' lists"),
+        ("build --atlas macbeth --atlas paints.csv", "first used at macbeth:7; leave out one of the two files"),
+        ("query 0.1,,0.2", "'0.1,,0.2' is not a colour"),
+    ],
+)
+def test_errors_name_what_was_given_and_what_to_do(run, monkeypatch, cubes, command, words):
+    monkeypatch.chdir(sample_path("."))
+    assert words in run(*command.format(cubes / "moments-8.uplift").split(), code=2).stderr
+
+
+def test_texts_without_unicode_are_spelt_in_ascii():
+    assert "ΔE00 0–1, 16³ × ▁▄█".encode("ascii", _respell.__name__) == b"dE00 0-1, 16^3 x _:#"
+    assert "16³".encode("cp1252", _respell.__name__) == b"16\xb3"
