@@ -25,11 +25,11 @@ SHEET = options.OutputFile(_check_sheet)
     help="""Write the blue slices of a cube as images.
 
     The file of --output has one part per blue slice and one pixel per node. Red increases to the right, green upwards.
-    Channels are lattice RGB, target RGB, fitting distance, ΔE00, status, atlas entry, round (with debug information)
-    and every coefficient. -1 stands for no entry or no round.
+    Channels are lattice RGB, target RGB, fitting distance, ΔE00, status, atlas entry, standard error, round (with debug
+    information) and every coefficient. -1 stands for no entry or no round.
 
-    --plot tiles all slices into one image for any viewer: lattice RGB, fitting distance, status and round, with
-    legends.
+    --plot tiles all slices into one image for any viewer: lattice RGB, fitting distance, status and, where the cube has
+    them, standard error and round, with legends.
 
     \b
     Examples:

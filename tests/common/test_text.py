@@ -92,7 +92,7 @@ def test_numbers_and_other_text_stay(cell):
 
 NOUNS = (
     "entries|nodes|points|lights|lamps|colours|cubes|images|pixels|materials|wavelengths|coefficients|rows|files|"
-    "swatches|builds|answers|textures|samples|labels|slices|surfaces|boxes|candidates|points"
+    "swatches|builds|answers|textures|samples|labels|slices|surfaces|boxes|candidates"
 )
 COUNT_BY_HAND = re.compile(rf"\{{([^{{}}:]+)(?::,)?\}}+ (?:[a-z]+ )?(?:{NOUNS})\b")
 NEVER_ONE = re.compile(

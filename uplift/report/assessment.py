@@ -30,12 +30,12 @@ class Assessment:
     size: int  # Bytes of the file
     data: CubeData  # The cube
     facts: dict[str, Any]  # The result of `summarise`
-    failures: dict[str, Any]  # Points over the threshold and missing entries: `collect_failures`
+    failures: dict[str, Any]  # Nodes over the threshold and missing entries: `collect_failures`
     distance: Histogram  # Fitting distance of the nodes, max |linear RGB|
     round_trips: dict[str, Histogram]  # ΔE00 of random colours under the cube's illuminant, by mode of lookup
     # Standard errors of the nodes, ΔE00 under ``data.error_illuminant``; None if the cube has none
     standard_error: Histogram | None
-    smoothness: Histogram  # rms difference of reflectance between neighbouring points
+    smoothness: Histogram  # rms difference of reflectance between neighbouring nodes
     steepest: Array  # (2, 3) Linear RGB of the two neighbours that differ most
     lights: tuple[Sensor, ...]  # Display sensors of the lights under which entries are compared
     sources: tuple[str, ...]  # Names of the files that the measured spectra come from
@@ -44,7 +44,7 @@ class Assessment:
     alternatives: dict[str, Answers]  # Those of other methods at the colours of ``entries``; empty without entries
     delta_e: dict[str, Histogram]  # ΔE00 of the entries by name of the light
     out_of_gamut: tuple[str, ...]  # Entries of ``sources`` outside the cube's RGB space
-    not_covered: tuple[str, ...]  # Entries of ``sources`` for which a sparse cube has no points
+    not_covered: tuple[str, ...]  # Entries of ``sources`` for which a sparse cube has no nodes
     # Actual against predicted errors; None if the cube was built from the entries or has no standard errors
     calibration: Calibration | None
     # The same under the other of ``lights``, by their names; empty without ``calibration``, and for cubes of

@@ -32,7 +32,7 @@ class EntryQuery:
     rows: Indices | None  # (E,) Rows of the table of all entries of the cube; None for other entries
 
     def answerable_by(self, cube: Cube) -> "EntryQuery":
-        """Keep the entries that a cube has points for: a sparse one lacks some."""
+        """Keep the entries that a cube has nodes for: a sparse one lacks some."""
         return take(self, np.flatnonzero(cube.covers(_inside(cube.data, self.rgb))))
 
 

@@ -26,11 +26,11 @@ def mean_p95_max(delta_e: Array) -> dict[str, float]:
     return {"mean": float(delta_e.mean()), "p95": float(np.quantile(delta_e, 0.95)), "max": float(delta_e.max())}
 
 
-MAX_LISTED = 24  # points over the threshold that a report lists
+MAX_LISTED = 24  # nodes over the threshold that a report lists
 
 
 def collect_failures(data: CubeData) -> dict[str, Any]:
-    """Failures that a cube records, as the report's JSON has them: the worst points over the threshold first.
+    """Failures that a cube records, as the report's JSON has them: the worst nodes over the threshold first.
 
     Entries are ``left_out`` by earlier versions only, and ``skipped`` where the atlas reader could not use them.
     """

@@ -26,7 +26,7 @@ MOVED = LIMITS[f"delta_e_{REGRESSION_LIGHTS[0]}"]
 # Largest difference of nodes. They are the same on every CPU since version 0.2. Cubes of earlier versions have
 # the powers of numpy, which instruction sets round differently.
 NODE_TOLERANCE = 1e-12
-# Linear RGB within the object-colour solid. Points of wide gamuts nearer to its boundary have spectra close to box
+# Linear RGB within the object-colour solid. Nodes of wide gamuts nearer to its boundary have spectra close to box
 # functions, and many of these meet the colour equally well: rounding decides between them.
 BOUNDARY_MARGIN = 1e-3
 
@@ -45,11 +45,11 @@ class RebuildDifference:
     """Differences between a stored cube and a rebuilt one."""
 
     path: Path  # File of the stored cube
-    # Largest differences by the names in `LIMITS`, over the entries and the points whose spectra are well
+    # Largest differences by the names in `LIMITS`, over the entries and the nodes whose spectra are well
     # determined
     measures: dict[str, float]
-    stored_counts: dict[str, int]  # Number of these points by status, and of all unfitted points
-    rebuilt_counts: dict[str, int]  # Number of these points by status, and of all unfitted points
+    stored_counts: dict[str, int]  # Number of these nodes by status, and of all unfitted nodes
+    rebuilt_counts: dict[str, int]  # Number of these nodes by status, and of all unfitted nodes
     entries: tuple[EntryChange, ...]  # Entries that differ
 
     @property
@@ -92,9 +92,9 @@ def compare_rebuilt(path: Path, stored: CubeData, rebuilt: CubeData) -> RebuildD
 
 
 def _well_determined(data: CubeData) -> Mask:
-    """Points (n,) whose spectra do not depend on the machine: all, if the space has no unrealisable points.
+    """Nodes (n,) whose spectra do not depend on the machine: all, if the space has no unrealisable nodes.
 
-    The smallest lattices have only points on the boundary of realisable colours: those that were fitted are compared.
+    The smallest lattices have only nodes on the boundary of realisable colours: those that were fitted are compared.
     """
     unrealisable = data.points.status == Status.UNREALISABLE
     if not unrealisable.any():

@@ -20,11 +20,11 @@ from uplift.colorimetry.srgb import decode, encode
 from uplift.common.arrays import Array, Mask, StrPath
 from uplift.common.errors import OutputError
 from uplift.common.files import atomic_write, check_output
+from uplift.common.text import pluralise
 from uplift.cube import CubeData
 from uplift.io import exr
 from uplift.io.exr import blue_slices
 from uplift.viz.figure import figure_text, matplotlib
-from uplift.viz.format import pluralise
 
 TEXT_GREY = 0.75  # linear grey of the text
 DPI = 64  # A power of two: division is exact, so the canvas of the text has the size of the sheet

@@ -188,7 +188,7 @@ class CandidateSpace:
         return self._changes("models of spectra", list(series.values()), fine)
 
     def _lattices(self) -> dict[Options, Array]:
-        """Changes of XYZ (K, n, 3) by lattices, with a usual model: more and more nodes along each axis."""
+        """Changes of XYZ (K, n, 3) by lattices, with `PROBE` coefficients: more and more nodes along each axis."""
         probe = replace(self.reference, coefficients=PROBE)
         series = [[replace(probe, dim=dim, axis=axis) for dim in self.grid.dims] for axis in self.grid.axes]
         return self._changes("lattices", series, probe)
