@@ -197,13 +197,14 @@ def _parse(parts: Sequence[str]) -> Colour | None:
 def _parse_words(words: Sequence[str]) -> list[Colour]:
     """Parse colours 'R G B', 'R,G,B' and '#rrggbb', one after the other."""
     parts = [part for word in words for part in re.split(r"[,\s]+", word) if part]
-    colours = []
+    colours: list[Colour] = []
     while parts:
         numbers = [_number(part) for part in parts[:3]]
         length = 3 if len(numbers) == 3 and None not in numbers else 1
         colour = _parse(parts[:length])
         if colour is None:
-            raise _not_a_colour(" ".join(parts[:4]))
+            unread = parts[:4] if colours else words
+            raise _not_a_colour(" ".join(unread))
         colours.append(colour)
         parts = parts[length:]
     return colours
