@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from uplift.common.errors import OptionError
+from uplift.common.errors import OptionError, UpliftWarning
 from uplift.common.text import format_value, parse_float, pluralise
 
 from .. import options
 from ..inputs import expand_patterns
 from ..output.console import paragraph, say
 from ..output.diagnostics import warn
-from ..output.notes import build_quietly, print_notes
+from ..output.notes import collect_notes, print_notes
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 from ..startup import enable_jit_cache
@@ -182,6 +182,7 @@ def command(
         if context.get_parameter_source(str(each.name)) is ParameterSource.COMMANDLINE
     }
     inputs: tuple[str | Path, ...] = ()
+    notes: list[UpliftWarning] = []
     if plan_path is not None:
         if others := [option for name, option in given.items() if name not in ALLOWED_WITH_PLAN]:
             raise click.UsageError(f"The plan already sets these options: leave out {', '.join(others)}.")
@@ -206,13 +207,17 @@ def command(
         from uplift.pipeline.build import build
 
         stated = {name: value for name, value in settings.items() if value not in (None, ())}
-        make = partial(build, read_atlas(*files, measured=scale) if files else None, **stated)
+        atlas = None
+        if files:
+            atlas, notes = collect_notes(partial(read_atlas, *files, measured=scale))
+        make = partial(build, atlas, **stated)
     path = Path(name)
     slices = path.with_suffix(".exr") if settings["debug"] else None
     check_outputs(path, slices, inputs=inputs)
     begin = time.perf_counter()
     with progress_bar(quiet=quiet, verbose=verbose) as progress:
-        cube, notes = build_quietly(partial(make, progress=progress))
+        cube, notes_of_build = collect_notes(partial(make, progress=progress))
+    notes += notes_of_build
     cube.save(path, force=force)
     if slices is not None:
         from uplift.io.exr import write_slices

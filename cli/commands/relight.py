@@ -17,7 +17,7 @@ from .. import options
 from ..inputs import expand_patterns, read_pictures
 from ..output.console import make_table, paragraph, print_json, show
 from ..output.diagnostics import warn
-from ..output.notes import build_quietly, print_notes
+from ..output.notes import collect_notes, print_notes
 from ..output.progress import progress_bar
 from ..outputs import check_outputs
 from ..startup import enable_jit_cache
@@ -193,5 +193,5 @@ def _cube_of_user(path: str | None, atlases: tuple[str, ...]) -> tuple[Cube | No
     if atlases:
         from uplift.pipeline.build import build
 
-        return build_quietly(partial(build, atlases, dim=DIM))
+        return collect_notes(partial(build, atlases, dim=DIM))
     return None if path is None else load(path), []

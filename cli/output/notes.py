@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from uplift.common.errors import UpliftError, UpliftWarning
 from uplift.common.text import pluralise
@@ -15,12 +15,13 @@ from .diagnostics import hint_for, warn
 if TYPE_CHECKING:
     from uplift.lookup import Cube
 
-NOTES = ("entry-clipped", "entry-crowded")
+Made = TypeVar("Made")
+NOTES = ("entry-clipped", "entry-crowded", "shipped-atlas", "values-in-percent")
 """Codes of warnings that state facts of an atlas, and no mistake."""
 
 
-def build_quietly(make: Callable[[], Cube]) -> tuple[Cube, list[UpliftWarning]]:
-    """Build a cube, and return it with the notes of the build, which are shown at once only if it fails."""
+def collect_notes(make: Callable[[], Made]) -> tuple[Made, list[UpliftWarning]]:
+    """Read an atlas or build a cube, and return it with its notes, which are shown at once only if that fails."""
     notes: list[UpliftWarning] = []
     show = warnings.showwarning
 
@@ -33,12 +34,12 @@ def build_quietly(make: Callable[[], Cube]) -> tuple[Cube, list[UpliftWarning]]:
     with warnings.catch_warnings():
         warnings.showwarning = collect
         try:
-            cube = make()
+            made = make()
         except UpliftError:
             warnings.showwarning = show
             warn(notes)
             raise
-    return cube, notes
+    return made, notes
 
 
 def print_notes(cube: Cube, notes: Iterable[UpliftWarning], *, err: bool = False) -> None:
