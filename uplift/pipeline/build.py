@@ -305,12 +305,14 @@ def build_stages(
 
     # The lattice, the boxes of the entries in it (8), and the nodes that start from entries: c = w c_i + (1 − w) c(x).
     blend = seeds.FULL_ENTRY if options.seed_corners or neighbours else seeds.HALF_ENTRY
-    if options.dim == AUTO:
+    is_chosen = options.dim == AUTO
+    if is_chosen:
         options = _choose_lattice(options, problem, constraints, prior, blend)
     lattice, rgb = Lattice(axis_nodes(options.axis, int(options.dim))), constraints.at_nodes.rgb
     boxes = EntryBoxes(lattice, rgb, seeds.half_widths(lattice.to_steps(rgb)))
     seeded = seeds.seed(lattice, rgb)
-    entries.warn_of_close(constraints.names, boxes.half_width, seeded.crowded)
+    crowded = () if is_chosen else seeded.crowded  # the choice of the lattice has counted those that none keeps
+    entries.warn_of_close(constraints.names, boxes.half_width, crowded)
     own = constraints.truncated(model) if neighbours else constraints.at_nodes.multipliers
 
     # The nodes that a scene needs, or all, grow from the seeds: min |R⁻¹ (p − p₀)|² subject to r(p) = t (5, 7),
