@@ -90,7 +90,7 @@ def test_scale_given_by_the_caller(save):
     ],
 )
 def test_other_quantities_are_refused(save, text):
-    with raises(AtlasError, "atlas"):
+    with raises(AtlasError, "not-reflectance"):
         read_atlas(save(text))
 
 

@@ -98,5 +98,5 @@ def test_lamps_of_the_lighting_standard_state_power(tmp_path, quantity):
 def test_stated_quantities_of_materials_are_refused(tmp_path, layout, quantity):
     path = tmp_path / "material.txt"
     path.write_text(layout.format(quantity))
-    with raises(AtlasError, "atlas"):
+    with raises(AtlasError, "not-a-lamp"):
         read_lamps(path)

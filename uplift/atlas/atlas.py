@@ -15,6 +15,9 @@ from uplift.common.text import listed, pluralise
 VISIBLE = (400.0, 700.0)
 """Range in nm that every entry must cover. Wavelengths outside have little effect on colour."""
 
+USED = (380.0, 780.0)
+"""Range in nm that a cube samples by default."""
+
 LOWEST, HIGHEST = -0.05, 2.0
 """Limits of reflectance. Noise is slightly below 0, fluorescent whites are above 1; other values have a wrong scale."""
 
@@ -163,6 +166,8 @@ class Source:
         Scale of the values that the caller gave.
     notes : tuple of str
         How the content was understood: layout, scale, and columns that are not spectra.
+    missing : {"refuse", "interpolate", "skip"}
+        What the caller wanted of entries with missing values.
     """
 
     name: str
@@ -171,6 +176,7 @@ class Source:
     format: str = ""
     measured: str = "auto"
     notes: tuple[str, ...] = ()
+    missing: str = "refuse"
 
 
 @dataclass(frozen=True, repr=False)

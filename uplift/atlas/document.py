@@ -7,10 +7,8 @@ from functools import cached_property
 from typing import Any
 from xml.parsers import expat
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from uplift.common.arrays import Array, StrPath
+from uplift.atlas.statements import find_unit
+from uplift.common.arrays import StrPath
 from uplift.common.errors import AtlasError
 from uplift.common.files import IMAGES, read_bytes, recognise
 from uplift.common.text import parse_float, printable, shorten
@@ -21,9 +19,6 @@ MAX_DEPTH, MAX_ELEMENTS = 64, 2_000_000
 """Limits of an XML file."""
 UTF_16_START = 16
 """Bytes by which UTF-16 without a byte-order mark is recognised."""
-NANOMETRES = {"nm": 1.0, "nanometers": 1.0, "nanometres": 1.0, "um": 1e3, "micrometers": 1e3, "micrometres": 1e3}
-"""Factor by the unit of wavelengths, in lower case."""
-WAVE_NUMBER = "1/cm"
 EXPORT = "export the file again, or export a CSV table"
 
 
@@ -152,14 +147,13 @@ def check_scale(scale: float, label: str, location: SourceLocation) -> float:
     return scale
 
 
-def to_nanometres(lengths: ArrayLike, unit: str, location: SourceLocation) -> Array:
-    """Convert wavelengths, or wave numbers in 1/cm. Raise `AtlasError` for an unknown unit."""
-    if unit not in (WAVE_NUMBER, *NANOMETRES):
-        problem = f"wavelengths must be in nanometers, micrometers or 1/cm, got '{truncate(unit)}'"
+def stated_unit(text: str, location: SourceLocation) -> float:
+    """Return the unit of wavelengths, see `find_unit`. Raise `AtlasError` for an unknown one."""
+    unit = find_unit(text)
+    if unit is None:
+        problem = f"wavelengths must be in nanometers, micrometers or 1/cm, got '{truncate(text)}'"
         raise location.error(problem, "export the file with wavelengths in nm")
-    lengths = np.asarray(lengths, dtype=float)
-    with np.errstate(all="ignore"):  # wavelengths that are not finite are refused later
-        return 1e7 / lengths if unit == WAVE_NUMBER else NANOMETRES[unit] * lengths
+    return unit
 
 
 def one_line(text: object) -> str:

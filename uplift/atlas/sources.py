@@ -16,7 +16,7 @@ import numpy as np
 from uplift.atlas.atlas import Atlas, Entry, Header, Source, merge, skipped_warning
 from uplift.atlas.document import Document, SourceLocation, read_document
 from uplift.atlas.formats import art, read_any
-from uplift.atlas.measurements import MEASURED, Measured, to_atlas
+from uplift.atlas.measurements import MEASURED, MISSING, Measured, Missing, to_atlas
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OutputError, UpliftWarning, unknown_name
 from uplift.common.files import write_text
@@ -30,7 +30,7 @@ FORMS = (
 )
 
 
-def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
+def read_atlas(*paths: StrPath, measured: Measured = "auto", missing: Missing = "refuse") -> Atlas:
     """Read atlas files into one atlas. The content of a file determines its format, one of `FORMATS`.
 
     Parameters
@@ -41,6 +41,9 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
     measured : {"auto", "percent", "fraction"}
         Scale of the values. ``"auto"`` takes the scale that a file states, or else decides by its values. Measurement
         archives always state their scale.
+    missing : {"refuse", "interpolate", "skip"}
+        What becomes of an entry that lacks a value within 380–780 nm: an error, interpolation between its neighbours,
+        or the entry is left out with a warning. Values that are missing elsewhere are always left out.
 
     Returns
     -------
@@ -51,7 +54,7 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
     AtlasError
         A file cannot be read, or two entries share a name. The error has path, line, entry and hint.
     UnknownNameError
-        The scale is unknown.
+        The scale, or what becomes of missing values, is unknown.
 
     Warns
     -----
@@ -68,10 +71,12 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto") -> Atlas:
     """
     if measured not in MEASURED:
         raise unknown_name(str(measured), MEASURED, "scale")
+    if missing not in MISSING:
+        raise unknown_name(str(missing), MISSING, "treatment of missing values")
     atlases = []
     for document in map(read_named, list(map(find_atlas_file, paths))):
         chosen, found = read_any(document)
-        atlases.append(found if isinstance(found, Atlas) else to_atlas(document, found, chosen.name, measured))
+        atlases.append(found if isinstance(found, Atlas) else to_atlas(document, found, chosen.name, measured, missing))
     atlas = merge(atlases)
     if atlas.skipped:
         warnings.warn(skipped_warning(atlas.skipped, code="entry-skipped"), stacklevel=2)

@@ -13,10 +13,9 @@ from uplift.atlas.sources import find_atlas_file, read_named
 from uplift.colorimetry import tables
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, matching_functions
 from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import AtlasError
 from uplift.lights.discs import Lamps
 
-REFLECTANCES = "reflectance"
-"""Quantity of a measurement archive."""
 VISIBLE = (400.0, 700.0)
 """Range in nm that a lamp must cover."""
 SAME_LAMP = 1e-3
@@ -56,22 +55,32 @@ def read_lamps(*paths: StrPath) -> Atlas:
 
 def _read(document: Document) -> Atlas:
     chosen, found = read_any(document)
-    stated = REFLECTANCES if isinstance(found, Atlas) else found.material
-    if isinstance(found, Atlas) or stated:
-        problem = f"the file states '{truncate(stated)}', not the power of a lamp"
-        raise document.location.error(problem, "give spectral powers, such as a CSV table")
+    if isinstance(found, Atlas):
+        raise _not_a_lamp("reflectance spectrum", document)
+    stated = [spectrum.quantity or found.quantity for spectrum in found.spectra]
+    of_material = [quantity for quantity in stated if quantity is not None and not quantity.of_light]
+    if of_material and len(of_material) == len(stated):
+        raise _not_a_lamp(of_material[0].text, document)
     return to_atlas(document, _scaled(document, found), chosen.name, "fraction")
+
+
+def _not_a_lamp(stated: str, document: Document) -> AtlasError:
+    problem = f"the file states '{truncate(stated)}', not the power of a lamp"
+    return document.location.error(problem, "give spectral powers, such as a CSV table", code="not-a-lamp")
 
 
 def _scaled(document: Document, measurements: Measurements) -> Measurements:
     """Divide each lamp by its largest power."""
     spectra = []
     for spectrum in measurements.spectra:
+        quantity = spectrum.quantity or measurements.quantity
+        if quantity is not None and not quantity.of_light:
+            continue
         values = np.asarray(spectrum.values, dtype=float)
         highest = float(values[np.isfinite(values)].max(initial=0))
         if highest <= 0:
             raise document.location.at(spectrum.line, spectrum.name).error(
                 "a lamp must have power, got none above 0", "remove the lamp"
             )
-        spectra.append(replace(spectrum, values=values / highest))
-    return replace(measurements, spectra=tuple(spectra), scale=None, refusal=None)
+        spectra.append(replace(spectrum, values=values / highest, quantity=None))
+    return replace(measurements, spectra=tuple(spectra), quantity=None)

@@ -10,8 +10,10 @@ import numpy as np
 
 from uplift.atlas.atlas import Header
 from uplift.atlas.document import EXPORT, Document, check_scale, one_line, parse_number
-from uplift.atlas.formats.table import Cell, Row, read_grid, split_label
-from uplift.atlas.measurements import Measurements, find_quantity, wrong_quantity
+from uplift.atlas.formats.cells import Cell, Row, parse_label
+from uplift.atlas.formats.grid import Grid, read_grid
+from uplift.atlas.measurements import Measurements
+from uplift.atlas.statements import Quantity, Scale
 from uplift.common.text import parse_float
 
 FORMAT, DATA = "DATA_FORMAT", "DATA"
@@ -26,21 +28,18 @@ def read(document: Document) -> Measurements:
     """Read the sets of a CGATS file. Fields other than the name and the spectrum are not used."""
     location = document.location
     preamble, rows = _parse(document)
-    if not any(split_label(cell.text)[1] is not None for cell in rows[0]):
+    if not any(parse_label(cell.text) for cell in rows[0]):
         problem = "the CGATS file has no spectral fields"
         raise location.at(rows[0][0].line).error(problem, "export the spectra with the colours")
     keywords = {match[1]: match[2] or match[3] or "" for line in preamble if (match := KEYWORD.match(line))}
-    found = _with_exact_wavelengths(read_grid(rows, location), keywords)
-    scale = None
+    found = _with_exact_wavelengths(read_grid(Grid(rows, location, preamble), document.stem), keywords)
     if "SPECTRAL_NORM" in keywords:  # of ArgyllCMS: the value of a perfect reflector
         norm = parse_number(keywords["SPECTRAL_NORM"], location, "SPECTRAL_NORM")
-        scale = check_scale(norm, "SPECTRAL_NORM", location)
-    text = "\n".join(preamble)
-    refusal = found.refusal or find_quantity(text, location)
-    if refusal is None and LIGHT_SOURCES.search(text):
-        refusal = wrong_quantity("the file states measurements of a display, not reflectance", location)
-    header = Header(one_line(keywords.get("DESCRIPTOR")))
-    return replace(found, scale=scale, header=header, refusal=refusal)
+        stated = f"SPECTRAL_NORM {keywords['SPECTRAL_NORM']}"
+        found = replace(found, scales=(Scale(check_scale(norm, "SPECTRAL_NORM", location), stated),))
+    if light := LIGHT_SOURCES.search("\n".join(preamble)):
+        found = replace(found, quantity=Quantity("the light of a display", light[0].strip(), of_light=True))
+    return replace(found, header=Header(one_line(keywords.get("DESCRIPTOR"))))
 
 
 def _parse(document: Document) -> tuple[list[str], list[Row]]:

@@ -1,13 +1,18 @@
 """Reader of CxF3 (ISO 17972-1), the colour exchange format of X-Rite programs, by the package colour-cxf."""
 
+import re
 from typing import Any
 
 from uplift.atlas.atlas import Header, SkippedEntry
 from uplift.atlas.document import Document, one_line
 from uplift.atlas.measurements import Measurements, Spectrum, not_used_note, parsed_by
+from uplift.atlas.statements import Scale
+from uplift.common.text import listed
 
 START, STEP = 380.0, 10.0
 """Start and step in nm of spectra whose colour specification states none."""
+CONDITION = re.compile(r"(?<![A-Za-z])M[0-3](?![0-9A-Za-z])")
+"""Measurement conditions of ISO 13655: with incandescent light, daylight, without UV, with a polariser."""
 REFLECTANCE = "ReflectanceSpectrum"
 OTHER_SPECTRA = {
     "TransmittanceSpectrum": "transmittance",
@@ -36,40 +41,55 @@ def read(document: Document) -> Measurements:
 def _content(cxf: Any, path: str) -> Measurements:
     resources, information = cxf.resources, cxf.file_information
     objects = resources.object_collection.object_value if resources and resources.object_collection else []
-    ranges = _wavelength_ranges(resources)
+    specifications = _measurements(resources)
     spectra, skipped, colours = list[Spectrum](), list[SkippedEntry](), set[str]()
+    conditions = set[str]()
     for each in objects:
         name = (each.name or each.id or "").strip()
         choices = each.color_values.choice if each.color_values else []
         kinds = [type(choice).__name__ for choice in choices]
         reflectances = [choice for choice, kind in zip(choices, kinds, strict=True) if kind == REFLECTANCE]
         for number, choice in enumerate(reflectances, 1):
-            label = name if len(reflectances) == 1 else f"{name} {choice.name or number}"
-            spectra.append(_spectrum(label, choice, ranges))
+            condition = _condition(choice, specifications)
+            conditions.add(condition)
+            label = name if len(reflectances) == 1 else f"{name} {condition or choice.name or number}"
+            spectra.append(_spectrum(label, choice, specifications))
         others = [OTHER_SPECTRA[kind] for kind in kinds if kind in OTHER_SPECTRA]
         if others and not reflectances:
             skipped.append(SkippedEntry(name, f"it is {others[0]}, not reflectance", path))
         colours.update(kind for kind in kinds if kind.startswith("Color"))
     header = Header(one_line(information.description) if information else "")
     # the schema has values in (−0.1, 3); some programs write percent
-    scale = 1.0 if all(-0.1 < value < 3 for spectrum in spectra for value in spectrum.values) else None
-    notes = ("layout: an object per spectrum", *not_used_note(sorted(colours)))
-    return Measurements(tuple(spectra), skipped=tuple(skipped), scale=scale, header=header, notes=notes)
+    is_of_schema = all(-0.1 < value < 3 for spectrum in spectra for value in spectrum.values)
+    scales = (Scale(1.0, "the schema of CxF3"),) if is_of_schema else ()
+    known = sorted(filter(None, conditions))
+    measured_as = (f"measurement conditions: {listed(known)}",) if known else ()
+    notes = ("layout: an object per spectrum", *measured_as, *not_used_note(sorted(colours)))
+    return Measurements(tuple(spectra), skipped=tuple(skipped), scales=scales, header=header, notes=notes)
 
 
-def _wavelength_ranges(resources: Any) -> dict[str, tuple[float, float]]:
-    """Return start and step in nm by the identifier of the colour specification."""
+def _measurements(resources: Any) -> dict[str, Any]:
+    """Return how spectra were measured by the identifier of the colour specification."""
     collection = resources.color_specification_collection if resources else None
-    ranges = {}
-    for each in collection.color_specification if collection else []:
-        span = each.measurement_spec.wavelength_range if each.measurement_spec else None
-        if span is not None:
-            ranges[each.id] = (span.start_wl or START, span.increment or STEP)
-    return ranges
+    specifications = collection.color_specification if collection else []
+    return {each.id: each.measurement_spec for each in specifications if each.measurement_spec}
 
 
-def _spectrum(name: str, choice: Any, ranges: dict[str, tuple[float, float]]) -> Spectrum:
-    start, step = ranges.get(choice.color_specification, (START, STEP))
+def _condition(choice: Any, specifications: dict[str, Any]) -> str:
+    """Return the measurement condition of ISO 13655, such as M1, or else the name of the colour specification."""
+    name = choice.color_specification or ""
+    measured = specifications.get(name)
+    light = measured.device.device_illumination if measured and measured.device else None
+    stated = f"{light.value.value if light and light.value else ''} {name}"
+    found = CONDITION.search(stated)
+    return found[0] if found else name
+
+
+def _spectrum(name: str, choice: Any, specifications: dict[str, Any]) -> Spectrum:
+    measured = specifications.get(choice.color_specification)
+    span = measured.wavelength_range if measured else None
+    start = (span and span.start_wl) or START
+    step = (span and span.increment) or STEP
     first = start if choice.start_wl is None else choice.start_wl
     values = [float(value) for value in choice.value]
     nm = [float(first + step * index) for index in range(len(values))]

@@ -1,12 +1,14 @@
 """Reader of ENVI spectral libraries (``.sli`` with ``.hdr``), by the package spectral."""
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from uplift.atlas.document import MAX_BYTES, Document, SourceLocation, check_scale, one_line, to_nanometres
+from uplift.atlas.document import MAX_BYTES, Document, SourceLocation, check_scale, one_line, stated_unit
 from uplift.atlas.measurements import Measurements, Spectrum, parsed_by
+from uplift.atlas.statements import Scale, remark_quantity, remark_scale, to_nm, unit_by_values
 from uplift.common.errors import AtlasError
 from uplift.common.files import read_bytes
 from uplift.common.text import pluralise
@@ -14,6 +16,11 @@ from uplift.common.text import pluralise
 HEADER, LIBRARY = ".hdr", ".sli"
 MAGIC = b"ENVI"
 FILE_TYPE = "ENVI Spectral Library"
+FACTOR, IGNORED = "reflectance scale factor", "data ignore value"
+"""Fields of the divisor of the values, and of the number for a missing one."""
+TEXTS = ("description", "z plot titles", "data units")
+"""Fields that may state scale and quantity."""
+UNSPECIFIED = ("", "<unspecified>", "unknown")
 HINT = "write the library again as an ENVI spectral library, or export a CSV table"
 
 
@@ -34,15 +41,28 @@ def read(document: Document) -> Measurements:
             raise location.error(problem, HINT)
         library = envi.open(os.fspath(header), os.fspath(data))
         names = list(map(one_line, library.names))
-        factor = fields.get("reflectance scale factor")
-        scale = None if factor is None else check_scale(float(factor), "the reflectance scale factor", location)
         centers, values = library.bands.centers, np.asarray(library.spectra, dtype=float)
+        scales = tuple(_scale(fields, location))
+        if IGNORED in fields:
+            values[np.isclose(values, float(fields[IGNORED]), rtol=1e-6, atol=0)] = np.nan
     if centers is None:
         raise location.error("the header has no wavelengths", HINT)
-    unit = one_line(fields.get("wavelength units")).lower()
-    nm = to_nanometres(centers, "nm" if unit in ("", "<unspecified>") else unit, location)
+    unit = one_line(fields.get("wavelength units"))
+    nm = to_nm(centers, stated_unit(unit, location) if unit.lower() not in UNSPECIFIED else unit_by_values(centers))
     spectra = tuple(Spectrum(name, nm, row) for name, row in zip(names, values, strict=True))
-    return Measurements(spectra, scale=scale, notes=(f"layout: {data.name} with its header",))
+    texts = [one_line(fields.get(key)) for key in TEXTS]
+    return Measurements(
+        spectra,
+        scales=scales or tuple(filter(None, map(remark_scale, texts))),
+        notes=(f"layout: {data.name} with its header",),
+        quantity=remark_quantity(texts),
+    )
+
+
+def _scale(fields: dict[str, str], location: SourceLocation) -> Iterator[Scale]:
+    """Yield the scale that a header states."""
+    if FACTOR in fields:
+        yield Scale(check_scale(float(fields[FACTOR]), f"the {FACTOR}", location), f"{FACTOR} = {fields[FACTOR]}")
 
 
 def _pair(document: Document) -> tuple[Path, Path]:

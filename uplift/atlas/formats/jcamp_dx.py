@@ -6,8 +6,9 @@ import re
 
 import numpy as np
 
-from uplift.atlas.document import EXPORT, Document, one_line, to_nanometres, truncate
-from uplift.atlas.measurements import PERCENT, Measurements, Spectrum, find_quantity, parsed_by, wrong_quantity
+from uplift.atlas.document import EXPORT, Document, one_line, stated_unit, truncate
+from uplift.atlas.measurements import Measurements, Spectrum, parsed_by
+from uplift.atlas.statements import Quantity, Scale, label_quantity, label_scale, to_nm
 from uplift.common.text import pluralise
 
 POINTS = re.compile(r"^##\s*NPOINTS\s*=\s*(\S+)", re.IGNORECASE | re.MULTILINE)
@@ -31,26 +32,18 @@ def read(document: Document) -> Measurements:
     if "failed" in printed.getvalue() or "Mismatch" in printed.getvalue():
         problem = f"the data contradict their check values: {truncate(printed.getvalue())}"
         raise document.location.error(problem, EXPORT)
-    spectra, scales, refusal, material = list[Spectrum](), set[float | None](), None, ""
+    spectra = list[Spectrum]()
+    scales = list[Scale]()
     for block in blocks:
         name = one_line(block.get("title")) or document.stem
         location = document.location.at(entry=name)
-        unit = one_line(block.get("yunits")).lower()
-        if "reflect" in unit:
-            material = material or unit
-        else:
-            refusal = refusal or find_quantity(f"{unit} {block.get('data type', '')}", location)
-            if unit not in REFLECTANCES:
-                problem = f"YUNITS must be reflectance, got '{truncate(unit)}'"
-                refusal = refusal or wrong_quantity(problem, location)
-        nm = to_nanometres(block.get("x", ()), one_line(block.get("xunits")).lower(), location)
+        unit = one_line(block.get("yunits"))
+        quantity = label_quantity(f"{unit} {block.get('data type', '')}")
+        if quantity is None and unit.lower() not in REFLECTANCES:
+            quantity = Quantity("another quantity", f"YUNITS={unit}")
+        nm = to_nm(block.get("x", ()), stated_unit(one_line(block.get("xunits")), location))
         values = np.asarray(block.get("y", ()), dtype=float)
-        spectra.append(Spectrum(name, nm, values, date=str(block.get("date", ""))))
-        scales.add(PERCENT if "%" in unit or "percent" in unit else None)
-    return Measurements(
-        tuple(spectra),
-        scale=scales.pop() if len(scales) == 1 else None,
-        notes=(f"layout: {pluralise(len(blocks), 'block')}",),
-        material=material,
-        refusal=refusal,
-    )
+        spectra.append(Spectrum(name, nm, values, date=str(block.get("date", "")), quantity=quantity))
+        scales += filter(None, [label_scale(unit)])
+    notes = (f"layout: {pluralise(len(blocks), 'block')}",)
+    return Measurements(tuple(spectra), scales=tuple(scales), notes=notes)

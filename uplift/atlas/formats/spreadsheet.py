@@ -8,7 +8,8 @@ from dataclasses import replace
 from typing import Any
 
 from uplift.atlas.document import Document, one_line
-from uplift.atlas.formats.table import NO_TABLE, Cell, Row, read_grid, trimmed
+from uplift.atlas.formats.cells import Cell, Row, trimmed
+from uplift.atlas.formats.grid import NO_TABLE, Grid, read_grid
 from uplift.atlas.measurements import Measurements, parsed_by
 from uplift.common.csv import plain_cell
 from uplift.common.errors import AtlasError
@@ -36,7 +37,7 @@ def read(document: Document) -> Measurements:
     problem = document.location.error(NO_TABLE, HINT, code="not-an-atlas")
     for name in names:
         try:
-            found = read_grid(_rows(book, name, document), document.location)
+            found = read_grid(Grid(_rows(book, name, document), document.location), document.stem)
             return replace(found, notes=(f"sheet: {name}", *found.notes))
         except AtlasError as error:
             if error.code != problem.code:

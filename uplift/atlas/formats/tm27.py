@@ -1,7 +1,8 @@
 """Reader of IES TM-27-14 (``.spdx``), by colour-science."""
 
-from uplift.atlas.document import Document, one_line, truncate
-from uplift.atlas.measurements import Measurements, Spectrum, parsed_by, wrong_quantity
+from uplift.atlas.document import Document, one_line
+from uplift.atlas.measurements import Measurements, Spectrum, parsed_by
+from uplift.atlas.statements import Quantity
 from uplift.common.colour_science import colour_science
 
 REFLECTANCES = ("reflectance", "r-factor")
@@ -19,10 +20,9 @@ def read(document: Document) -> Measurements:
         quantity = one_line(found.spectral_quantity).lower()
         described, date = one_line(found.header.description), one_line(found.header.report_date)
         nm, values = found.wavelengths.tolist(), found.values.tolist()
-    problem = f"the file states '{truncate(quantity)}', not reflectance"
+    name = "reflectance" if quantity in REFLECTANCES else quantity
     return Measurements(
         (Spectrum(described or document.stem, nm, values, description=described, date=date),),
         notes=(f"layout: one spectrum, quantity '{quantity}'",),
-        material=quantity if quantity in MATERIALS else "",
-        refusal=None if quantity in REFLECTANCES else wrong_quantity(problem, document.location),
+        quantity=Quantity(name, quantity, of_light=quantity not in MATERIALS) if quantity else None,
     )

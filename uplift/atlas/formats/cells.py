@@ -1,0 +1,144 @@
+"""Cells of tables: numbers, missing values, and labels of wavelengths."""
+
+import itertools
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from uplift.atlas.atlas import SLACK, VISIBLE
+from uplift.atlas.statements import NANOMETRE, find_unit, label_quantity
+from uplift.common.arrays import Array
+from uplift.common.text import parse_float
+
+SHORTEST = 100.0
+"""Wavelength in nm that distinguishes a row of wavelengths from a wavelength and its values."""
+MISSING = frozenset(("", "-", "--", "---", "n/a", "#n/a", "na", "n.a.", "nan", "null", "none", "#div/0!", "#value!"))
+"""Texts for a value that is missing, in lower case."""
+LABEL = re.compile(
+    r"([^\d.,+-]{0,40}?)[\s_([]*(\d{1,5}(?:[.,]\d{1,8})?)\s*[([]?\s*(nm|[µμu]m|microns?|å|1/cm)?\s*[)\]]?",
+    re.IGNORECASE,
+)
+"""A prefix, a wavelength, and perhaps its unit: ``nm400``, ``R_400``, ``380[nm]``, ``Refl (400 nm)``."""
+PREFIXES = frozenset(
+    (
+        "", "nm", "r", "%r", "r%", "%", "rnm", "ρ", "refl", "refl%", "rfl", "spec", "spectral", "spectrum",
+        "spectralnm", "spectrumnm", "wl", "wavelength", "lambda", "λ", "w", "x", "sci", "sce", "specin", "specex",
+        "reflsci", "reflsce", "t", "%t", "t%", "tnm", "τ",
+    )
+)  # fmt: skip
+"""What labels of wavelengths begin with, in lower case and without blanks, besides the names of quantities."""
+
+
+class Cell(NamedTuple):
+    """Text of a cell, and its line."""
+
+    text: str
+    line: int
+
+
+Row = tuple[Cell, ...]
+
+
+def trimmed(cells: Iterable[Cell]) -> Row:
+    """Return a row without the empty cells at its end, which spreadsheets add."""
+    kept = list(cells)
+    while kept and not kept[-1].text.strip():
+        kept.pop()
+    return tuple(kept)
+
+
+def line_texts(rows: Iterable[Row]) -> list[str]:
+    """Return the text of each row."""
+    return [" ".join(cell.text for cell in row) for row in rows]
+
+
+def parse_cell(text: str) -> float | None:
+    """Parse a number with a decimal point or comma, perhaps in percent; NaN for a missing one, None for other text.
+
+    >>> [parse_cell(text) for text in ("0.5", "8,02 %", "n/a", "ochre")]
+    [0.5, 8.02, nan, None]
+    """
+    try:
+        return parse_float(text)
+    except ValueError:
+        plain = text.strip().removesuffix("%").rstrip()
+    if plain.casefold() in MISSING:
+        return np.nan
+    try:
+        return parse_float(plain.replace(",", "."))
+    except ValueError:
+        return None
+
+
+def is_value(text: str) -> bool:
+    """Whether a cell has a number, or a mark of a missing one."""
+    return bool(text) and parse_cell(text) is not None
+
+
+class Label(NamedTuple):
+    """What the label of a wavelength begins with, the number, and the unit that it states."""
+
+    prefix: str
+    number: float
+    unit: float | None
+
+
+def parse_label(text: str) -> Label | None:
+    """Parse the label of a wavelength; None for other text.
+
+    >>> parse_label("R_400"), parse_label("patch 400")
+    (Label(prefix='r', number=400.0, unit=None), None)
+    """
+    number = parse_cell(text)
+    if number is not None:
+        return Label("", number, None) if np.isfinite(number) and not text.endswith("%") else None
+    match = LABEL.fullmatch(text.strip())
+    if match is None:
+        return None
+    prefix, unit = re.sub(r"[^a-zλρτ%]", "", match[1].casefold()), find_unit(match[3] or "")
+    # Without a unit, R9 is a colour and R400 a wavelength.
+    if unit is None and len(re.split("[.,]", match[2])[0]) not in (3, 4):
+        return None
+    if prefix not in PREFIXES and not label_quantity(match[1].strip(" _([")):
+        return None
+    return Label(prefix, float(match[2].replace(",", ".")), unit)
+
+
+class Run(NamedTuple):
+    """Numbers of neighbouring wavelengths in cells ``first`` to ``last`` − 1, prefix of their labels, and unit."""
+
+    first: int
+    last: int
+    prefix: str
+    numbers: Sequence[float]
+    unit: float | None
+
+
+def runs(cells: Sequence[Cell]) -> Iterator[Run]:
+    """Yield runs of two or more neighbouring wavelengths whose labels begin in the same way."""
+    labels = [parse_label(cell.text) for cell in cells]
+    first = 0
+    for kind, group in itertools.groupby(labels, key=_kind):
+        members = list(group)
+        numbers = [label.number for label in members if label is not None]
+        if kind is not None and len(numbers) > 1:
+            unit = next((label.unit for label in members if label is not None and label.unit), None)
+            yield Run(first, first + len(numbers), kind[0], numbers, unit)
+        first += len(members)
+
+
+def _kind(label: Label | None) -> tuple[str, float] | None:
+    """Return what the labels of a run have in common; nm may be stated in some."""
+    return None if label is None else (label.prefix, label.unit or NANOMETRE)
+
+
+def covers_visible(nm: Array) -> bool:
+    """Whether wavelengths in nm cover the visible range."""
+    return bool(nm.min() <= VISIBLE[0] + SLACK and nm.max() >= VISIBLE[1] - SLACK)
+
+
+def is_visible(nm: Array) -> bool:
+    """Whether numbers are wavelengths in nm that cover the visible range, and not wavelengths beside their values."""
+    return bool(nm.min() >= SHORTEST) and covers_visible(nm)

@@ -1,0 +1,206 @@
+"""What a text of a file states about its numbers: their scale, their quantity, and the unit of wavelengths."""
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from uplift.common.arrays import Array
+
+PERCENT = 100.0
+"""Divisor of values in percent."""
+
+
+def _any(*patterns: str) -> re.Pattern[str]:
+    return re.compile("|".join(patterns), re.IGNORECASE)
+
+
+_TO = r" ?(?:-|–|\.\.\.?|…|to) ?"
+_PERCENT = _any(r"(?<!\d)(?<!\d )%", r"\bpercent(?:age)?\b", r"\bper cent\b", r"\bpct\b", rf"\b0{_TO}100\b")
+_FRACTION = _any(
+    r"\bfractions?\b(?! ?\d)",
+    r"\b(?:reflectance|reflectivity|r)[- ]?factor\b",
+    rf"(?<![\d.,-])0(?:\.0)?{_TO}1(?:\.0)?(?![\d.,-])",
+    r"[\[(]0, ?1[\])]",
+    r"\bunits? of 1\b",
+)
+_SCALED = _any(
+    "r[eé]fle[ckx]", r"\brefl?\b", r"\br\b", "remission", "remittance", "albedo", r"\bunits?\b", "scale",
+    r"\bvalues?\b", r"\bdata\b", r"spectr", r"\by\b", r"measured in",
+)  # fmt: skip
+"""What a remark on the scale is about."""
+_UNSCALED = _any(
+    "humid", "moist", "gloss", "opacity", "haze", "cover", "batter", "confiden", "uncertain", "error", "accura",
+    "precis", "toleran", "noise", "deviat", r"\bink", "dot",
+)  # fmt: skip
+"""What another percentage is about."""
+_ONLY_SCALE = _any(r"\W*(?:in |as )?(?:%|percent(?:age)?|per cent|pct|fractions?)\W*")
+
+_REFLECTANCE = _any(
+    "r[eé]fle[ck]t",
+    "reflexion",
+    "remission",
+    "remittance",
+    "albedo",
+    r"\br-factor",
+    r"\brefl?\b",
+    r"\brfl\b",
+    r"%r\b",
+    r"\br ?[\[(]?%",
+)
+_MATERIAL = _any(
+    "transmi(?:ttance|ssion|ssive|ssivity)", "absor(?:bance|ptance|ption|ptivity)", "extinction", "optical density",
+    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", "standard deviation", r"\bst(?:andard)?[ .]?dev\b",
+    r"\bstd\b", "uncertaint", r"log ?\(? ?1/r",
+)  # fmt: skip
+_LIGHT = _any(
+    "irradiance", "radiance", "radiant", r"\brad\.", "exitance", "emissi(?:on|ve)", "emittance", "illuminance",
+    "luminance(?! factor)", "luminous (?:flux|intensity)", r"\bspd\b", "(?:spectral|relative) power",
+    "(?:spectral|photon) flux", r"\bcounts?\b(?!\W*\d)", r"[µμumn]?w ?[/·* ] ?\(?[cm]?m ?\^?(?:[²2]|-2|⁻²)", r"\bcd/m",
+)  # fmt: skip
+_TRANSMITTANCE = _any(r"\W*(?:%?\W*t\W*%\W*|%\W*t|t\d.*|trans|t ?nm.*|τ.*)\W*")
+_ABSORBANCE = _any(r"\W*(?:abs|od)\W*\d*\W*")
+"""Short labels of other quantities."""
+_KEYS = "lux|lx|fc|foot-?candles?|cct|tcp|duv|cri|ra|ppfd|tlci|lumens?|lm|colou?r temperature"
+_PHOTOMETRIC = _any(rf"\W*(?:{_KEYS}) ?(?:[([][^)\]]*[)\]])? ?[:=,;]? ?[+-]?[\d.,]+ ?\w*\W*")
+"""A key of light meters, and its value."""
+
+_PLAIN = frozenset(
+    (
+        "r", "y", "refl", "rfl", "remission", "albedo", "value", "values", "intensity", "percent", "pct", "fraction",
+        "factor", "spectral", "data",
+    )
+)  # fmt: skip
+"""Words of labels that name no sample, besides those that begin with 'reflect'."""
+NANOMETRE, MICROMETRE, ANGSTROM, METRE = 1.0, 1e3, 0.1, 1e9
+"""Lengths in nm."""
+WAVE_NUMBER = -1e7
+"""Unit 1/cm, below 0: the wavelength in nm is 1e7 divided by the wave number."""
+FEW = 10
+"""Numbers that may be wavelengths in micrometres without a statement."""
+_UNITS = (
+    (_any(r"(?<![a-z])nm(?![a-z])", "wavelengthnm", "nanomet(?:er|re)s?"), NANOMETRE),
+    (_any(r"(?<![a-zµμ])[µμu]m(?![a-z])", "micromet(?:er|re)s?", r"microns?\b"), MICROMETRE),
+    (_any(r"å(?![a-z])", "[aå]ngstr[oö]ms?", r"[(\[]a[)\]]"), ANGSTROM),
+    (_any("1 ?/ ?cm", r"cm ?\^?\(?(?:[-−]1|⁻¹)", "wave ?numbers?"), WAVE_NUMBER),
+    (_any(r"[(\[]m[)\]]", r"(?<![a-z])met(?:er|re)s?\b", r"\A\s*m\s*\Z"), METRE),
+)
+_WAVES = _any("wave", r"\bwl\b", r"\bwvl\b", "lambda", "λ", r"\bx ?units?", "abscissa", "wellenl")
+"""What a remark on the unit of wavelengths is about."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity that a file states, in the words of ``text``; of a light, or of a material."""
+
+    name: str
+    text: str
+    of_light: bool = False
+
+    @property
+    def is_reflectance(self) -> bool:
+        """Whether a cube can hold it."""
+        return self.name == "reflectance"
+
+
+@dataclass(frozen=True)
+class Scale:
+    """The divisor of values that a file states, in the words of ``text``."""
+
+    divisor: float
+    text: str
+
+
+def label_scale(text: str) -> Scale | None:
+    """Return the scale that the label of values states; None if it states none. '50 %' is a part of a name.
+
+    >>> [label_scale(text) for text in ("R% 400", "grey 50%")]
+    [Scale(divisor=100.0, text='R% 400'), None]
+    """
+    if _PERCENT.search(text):
+        return Scale(PERCENT, text)
+    return Scale(1.0, text) if _FRACTION.search(text) else None
+
+
+def remark_scale(text: str) -> Scale | None:
+    """Return the scale that a line of text states, if it is about the values."""
+    is_about = _ONLY_SCALE.fullmatch(text) or (_SCALED.search(text) and not _UNSCALED.search(text))
+    return label_scale(text) if is_about else None
+
+
+def label_quantity(text: str) -> Quantity | None:
+    """Return the quantity that the label of values states; reflectance wins over others.
+
+    >>> [found and found.name for found in map(label_quantity, ("%T", "R [%]", "SPD", "ochre"))]
+    ['transmittance', 'reflectance', 'spd', None]
+    """
+    if _MATERIAL.search(text) is None and _REFLECTANCE.search(text):
+        return Quantity("reflectance", text)
+    if found := _MATERIAL.search(text):
+        return Quantity(found[0].lower(), text)
+    if found := _LIGHT.search(text):
+        return Quantity(found[0].lower(), text, of_light=True)
+    if _TRANSMITTANCE.fullmatch(text):
+        return Quantity("transmittance", text)
+    return Quantity("absorbance", text) if _ABSORBANCE.fullmatch(text) else None
+
+
+def remark_quantity(texts: Iterable[str]) -> Quantity | None:
+    """Return the quantity that lines of text state; reflectance wins, then the keys of light meters."""
+    others = list[Quantity]()
+    for text in texts:
+        if _REFLECTANCE.search(text):
+            return Quantity("reflectance", text)
+        if _PHOTOMETRIC.fullmatch(text):
+            others.append(Quantity("the measurement of a light", text, of_light=True))
+        elif found := _LIGHT.search(text) or _MATERIAL.search(text):
+            others.append(Quantity(found[0].lower(), text, of_light=bool(_LIGHT.search(text))))
+    return others[0] if others else None
+
+
+def is_plain(text: str) -> bool:
+    """Whether a label of values names no sample, only what is measured: 'R [%]', 'Reflectance'."""
+    words = [word for word in re.split(r"[\W_]+", text.casefold()) if word]
+    has_only = all(word in _PLAIN or _REFLECTANCE.match(word) for word in words)
+    return bool(words or text) and has_only and not (len(text) == 1 and text.isalpha())
+
+
+def find_unit(text: str) -> float | None:
+    """Return the unit of wavelengths that a text names: a length in nm, or `WAVE_NUMBER`.
+
+    >>> [find_unit(text) for text in ("Wavelength_um", "[nm]", "cm-1", "lambda")]
+    [1000.0, 1.0, -10000000.0, None]
+    """
+    return next((unit for pattern, unit in _UNITS if pattern.search(text)), None)
+
+
+def remark_unit(texts: Iterable[str]) -> float | None:
+    """Return the unit that the first of several lines about wavelengths states."""
+    found = (find_unit(text) for text in texts if _WAVES.search(text))
+    return next((unit for unit in found if unit is not None), None)
+
+
+def names_wavelengths(text: str) -> bool:
+    """Whether a label is that of wavelengths, and not of one of them, such as 'nm400'."""
+    if re.search(r"\d\d", text):
+        return False
+    return bool(_WAVES.search(text)) or find_unit(text) is not None or text in ("x", "X")
+
+
+def to_nm(numbers: ArrayLike, unit: float) -> Array:
+    """Convert wavelengths in a unit, or wave numbers in 1/cm, to nm."""
+    numbers = np.asarray(numbers, dtype=float)
+    with np.errstate(all="ignore"):  # wavelengths that are not finite are refused later
+        return -unit / numbers if unit == WAVE_NUMBER else unit * numbers
+
+
+def unit_by_values(numbers: ArrayLike) -> float:
+    """Return the unit of ascending or descending wavelengths without a statement: micrometres and metres are plain."""
+    numbers = np.asarray(numbers, dtype=float)
+    low, high = numbers.min(), numbers.max()
+    is_sorted = len(set(np.sign(np.diff(numbers)))) == 1
+    if is_sorted and len(numbers) >= FEW and 0.1 <= low <= 0.4 and 0.7 <= high <= 100:
+        return MICROMETRE
+    return METRE if low >= 1e-7 and high <= 1e-4 else NANOMETRE
