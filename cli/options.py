@@ -302,6 +302,11 @@ scale = choice(  # names of uplift.atlas.measurements.MEASURED, which is not imp
     *("auto", "percent", "fraction"),
     help="Scale of measured values. auto: as the atlas file states, or else by its values.",
 )
+missing = choice(  # names of uplift.atlas.measurements.MISSING
+    "--missing",
+    *("refuse", "interpolate", "skip"),
+    help="What becomes of an entry that lacks a value within 380-780 nm.",
+)
 coefficients = click.option(
     "--coefficients", type=WHOLE, default=9, metavar="N", help="Coefficients per spectrum, 3 to 17."
 )

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 SHIPPED = ("name", "entries", "content", "source", "licence")
 """Columns of the list of shipped atlases."""
-SOURCE = ("name", "digest", "format", "measured", "notes")
+SOURCE = ("name", "digest", "format", "measured", "missing", "notes")
 """Fields of the source of an atlas in JSON."""
 
 
@@ -48,12 +48,15 @@ SOURCE = ("name", "digest", "format", "measured", "notes")
 )
 @click.argument("files", metavar="[FILE]...", nargs=-1, shell_complete=options.complete_atlas)
 @options.scale
+@options.missing
 @options.sensor
 @options.output_format("table", "json", "csv")
 @options.output(help="Write all entries to FILE instead of a list.")
 @options.force
-def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, force: bool, **camera: Any) -> None:
-    from uplift.atlas import read_atlas, write_atlas
+def command(
+    files: tuple[str, ...], scale: Any, missing: Any, style: str, output: str | None, force: bool, **camera: Any
+) -> None:
+    from uplift.atlas import read_atlas, resample, write_atlas
     from uplift.colorimetry.observer import sensor
 
     if not files:
@@ -63,9 +66,11 @@ def command(files: tuple[str, ...], scale: Any, style: str, output: str | None, 
         return
     target = sensor(**camera)
     check_outputs(output)
-    atlas = read_atlas(*files, measured=scale)
+    atlas = read_atlas(*files, measured=scale, missing=missing)
     if output is not None:
         write_atlas(atlas, output, force=force)
+        for clip in resample(atlas, target.wavelengths).clips:
+            paragraph(f"{clip.name}: {clip} in a build", err=True)
         say(f"{output}: {pluralise(len(atlas), 'entry')}", err=True)
         return
     rows, codes, smallest = _list_entries(atlas, target)

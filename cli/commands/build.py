@@ -85,6 +85,7 @@ def parse_range(ctx: click.Context, param: click.Parameter, value: str) -> tuple
 )
 @options.atlas("Measured spectra")
 @options.scale
+@options.missing
 @options.output(help="Cube to write. [default: named after atlas and dim, in the current folder]")
 @click.option(
     "--dim",
@@ -167,6 +168,7 @@ def command(
     plan_path: str | None,
     files: tuple[str, ...],
     scale: Any,
+    missing: Any,
     output: str | None,
     images: tuple[str, ...],
     force: bool,
@@ -209,7 +211,7 @@ def command(
         stated = {name: value for name, value in settings.items() if value not in (None, ())}
         atlas = None
         if files:
-            atlas, notes = collect_notes(partial(read_atlas, *files, measured=scale))
+            atlas, notes = collect_notes(partial(read_atlas, *files, measured=scale, missing=missing))
         make = partial(build, atlas, **stated)
     path = Path(name)
     slices = path.with_suffix(".exr") if settings["debug"] else None

@@ -104,7 +104,7 @@ def test_one_warning_for_all_clipped_entries():
     rows = ([0.5] * 6 + [1.25], [0.5] * 7, [1.5, 1.0, 0.5, -0.04, 0.5, 0.5, 0.5])
     with warns("entry-clipped") as caught:
         found = on_grid(spectra(*rows), GRID)
-    assert "'e2' has 1.5 at 380 nm" in str(caught[0])
+    assert "'e2' has 1.5 at 400 nm" in str(caught[0])
     assert (found.min(), found.max()) == (0.0, 1.0)
     assert [clip.name for clip in resample(spectra(*rows), GRID).clips] == ["e0", "e2"]
     with warnings.catch_warnings():

@@ -178,6 +178,11 @@ class Source:
     notes: tuple[str, ...] = ()
     missing: str = "refuse"
 
+    def changed_options(self) -> dict[str, str]:
+        """Return the options of reading that the caller gave."""
+        options = {"measured": self.measured, "missing": self.missing}
+        return {name: value for name, value in options.items() if value not in ("auto", "refuse")}
+
 
 @dataclass(frozen=True, repr=False)
 class Atlas:

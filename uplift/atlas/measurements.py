@@ -99,12 +99,14 @@ def to_atlas(
     """Make entries of the reflectances of a file: in order of wavelength, without missing values, in units of 1."""
     reflectances, skipped = _reflectances(document, measurements)
     samples = [_in_order(spectrum, document.location, missing) for spectrum in reflectances]
-    kept = [each for each in samples if not each.skipped] or samples
-    skipped += [
-        SkippedEntry(each.spectrum.name, each.skipped, document.path, each.spectrum.line)
-        for each in samples
-        if each not in kept
-    ]
+    kept = [each for each in samples if not each.skipped]
+    if kept:
+        left_out = [each for each in samples if each.skipped]
+        skipped += [
+            SkippedEntry(each.spectrum.name, each.skipped, document.path, each.spectrum.line) for each in left_out
+        ]
+    else:  # an entry says what is wrong
+        kept = samples
     # One scale for all spectra: a dark one alone does not show whether it is in percent.
     scale, scale_note = _scale(document.location, measurements.scales, kept, measured)
     entries = [_entry(each, scale, document) for each in kept]
@@ -255,6 +257,10 @@ def _scale(
         if top > HIGHEST * first.divisor and first.divisor == 1:
             problem = f"the file states '{truncate(first.text)}', and has values up to {top:g}"
             raise location.error(problem, WHICH_SCALE, code="scales-contradict")
+        if first.divisor == PERCENT and top <= DARKEST and samples:
+            problem = f"no value exceeds {top:g} percent, as the file states '{truncate(first.text)}'"
+            hint = "pass measured='fraction' if they are from 0 to 1"
+            warnings.warn(UpliftWarning(problem, code="dark-percent", path=location.path, hint=hint), stacklevel=4)
         return first.divisor, f"scale: 0 to {first.divisor:g}, as stated: '{truncate(first.text)}'"
     if top > HIGHEST:
         _check_one_scale(location, used, highest)

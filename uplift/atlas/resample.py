@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.atlas.atlas import Atlas
+from uplift.atlas.atlas import SLACK, Atlas, Entry
 from uplift.common.arrays import Array
 from uplift.common.errors import UpliftWarning
 from uplift.common.text import listed, pluralise
 
+WIDEST = 20.0
+"""Largest step in nm of a grid whose bands are averaged over."""
 NOISE = 1e-6
 """Distance from [0, 1] that is clipped without a warning, such as −2e−16 for black."""
 
@@ -57,7 +59,9 @@ class Resampled:
 def on_grid(atlas: Atlas, wavelengths: ArrayLike) -> Array:
     """Resample all entries to a wavelength grid.
 
-    The interpolation is a shape-preserving cubic (PCHIP) without overshoot, with constant extrapolation.
+    The interpolation is a shape-preserving cubic (PCHIP) without overshoot, with constant extrapolation. An entry that
+    is sampled more finely than a regular grid of at most 20 nm is averaged over bands as wide as the step (CIE 15:2018,
+    ASTM E308), so that the noise of its samples averages out.
 
     Parameters
     ----------
@@ -112,20 +116,54 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
     Resampled
     """
     grid = np.asarray(wavelengths, dtype=np.float64)
-    entries, alike = atlas.entries, defaultdict[bytes, list[int]](list)
+    entries = atlas.entries
+    alike = defaultdict[bytes, list[int]](list)
     raw = np.empty((len(entries), len(grid)))
     for row, entry in enumerate(entries):
         alike[entry.wavelengths.tobytes()].append(row)
     for rows in alike.values():
+        nm = entries[rows[0]].wavelengths
         values = np.stack([entries[row].values for row in rows])
-        raw[rows] = pchip(entries[rows[0]].wavelengths, values, grid)
-    # Distance from [0, 1]: x − 1 above, −x below
-    excess = np.maximum(raw - 1.0, -raw)
-    clips = []
-    for row in np.flatnonzero(excess.max(axis=1, initial=0) > NOISE).tolist():
-        worst = int(excess[row].argmax())
-        clips.append(Clip(entries[row].name, float(raw[row, worst]), float(grid[worst])))
+        step = _step(grid)
+        is_finer = step and np.median(np.diff(nm)) < step - SLACK
+        raw[rows] = _band_means(nm, values, grid, step) if is_finer else pchip(nm, values, grid)
+    clips = [clip for entry in entries if (clip := _clip(entry, grid))]
     return Resampled(np.clip(raw, 0.0, 1.0), tuple(clips))
+
+
+def _clip(entry: Entry, grid: Array) -> Clip | None:
+    """Return the sample of an entry within the range of a grid that is farthest outside [0, 1]."""
+    # Distance from [0, 1]: x − 1 above, −x below
+    excess = np.maximum(entry.values - 1.0, -entry.values)
+    excess[(entry.wavelengths < grid.min()) | (entry.wavelengths > grid.max())] = 0
+    worst = int(excess.argmax())
+    is_noise = excess[worst] <= NOISE
+    return None if is_noise else Clip(entry.name, float(entry.values[worst]), float(entry.wavelengths[worst]))
+
+
+def _step(grid: Array) -> float:
+    """Return the step of a regular grid in nm; 0 for other grids, and for those that are no sampling of a spectrum."""
+    steps = np.diff(grid)
+    is_sampling = len(steps) > 1 and np.ptp(steps) < SLACK and 0 < steps[0] <= WIDEST
+    return float(steps[0]) if is_sampling else 0.0
+
+
+def _band_means(x: Array, y: Array, at: Array, width: float) -> Array:
+    """Average y (…, n), linear between x (n,) and constant outside, over bands of a width in nm around ``at`` (N,)."""
+    rise = np.diff(y) / np.diff(x)
+    areas = np.diff(x) * (y[..., 1:] + y[..., :-1]) / 2
+    total = np.concatenate([np.zeros((*y.shape[:-1], 1)), np.cumsum(areas, axis=-1)], axis=-1)
+
+    def integral(end: Array) -> Array:
+        """Integrate from x₀ to the ends (N,)."""
+        inside = np.clip(end, x[0], x[-1])
+        row = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, len(x) - 2)
+        t = inside - x[row]
+        within = total[..., row] + t * (y[..., row] + rise[..., row] * t / 2)
+        beyond = (end - inside) * np.where(end < x[0], y[..., :1], y[..., -1:])
+        return np.asarray(within + beyond)
+
+    return (integral(at + width / 2) - integral(at - width / 2)) / width
 
 
 def pchip(x: Array, y: Array, at: Array) -> Array:

@@ -27,7 +27,7 @@ _FRACTION = _any(
     r"\bunits? of 1\b",
 )
 _SCALED = _any(
-    "r[eé]fle[ckx]", r"\brefl?\b", r"\br\b", "remission", "remittance", "albedo", r"\bunits?\b", "scale",
+    "r[eé]fle[ckx]", r"\brefl\b", r"\br\b", "remission", "remittance", "albedo", r"\bunits?\b", "scale",
     r"\bvalues?\b", r"\bdata\b", r"spectr", r"\by\b", r"measured in",
 )  # fmt: skip
 """What a remark on the scale is about."""
@@ -45,18 +45,17 @@ _REFLECTANCE = _any(
     "remittance",
     "albedo",
     r"\br-factor",
-    r"\brefl?\b",
+    r"\brefl\b",
     r"\brfl\b",
     r"%r\b",
     r"\br ?[\[(]?%",
 )
 _MATERIAL = _any(
     "transmi(?:ttance|ssion|ssive|ssivity)", "absor(?:bance|ptance|ption|ptivity)", "extinction", "optical density",
-    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", "standard deviation", r"\bst(?:andard)?[ .]?dev\b",
-    r"\bstd\b", "uncertaint", r"log ?\(? ?1/r",
+    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", r"\bst(?:d|andard)?[ .]*dev", r"\bstd\b", "uncertaint", r"log ?\(? ?1/r",
 )  # fmt: skip
 _LIGHT = _any(
-    "irradiance", "radiance", "radiant", r"\brad\.", "exitance", "emissi(?:on|ve)", "emittance", "illuminance",
+    "irradiance", "radiance", "radiant", r"\brad\b", "exitance", "emissi(?:on|ve)", "emittance", "illuminance",
     "luminance(?! factor)", "luminous (?:flux|intensity)", r"\bspd\b", "(?:spectral|relative) power",
     "(?:spectral|photon) flux", r"\bcounts?\b(?!\W*\d)", r"[µμumn]?w ?[/·* ] ?\(?[cm]?m ?\^?(?:[²2]|-2|⁻²)", r"\bcd/m",
 )  # fmt: skip
@@ -64,8 +63,9 @@ _TRANSMITTANCE = _any(r"\W*(?:%?\W*t\W*%\W*|%\W*t|t\d.*|trans|t ?nm.*|τ.*)\W*")
 _ABSORBANCE = _any(r"\W*(?:abs|od)\W*\d*\W*")
 """Short labels of other quantities."""
 _KEYS = "lux|lx|fc|foot-?candles?|cct|tcp|duv|cri|ra|ppfd|tlci|lumens?|lm|colou?r temperature"
-_PHOTOMETRIC = _any(rf"\W*(?:{_KEYS}) ?(?:[([][^)\]]*[)\]])? ?[:=,;]? ?[+-]?[\d.,]+ ?\w*\W*")
-"""A key of light meters, and its value."""
+_PHOTOMETRIC = _any(rf"\W*(?:{_KEYS}) ?(?:[([][^)\]]*[)\]])? ?[:=,;]? ?(?:[+-]?[\d.,]+ ?\w*)?\W*")
+"""A key of light meters, perhaps with its value."""
+_UNCERTAINTY = _any(r"\W*(?:standard deviation|st(?:d|andard)?\.? ?dev(?:iation|\.)?|std|sd|σ|uncertainty)\W*")
 
 _PLAIN = frozenset(
     (
@@ -145,6 +145,16 @@ def label_quantity(text: str) -> Quantity | None:
     if _TRANSMITTANCE.fullmatch(text):
         return Quantity("transmittance", text)
     return Quantity("absorbance", text) if _ABSORBANCE.fullmatch(text) else None
+
+
+def is_photometric(text: str) -> bool:
+    """Whether a label is a key of light meters, such as 'CCT (K)'."""
+    return bool(_PHOTOMETRIC.fullmatch(text))
+
+
+def name_quantity(text: str) -> Quantity | None:
+    """Return the quantity of a row that is no sample: the deviations of the others."""
+    return Quantity("standard deviation", text) if _UNCERTAINTY.fullmatch(text) else None
 
 
 def remark_quantity(texts: Iterable[str]) -> Quantity | None:

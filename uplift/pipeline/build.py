@@ -349,9 +349,7 @@ def build_stages(
         "uplift": version(),
         "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
         "atlases": [
-            {"name": source.name, "digest": source.digest}
-            | ({} if source.measured == "auto" else {"measured": source.measured})
-            for source in atlas.sources
+            {"name": source.name, "digest": source.digest, **source.changed_options()} for source in atlas.sources
         ],
         "left_out": list(outside.names),
         "skipped": [entry.name for entry in atlas.skipped],

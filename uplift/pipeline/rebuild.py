@@ -130,10 +130,12 @@ def _unchanged_files(data: CubeData, path: StrPath, folders: Sequence[StrPath]) 
 
 def _read(data: CubeData, files: Sequence[RecordedFile]) -> Atlas | None:
     """Read the recorded atlas from its files."""
-    scales = [source.get("measured", "auto") for source in data.provenance["atlases"]]
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UpliftWarning)
-        atlases = [read_atlas(file.path, measured=scale) for file, scale in zip(files, scales, strict=True)]
+    atlases = list[Atlas]()
+    for file, source in zip(files, data.provenance["atlases"], strict=True):
+        options = {key: source[key] for key in ("measured", "missing") if key in source}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UpliftWarning)
+            atlases.append(read_atlas(file.path, **options))
     return merge(atlases) if atlases else None
 
 

@@ -55,7 +55,7 @@ FORMATS = (
     Format("CxF3", (".cxf",), XML + r"CxF\s[^>]{0,4000}colorexchangeformat\.com/CxF3-core", "cxf", "colour-cxf", "io"),
     Format("IES TM-27-14", (".spdx",), XML + r"IESTM2714[\s/>]", "tm27", "colour-science"),
     Format("JCAMP-DX", (".dx", ".jdx"), r"(?i)\A(\s*\$\$.*\n)*\s*##\s*TITLE\s*=", "jcamp_dx", "jcamp", "io"),
-    Format("CGATS", (".txt", ".ti3", ".sp"), r"(?m)^[^\S\n]*BEGIN_DATA_FORMAT[^\S\n]*$", "cgats"),
+    Format("CGATS", (".txt", ".ti3", ".sp"), r"(?m)^[^\S\n]*\"?BEGIN_DATA_FORMAT[\"\t ,;]*$", "cgats"),
     Format(
         "ART measurement archive", (".txt", ".ark"),
         r"(?im)\A\s*ART\s+measurement\s+archive|^[^\S\n]*Entry\s+ID\s*:", "art", written=True,

@@ -3,6 +3,8 @@
 Keywords precede ``BEGIN_DATA_FORMAT``, which lists the fields of a set. ``BEGIN_DATA`` follows with a set per line.
 """
 
+import csv
+import itertools
 import re
 from dataclasses import replace
 
@@ -18,7 +20,6 @@ from uplift.common.text import parse_float
 
 FORMAT, DATA = "DATA_FORMAT", "DATA"
 TOKEN = re.compile(r'"((?:[^"]|"")*)"|(\S+)')
-DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+")
 KEYWORD = re.compile(r'(\w+)\s+(?:"((?:[^"]|"")*)"|(.+))')
 LIGHT_SOURCES = re.compile(r'^\s*DEVICE_CLASS\s+"?DISPLAY', re.MULTILINE)
 """Keyword of ArgyllCMS for measurements of a screen."""
@@ -46,7 +47,7 @@ def _parse(document: Document) -> tuple[list[str], list[Row]]:
     """Return the lines of keywords, and the fields and sets as rows. Raise `AtlasError`."""
     preamble, fields, sets = list[str](), list[Cell](), list[Row]()
     section = ""
-    for line, text in enumerate(document.lines, 1):
+    for line, text in enumerate(_lines(document), 1):
         word = text.strip()
         if word in (f"BEGIN_{FORMAT}", f"BEGIN_{DATA}"):
             if word == f"BEGIN_{FORMAT}" and fields:
@@ -67,6 +68,15 @@ def _parse(document: Document) -> tuple[list[str], list[Row]]:
     return preamble, [tuple(fields), *sets]
 
 
+def _lines(document: Document) -> list[str]:
+    """Return the lines; those that a spreadsheet saved with commas or semicolons have tabs in their place."""
+    labels = next((after for line, after in itertools.pairwise(document.lines) if FORMAT in line), "")
+    delimiter = next((mark for mark in ",;" if mark in labels), None)
+    if delimiter is None or "\t" in labels:
+        return document.lines
+    return ["\t".join(cells).rstrip("\t") for cells in csv.reader(document.lines, delimiter=delimiter)]
+
+
 def _tokens(text: str, count: int | None) -> list[str]:
     """Split a line at tabs if that gives ``count`` tokens, or else at blanks outside of quotes."""
     by_tabs = [token.strip().strip('"') for token in text.strip("\n").strip(" ").split("\t")]
@@ -75,8 +85,7 @@ def _tokens(text: str, count: int | None) -> list[str]:
     by_blanks = [match[1].replace('""', '"') if match[2] is None else match[2] for match in TOKEN.finditer(text)]
     # tokens between tabs are labels of fields only if they are single words; those of a set can be any text
     words = count == len(by_tabs) or (count is None and not any(" " in token for token in by_tabs))
-    tokens = by_tabs if "\t" in text and words else by_blanks
-    return [token.replace(",", ".") if DECIMAL_COMMA.fullmatch(token) else token for token in tokens]
+    return by_tabs if "\t" in text and words else by_blanks
 
 
 def _with_exact_wavelengths(found: Measurements, keywords: dict[str, str]) -> Measurements:

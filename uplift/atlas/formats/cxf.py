@@ -6,7 +6,7 @@ from typing import Any
 from uplift.atlas.atlas import Header, SkippedEntry
 from uplift.atlas.document import Document, one_line
 from uplift.atlas.measurements import Measurements, Spectrum, not_used_note, parsed_by
-from uplift.atlas.statements import Scale
+from uplift.atlas.statements import Quantity, Scale
 from uplift.common.text import listed
 
 START, STEP = 380.0, 10.0
@@ -93,4 +93,4 @@ def _spectrum(name: str, choice: Any, specifications: dict[str, Any]) -> Spectru
     first = start if choice.start_wl is None else choice.start_wl
     values = [float(value) for value in choice.value]
     nm = [float(first + step * index) for index in range(len(values))]
-    return Spectrum(name, nm, values, date=one_line(choice.measure_date))
+    return Spectrum(name, nm, values, date=one_line(choice.measure_date), quantity=Quantity("reflectance", REFLECTANCE))

@@ -8,7 +8,7 @@ import numpy as np
 
 from uplift.atlas.document import MAX_BYTES, Document, SourceLocation, check_scale, one_line, stated_unit
 from uplift.atlas.measurements import Measurements, Spectrum, parsed_by
-from uplift.atlas.statements import Scale, remark_quantity, remark_scale, to_nm, unit_by_values
+from uplift.atlas.statements import Quantity, Scale, remark_quantity, remark_scale, to_nm, unit_by_values
 from uplift.common.errors import AtlasError
 from uplift.common.files import read_bytes
 from uplift.common.text import pluralise
@@ -55,7 +55,7 @@ def read(document: Document) -> Measurements:
         spectra,
         scales=scales or tuple(filter(None, map(remark_scale, texts))),
         notes=(f"layout: {data.name} with its header",),
-        quantity=remark_quantity(texts),
+        quantity=Quantity("reflectance", FACTOR) if FACTOR in fields else remark_quantity(texts),
     )
 
 

@@ -33,9 +33,11 @@ from uplift.atlas.statements import (
     PERCENT,
     Scale,
     find_unit,
+    is_photometric,
     is_plain,
     label_quantity,
     label_scale,
+    name_quantity,
     names_wavelengths,
     remark_quantity,
     remark_scale,
@@ -142,9 +144,12 @@ class Block:
     def unit(self) -> float:
         """Unit of the wavelengths, see `find_unit`."""
         label = " ".join(cell.text for cell in self.labels(self.column))
-        stated = self.run.unit or find_unit(label) or self.grid.unit
+        stated = self.run.unit or find_unit(label)
         if stated is not None:
             return stated
+        # The lines around may be about another range.
+        if self.grid.unit is not None and is_visible(to_nm(self.run.numbers, self.grid.unit)):
+            return self.grid.unit
         if names_wavelengths(label):  # in any order
             return unit_by_values(np.unique(self.run.numbers))
         return unit_by_values(self.run.numbers) if self.column == 0 else NANOMETRE
@@ -169,19 +174,20 @@ class Block:
         corner = row[self.column].text
         labels = [cell.text for cell in row if cell.text and cell is not row[self.column]]
         has_numbers = any(map(is_value, labels))
-        return bool(labels) and (not has_numbers or not corner or names_wavelengths(corner))
+        is_axis = names_wavelengths(corner)
+        return is_axis or (bool(labels) and (not has_numbers or not corner))
 
 
 def read_grid(grid: Grid, stem: str) -> Measurements:
     """Read the spectra of a grid. One without a name has that of the file, ``stem``."""
     table = _samples(grid) or _rows_or_columns(grid)
     scales = [remark_scale(text) for text in table.remarks]
-    quantities = [label_quantity(series.label) for series in table.series]
     nameless = [series for series in table.series if series.name is None]
     spectra = list[Spectrum]()
-    for series, quantity in zip(table.series, quantities, strict=True):
+    for series in table.series:
         first = series.cells[0]
         name = series.name or Cell(stem if len(nameless) == 1 else series.label, first.line)
+        quantity = label_quantity(series.label) or name_quantity(name.text)
         if not name.text and series.name is None:
             raise grid.location.at(first.line).error("the header row is missing", LAYOUT)
         values, percent = _values(series.cells, grid.location.at(entry=name.text))
@@ -220,6 +226,8 @@ def _plain_label(text: str) -> str:
 def _samples(grid: Grid) -> Table | None:
     """Read a table with a row per sample: a name, a wavelength and a reflectance, in any order of columns."""
     for index, header in enumerate(grid.rows[:MAX_PREAMBLE]):
+        if is_value(header[-1].text):
+            continue
         name = _first(header, lambda text: _plain_label(text) in NAME_LABELS)
         wavelength = _first(header, names_wavelengths)
         value = _first(header, lambda text: is_plain(text) or text in ("R", "r"))
@@ -248,7 +256,7 @@ def _sample_table(grid: Grid, index: int, columns: tuple[int, int, int]) -> Tabl
             raise grid.location.at(row[0].line, name.text).error(problem, "write a plain number such as 400")
         else:
             remarks += line_texts([row])
-    if not found:
+    if not found or min(map(len, found.values())) < 2:  # another layout
         return None
     numbers = [number for samples in found.values() for number, _ in samples]
     _, wavelength_column, value_column = columns
@@ -327,10 +335,11 @@ def _wide(grid: Grid, wavelengths: Header) -> Table:
     for number, row in enumerate(body, 1):
         name = Cell(f"sample {number}", row[0].line) if column is None else row[column]
         series.append(Series(label, nm.tolist(), row[run.first : run.last], name))
-    unused = not_used_note(header[other].text for other in others if other != column)
+    unused = [header[other].text for other in others if other != column]
+    remarks += filter(is_photometric, unused)
     if column is not None:
         remarks.append(header[column].text)
-    return Table(series, remarks, ("layout: a row per spectrum", *unused))
+    return Table(series, remarks, ("layout: a row per spectrum", *not_used_note(unused)))
 
 
 def _name_column(header: Row, body: Sequence[Row], others: Sequence[int]) -> int | None:

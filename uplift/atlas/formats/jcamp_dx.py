@@ -12,6 +12,12 @@ from uplift.atlas.statements import Quantity, Scale, label_quantity, label_scale
 from uplift.common.text import pluralise
 
 POINTS = re.compile(r"^##\s*NPOINTS\s*=\s*(\S+)", re.IGNORECASE | re.MULTILINE)
+DATA = re.compile(r"^##\s*XY(?:DATA|POINTS)\s*=.*\n([^#]*)", re.IGNORECASE | re.MULTILINE)
+"""Lines of numbers."""
+COMMA = re.compile(r"(?<![\d.,])([+-]?\d+),(\d+)(?![\d.,])")
+"""A number with a decimal comma, or two numbers."""
+FIRST = re.compile(r"^##\s*(?:FIRST|LAST|DELTA|MIN|MAX)[XY]\s*=\s*[+-]?\d+,\d", re.IGNORECASE | re.MULTILINE)
+"""A single number with a decimal comma."""
 MAX_POINTS = 1_000_000
 REFLECTANCES = ("", "%r", "r", "arbitrary units")
 """Units of values that may be reflectances without the word."""
@@ -26,7 +32,7 @@ def read(document: Document) -> Measurements:
     with parsed_by("jcamp", "JCAMP-DX files", document), contextlib.redirect_stdout(io.StringIO()) as printed:
         import jcamp
 
-        content = jcamp.read(document.text.splitlines())
+        content = jcamp.read(_with_points(document.text).splitlines())
         blocks = content.get("children") or [content]
     # It prints, and does not raise, that check values disagree with the data.
     if "failed" in printed.getvalue() or "Mismatch" in printed.getvalue():
@@ -47,3 +53,13 @@ def read(document: Document) -> Measurements:
         scales += filter(None, [label_scale(unit)])
     notes = (f"layout: {pluralise(len(blocks), 'block')}",)
     return Measurements(tuple(spectra), scales=tuple(scales), notes=notes)
+
+
+def _with_points(text: str) -> str:
+    """Return a text with points in place of decimal commas. Commas between the numbers of pairs stay."""
+    pairs = [match for data in DATA.findall(text) for match in COMMA.finditer(data)]
+    wavelengths = [float(match[1]) for match in pairs]
+    are_pairs = wavelengths == sorted(wavelengths) or wavelengths == sorted(wavelengths, reverse=True)
+    if not FIRST.search(text) and (are_pairs or not pairs):
+        return text
+    return COMMA.sub(r"\1.\2", text)

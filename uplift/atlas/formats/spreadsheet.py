@@ -37,7 +37,7 @@ def read(document: Document) -> Measurements:
     problem = document.location.error(NO_TABLE, HINT, code="not-an-atlas")
     for name in names:
         try:
-            found = read_grid(Grid(_rows(book, name, document), document.location), document.stem)
+            found = read_grid(Grid(_rows(book, name, document), document.location, [name]), document.stem)
             return replace(found, notes=(f"sheet: {name}", *found.notes))
         except AtlasError as error:
             if error.code != problem.code:

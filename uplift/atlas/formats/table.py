@@ -4,17 +4,19 @@ import csv
 import io
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
 
 from uplift.atlas.atlas import Atlas
-from uplift.atlas.document import Document
-from uplift.atlas.formats.cells import Cell, Row, parse_cell, parse_label, trimmed
+from uplift.atlas.document import Document, read_document
+from uplift.atlas.formats.cells import Cell, Row, is_value, parse_cell, parse_label, trimmed
 from uplift.atlas.formats.grid import LAYOUT, Grid, read_grid
 from uplift.atlas.measurements import Measurements
 from uplift.common.csv import csv_text, plain_cell
 from uplift.common.errors import OutputError
+from uplift.common.text import pluralise
 
 DELIMITERS, BLANKS = ",;\t", " "
 """Delimiters of cells; the last one stands for any number of blanks."""
@@ -22,6 +24,8 @@ SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
 """First line of a table that states its delimiter to spreadsheets."""
 SAMPLE_ROWS = 200
 """Rows by which the delimiter is chosen."""
+WAVELENGTHS = "*[Ww]avelength*"
+"""Names of files of wavelengths, one a line below a title."""
 NUMBERS = re.compile(r"[\s\d.,;:+%-]*\d[\s\d.,;:+%-]*")
 """Numbers that another delimiter separates."""
 
@@ -33,7 +37,28 @@ def read(document: Document) -> Measurements:
         rows = list(_split(document, _delimiter(document)))
     except csv.Error as error:
         raise document.location.error(f"not a readable table: {error}", LAYOUT) from None
+    if max(map(len, rows), default=0) == 1 and sum(is_value(cell.text) for (cell,) in rows) > 1:
+        rows = _beside_wavelengths(document, rows)
     return read_grid(Grid(rows, document.location, comments), document.stem)
+
+
+def _beside_wavelengths(document: Document, rows: Sequence[Row]) -> list[Row]:
+    """Join a title and values, one a line, with the wavelengths of another file, as libraries of the USGS have them."""
+    title = next((row for row in rows if not is_value(row[0].text)), (Cell(document.stem, 1),))
+    values = [row for row in rows if is_value(row[0].text)]
+    found = list[list[Row]]()
+    for path in sorted(Path(document.path).parent.glob(WAVELENGTHS)):
+        head, *lines = read_document(path).text.strip().split("\n")
+        if len(lines) == len(values) and path != Path(document.path):
+            texts = [f"Wavelengths: {head}", *lines]
+            found.append(
+                [(Cell(text.strip(), row[0].line), *row) for text, row in zip(texts, [title, *values], strict=True)]
+            )
+    if len(found) != 1:
+        problem = f"has {pluralise(len(values), 'value')} without wavelengths, one a line"
+        hint = "put the file of their wavelengths, with 'Wavelengths' in its name and as many lines, next to it"
+        raise document.location.error(problem, hint, code="not-an-atlas")
+    return found[0]
 
 
 def text(atlas: Atlas) -> str:
@@ -77,6 +102,9 @@ def _split(document: Document, delimiter: str) -> Iterator[Row]:
             texts = [plain_cell(cell.strip()) for cell in cells]
             if delimiter == BLANKS:
                 texts = list(filter(None, texts))
+                words = re.split(r"\s{2,}", lines[line - 1].strip())
+                if len(words) > 1 and not any(map(is_value, texts)):  # labels of several words, in columns
+                    texts = words
             if row := trimmed(Cell(text, line) for text in texts):
                 yield row
         line = reader.line_num + 1
