@@ -95,6 +95,7 @@ library: $(INSTALLED)
 nightly: $(INSTALLED)
 	$(BIN)/python -m tests.fuzz
 	$(BIN)/python -m tests.fuzz.builds 0 2000
+	$(BIN)/python -m tests.fuzz.tables 0 10000
 
 # Packages with the example images of the pages plan, scenes and textures.
 pictures: $(INSTALLED)

@@ -6,7 +6,6 @@ from types import SimpleNamespace
 import colour
 import numpy as np
 import pytest
-from scipy.interpolate import PchipInterpolator
 
 from tests.helpers import raises, warns
 from uplift.atlas import (
@@ -22,7 +21,6 @@ from uplift.atlas import (
 )
 from uplift.atlas.document import SourceLocation
 from uplift.atlas.measurements import Spectrum
-from uplift.atlas.resample import pchip
 from uplift.common.errors import AtlasError, UnknownNameError
 
 RED = Entry("red", [400, 550, 700], [0.0, 0.0, 1.0])
@@ -111,18 +109,3 @@ def test_one_warning_for_all_clipped_entries():
         warnings.simplefilter("error")
         found = on_grid(spectra([-2e-16, 0.5, 1 + 2e-16, 0.5, -9e-7, 0.5, 0.5]), GRID)  # noise
     assert (found.min(), found.max()) == (0.0, 1.0)
-
-
-@pytest.mark.parametrize("count", [2, 3, 4, 12])
-def test_curves_are_those_of_scipy(count):
-    rng = np.random.default_rng(count)
-    for values in (
-        rng.random(count),
-        np.round(2 * rng.random(count)),
-        np.sort(rng.random(count)),
-        np.full(count, 1e-300),
-    ):
-        x = 400 + np.cumsum(rng.uniform(0.1, 30, count))
-        at = np.concatenate([rng.uniform(x[0], x[-1], 50), x])
-        np.testing.assert_array_equal(pchip(x, values, at), PchipInterpolator(x, values)(at))
-    np.testing.assert_allclose(pchip(x, values, np.array([300.0, 900.0])), values[[0, -1]], atol=1e-15)

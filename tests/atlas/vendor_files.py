@@ -46,15 +46,20 @@ def row(values: Sequence[float], separator: str, scale: float = 1.0, comma: bool
 
 @dataclass(frozen=True)
 class Vendor:
-    """A layout: the format that must recognise it, its template, and the number of spectra that it can hold.
+    """A layout: the format that must recognise it, its template, and the programs that write it.
 
-    Samples of libraries of ENVI are numbers of a type, each eighth decimal a unit, in a file of their own.
+    ``count`` spectra fit into it, ``percent`` is not stated, ``skipped`` columns are of other quantities. Samples of
+    libraries of ENVI are numbers of a type, each eighth decimal a unit, in a file of their own. Those of the USGS are
+    beside a file of ``wavelengths``.
     """
 
     format: str
     template: str
+    program: str
     count: int = 6
     percent: bool = False
+    skipped: bool = False
+    wavelengths: bool = False
     encoding: str = "utf-8"
     newline: str = "\n"
     samples: tuple[str, float] | None = None
@@ -77,6 +82,9 @@ class Vendor:
         if self.format == "spreadsheet":
             content = archive(text)
         files = {atlas[0].name + Path(self.template).suffix: content}
+        if self.wavelengths:
+            lines = [" Wavelengths 0.38-0.73 microns", *(f" {nm / 1000:.6E}" for nm in NM)]
+            files["Wavelengths.txt"] = "\n".join(lines).encode()
         if self.samples is None:
             return files
         kind, unit = self.samples
@@ -102,27 +110,39 @@ def archive(text: str) -> bytes:
 
 TABLE, CGATS, ENVI, SHEET = "table", "CGATS", "ENVI spectral library", "spreadsheet"
 VENDORS = (
-    Vendor(TABLE, "plain_csv.csv"),
-    Vendor(TABLE, "excel_csv.csv", encoding="utf-8-sig", newline="\r\n"),
-    Vendor(TABLE, "excel_unicode_text.txt", percent=True, encoding="utf-16", newline="\r\n"),
-    Vendor(TABLE, "utf_16_without_mark.txt", encoding="utf-16-be"),
-    Vendor(TABLE, "commented.csv"),
-    Vendor(TABLE, "konica_minolta.csv", percent=True, encoding="latin-1"),
-    Vendor(TABLE, "datacolor.txt", percent=True),
-    Vendor(TABLE, "babelcolor.csv"),
-    Vendor(TABLE, "lambda_spectrophotometer.csv", percent=True),
-    Vendor(TABLE, "spd.spd", count=1),
-    Vendor(CGATS, "cgats.txt", percent=True),
-    Vendor(CGATS, "xrite.txt", encoding="latin-1", newline="\r\n"),
-    Vendor(CGATS, "argyll_ti3.ti3"),
-    Vendor(CGATS, "argyll_sp.sp", count=1),
-    Vendor("CxF3", "cxf3.cxf"),
-    Vendor("IES TM-27-14", "tm27.spdx", count=1),
-    Vendor("JCAMP-DX", "jcamp_points.jdx", count=1),
-    Vendor("JCAMP-DX", "jcamp_table.dx", count=1),
-    Vendor(ENVI, "envi.hdr", samples=("<i4", 1.0)),
-    Vendor(ENVI, "envi_floats.hdr", samples=(">f8", 1e-8)),
-    Vendor(SHEET, "xlsx.xlsx", percent=True),
-    Vendor(SHEET, "ods.ods", percent=True),
+    Vendor(TABLE, "plain_csv.csv", "programs with tables"),
+    Vendor(TABLE, "excel_csv.csv", "spreadsheets, European", encoding="utf-8-sig", newline="\r\n"),
+    Vendor(TABLE, "excel_percent.csv", "spreadsheets, cells in percent"),
+    Vendor(TABLE, "excel_unicode_text.txt", "Excel, Unicode text", percent=True, encoding="utf-16", newline="\r\n"),
+    Vendor(TABLE, "utf_16_without_mark.txt", "programs for Windows", encoding="utf-16-be"),
+    Vendor(TABLE, "commented.csv", "scripts"),
+    Vendor(TABLE, "konica_minolta.csv", "Konica Minolta SpectraMagic", percent=True, encoding="latin-1"),
+    Vendor(TABLE, "datacolor.txt", "Datacolor", percent=True),
+    Vendor(TABLE, "babelcolor.csv", "BabelColor"),
+    Vendor(TABLE, "lambda_spectrophotometer.csv", "PerkinElmer Lambda", percent=True),
+    Vendor(TABLE, "spd.spd", "Mitsuba", count=1),
+    Vendor(TABLE, "ocean_optics.txt", "Ocean Optics OceanView", count=1, percent=True),
+    Vendor(TABLE, "avantes.txt", "Avantes AvaSoft", count=1, skipped=True),
+    Vendor(TABLE, "spectral_evolution.sed", "Spectral Evolution DARWin", count=1, skipped=True),
+    Vendor(TABLE, "ecostress.txt", "ECOSTRESS and ASTER libraries", count=1),
+    Vendor(TABLE, "usgs_columns.txt", "USGS library 6", count=1, skipped=True),
+    Vendor(TABLE, "usgs_values.txt", "USGS library 7", count=1, wavelengths=True),
+    Vendor(TABLE, "detectors.txt", "spectrometers with three detectors", count=1, skipped=True),
+    Vendor(TABLE, "cary.csv", "Agilent Cary WinUV"),
+    Vendor(TABLE, "uvprobe.txt", "Shimadzu UVProbe", count=1),
+    Vendor(CGATS, "cgats.txt", "programs with CGATS", percent=True),
+    Vendor(CGATS, "xrite.txt", "X-Rite ProfileMaker", encoding="latin-1", newline="\r\n"),
+    Vendor(CGATS, "cgats_spreadsheet.csv", "CGATS saved by spreadsheets", percent=True),
+    Vendor(CGATS, "argyll_ti3.ti3", "ArgyllCMS chartread"),
+    Vendor(CGATS, "argyll_sp.sp", "ArgyllCMS spotread", count=1),
+    Vendor("CxF3", "cxf3.cxf", "X-Rite ColorCert, i1Profiler"),
+    Vendor("IES TM-27-14", "tm27.spdx", "programs with TM-27", count=1),
+    Vendor("JCAMP-DX", "jcamp_points.jdx", "programs with JCAMP-DX", count=1),
+    Vendor("JCAMP-DX", "jcamp_table.dx", "infrared spectrometers", count=1),
+    Vendor("JCAMP-DX", "jcamp_comma.jdx", "programs with decimal commas", count=1),
+    Vendor(ENVI, "envi.hdr", "ENVI, integers", samples=("<i4", 1.0)),
+    Vendor(ENVI, "envi_floats.hdr", "ENVI, floats", samples=(">f8", 1e-8)),
+    Vendor(SHEET, "xlsx.xlsx", "Excel", percent=True),
+    Vendor(SHEET, "ods.ods", "LibreOffice", percent=True),
 )
 """All layouts."""

@@ -3,6 +3,7 @@
 import warnings
 from collections import defaultdict
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -115,6 +116,8 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
     -------
     Resampled
     """
+    from scipy.interpolate import PchipInterpolator
+
     grid = np.asarray(wavelengths, dtype=np.float64)
     entries = atlas.entries
     alike = defaultdict[bytes, list[int]](list)
@@ -124,9 +127,12 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
     for rows in alike.values():
         nm = entries[rows[0]].wavelengths
         values = np.stack([entries[row].values for row in rows])
+        curve = PchipInterpolator(nm, values, axis=1)
         step = _step(grid)
-        is_finer = step and np.median(np.diff(nm)) < step - SLACK
-        raw[rows] = _band_means(nm, values, grid, step) if is_finer else pchip(nm, values, grid)
+        if step and np.median(np.diff(nm)) < step - SLACK:
+            raw[rows] = (_integral(curve, grid + step / 2) - _integral(curve, grid - step / 2)) / step
+        else:
+            raw[rows] = curve(np.clip(grid, nm[0], nm[-1]))
     clips = [clip for entry in entries if (clip := _clip(entry, grid))]
     return Resampled(np.clip(raw, 0.0, 1.0), tuple(clips))
 
@@ -148,47 +154,9 @@ def _step(grid: Array) -> float:
     return float(steps[0]) if is_sampling else 0.0
 
 
-def _band_means(x: Array, y: Array, at: Array, width: float) -> Array:
-    """Average y (…, n), linear between x (n,) and constant outside, over bands of a width in nm around ``at`` (N,)."""
-    rise = np.diff(y) / np.diff(x)
-    areas = np.diff(x) * (y[..., 1:] + y[..., :-1]) / 2
-    total = np.concatenate([np.zeros((*y.shape[:-1], 1)), np.cumsum(areas, axis=-1)], axis=-1)
-
-    def integral(end: Array) -> Array:
-        """Integrate from x₀ to the ends (N,)."""
-        inside = np.clip(end, x[0], x[-1])
-        row = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, len(x) - 2)
-        t = inside - x[row]
-        within = total[..., row] + t * (y[..., row] + rise[..., row] * t / 2)
-        beyond = (end - inside) * np.where(end < x[0], y[..., :1], y[..., -1:])
-        return np.asarray(within + beyond)
-
-    return (integral(at + width / 2) - integral(at - width / 2)) / width
-
-
-def pchip(x: Array, y: Array, at: Array) -> Array:
-    """Interpolate y (…, n), n ≥ 2, from increasing x (n,) to (…, N) by a monotone cubic that is constant outside.
-
-    That of scipy's ``PchipInterpolator``, whose import takes as long as a small fit. Fritsch & Butland 1984.
-    """
-    step, place = np.diff(x), np.clip(at, x[0], x[-1])
-    rise = np.diff(y) / step
-    slope = np.repeat(rise[..., :1], len(x), axis=-1)
-    if len(x) > 2:
-        # Weighted harmonic means of the slopes of neighbouring intervals, 0 at extremes
-        left, right = rise[..., :-1], rise[..., 1:]
-        first, second = step[:-1] + 2 * step[1:], 2 * step[:-1] + step[1:]
-        with np.errstate(all="ignore"):
-            mean = 1 / ((first / left + second / right) / (first + second))
-        slope[..., 1:-1] = np.where((np.sign(left) == np.sign(right)) & (left != 0), mean, 0)
-        # At the ends that of a parabola through three points, limited to 0 … 3 times that of the interval
-        near, other = rise[..., [0, -1]], rise[..., [1, -2]]
-        width, far = step[[0, -1]], step[[1, -2]]
-        parabola = ((2 * width + far) * near - width * other) / (width + far)
-        slope[..., [0, -1]] = np.clip(parabola, np.minimum(0, 3 * near), np.maximum(0, 3 * near))
-    row = np.clip(np.searchsorted(x, place, side="right") - 1, 0, len(x) - 2)
-    # The cubic of Hermite of each interval
-    bend = (slope[..., :-1] + slope[..., 1:] - 2 * rise) / step
-    cubic, square = bend / step, (rise - slope[..., :-1]) / step - bend
-    t = place - x[row]
-    return np.asarray(y[..., row] + slope[..., row] * t + square[..., row] * (t * t) + cubic[..., row] * (t * t * t))
+def _integral(curve: Any, ends: Array) -> Array:
+    """Integrate a `PchipInterpolator` of (E, n) from its first wavelength to ends (N,); it is constant outside."""
+    first, last = curve.x[[0, -1]]
+    inside = np.clip(ends, first, last)
+    constant = np.where(ends < first, curve(first)[:, None], curve(last)[:, None])
+    return np.asarray(curve.antiderivative()(inside) + constant * (ends - inside))

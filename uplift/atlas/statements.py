@@ -52,7 +52,8 @@ _REFLECTANCE = _any(
 )
 _MATERIAL = _any(
     "transmi(?:ttance|ssion|ssive|ssivity)", "absor(?:bance|ptance|ption|ptivity)", "extinction", "optical density",
-    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", r"\bst(?:d|andard)?[ .]*dev", r"\bstd\b", "uncertaint", r"log ?\(? ?1/r",
+    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", r"\bst(?:d|andard)?[ .]*dev", r"\bstd\b", "uncertaint",
+    r"log ?\(? ?1/r",
 )  # fmt: skip
 _LIGHT = _any(
     "irradiance", "radiance", "radiant", r"\brad\b", "exitance", "emissi(?:on|ve)", "emittance", "illuminance",

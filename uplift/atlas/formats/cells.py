@@ -24,8 +24,8 @@ LABEL = re.compile(
 PREFIXES = frozenset(
     (
         "", "nm", "r", "%r", "r%", "%", "rnm", "ρ", "refl", "refl%", "rfl", "spec", "spectral", "spectrum",
-        "spectralnm", "spectrumnm", "spectraldata", "wl", "wavelength", "lambda", "λ", "w", "x", "sci", "sce", "specin", "specex",
-        "reflsci", "reflsce", "t", "%t", "t%", "tnm", "τ",
+        "spectralnm", "spectrumnm", "spectraldata", "wl", "wavelength", "lambda", "λ", "w", "x", "sci", "sce", "specin",
+        "specex", "reflsci", "reflsce", "t", "%t", "t%", "tnm", "τ",
     )
 )  # fmt: skip
 """What labels of wavelengths begin with, in lower case and without blanks, besides the names of quantities."""

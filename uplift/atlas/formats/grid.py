@@ -256,7 +256,8 @@ def _sample_table(grid: Grid, index: int, columns: tuple[int, int, int]) -> Tabl
             raise grid.location.at(row[0].line, name.text).error(problem, "write a plain number such as 400")
         else:
             remarks += line_texts([row])
-    if not found or min(map(len, found.values())) < 2:  # another layout
+    are_measured = any(is_value(name) and not name.isdigit() for name in found)
+    if not found or are_measured or min(map(len, found.values())) < 2:  # another layout
         return None
     numbers = [number for samples in found.values() for number, _ in samples]
     _, wavelength_column, value_column = columns

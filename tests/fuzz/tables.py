@@ -4,13 +4,23 @@ A reader gives the same spectra, or refuses the table; it never gives other valu
 """
 
 import itertools
+import sys
+import tempfile
+import warnings
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
+from pathlib import Path
 
 import numpy as np
 
+from uplift.atlas import Atlas, read_atlas
+from uplift.common.errors import AtlasError, UpliftWarning
+
 NM = np.arange(350.0, 901.0, 10.0)
 """Wavelengths of all spectra."""
+ROUNDING = 2e-5
+"""Largest difference by the digits of a table."""
 UNITS = {
     "nm": (1.0, "Wavelength (nm)"), "plain": (1.0, "Wavelength"), "um": (1e-3, "Wavelength_um"),
     "angstrom": (10.0, "Wavelength [Å]"), "metre": (1e-9, "wavelength [m]"), "wave number": (None, "Wavenumber (cm-1)"),
@@ -193,3 +203,39 @@ def describe(writing: Writing) -> str:
     usual = Writing()
     changed = [each.name for each in fields(Writing) if getattr(writing, each.name) != getattr(usual, each.name)]
     return ", ".join(f"{name}={getattr(writing, name)!r}" for name in changed)
+
+
+def check(seed: int, folder: Path) -> str:
+    """Write a table of a seed and read it: 'read', or the code of the error. Raise `AssertionError` for other values."""
+    generator = np.random.default_rng(seed)
+    writing = draw(generator)
+    reflectances = spectra(writing, generator)
+    path = folder / "table.txt"
+    path.write_bytes(write(writing, reflectances, generator))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UpliftWarning)
+        try:
+            atlas = read_atlas(path)
+        except AtlasError as error:
+            return error.code
+    assert is_same(atlas, writing, reflectances), f"{seed}: {describe(writing)}: {atlas.entries}"
+    return "read"
+
+
+def is_same(atlas: Atlas, writing: Writing, reflectances: dict[str, np.ndarray]) -> bool:
+    """Whether an atlas has the spectra that were written, up to their rounding."""
+    if len(atlas) != len(reflectances):
+        return False
+    for entry, (name, values) in zip(atlas, reflectances.items(), strict=True):
+        expected = np.interp(entry.wavelengths, NM, values)
+        covers = entry.wavelengths[0] <= 380 and entry.wavelengths[-1] >= 780
+        is_named = writing.head == "none" or entry.name.startswith(name)
+        if not (covers and is_named and np.abs(entry.values - expected).max() < ROUNDING):
+            return False
+    return True
+
+
+if __name__ == "__main__":
+    first, last = map(int, sys.argv[1:])
+    with tempfile.TemporaryDirectory() as name:
+        print(dict(Counter(check(seed, Path(name)) for seed in range(first, last))))
