@@ -206,7 +206,7 @@ def describe(writing: Writing) -> str:
 
 
 def check(seed: int, folder: Path) -> str:
-    """Write a table of a seed and read it: 'read', or the code of the error. Raise `AssertionError` for other values."""
+    """Return 'read' for the table of a seed, or the code of the error. Raise `AssertionError` for other values."""
     generator = np.random.default_rng(seed)
     writing = draw(generator)
     reflectances = spectra(writing, generator)

@@ -172,7 +172,9 @@ def remark_quantity(texts: Iterable[str]) -> Quantity | None:
 
 
 def is_plain(text: str) -> bool:
-    """Whether a label of values names no sample, only what is measured: 'R [%]', 'Reflectance'."""
+    """Whether a label of values names no sample, only what is measured: 'R [%]', 'Reflectance', '[counts]'."""
+    if re.fullmatch(r"[\[(].*[\])]", text):
+        return True
     words = [word for word in re.split(r"[\W_]+", text.casefold()) if word]
     has_only = all(word in _PLAIN or _REFLECTANCE.match(word) for word in words)
     return bool(words or text) and has_only and not (len(text) == 1 and text.isalpha())

@@ -169,7 +169,7 @@ class Block:
 
     def _is_head(self, row: Row) -> bool:
         """Whether a row has labels: those of columns of text, or of numbers beside a label of wavelengths."""
-        if not self.column < len(row) <= self.width:
+        if not self.column < len(row) <= self.width or row[self.column].text.endswith(":"):
             return False
         corner = row[self.column].text
         labels = [cell.text for cell in row if cell.text and cell is not row[self.column]]
@@ -387,8 +387,10 @@ def _tall(block: Block) -> Table:
             unused.append(label)
             continue
         if axis != block.column:  # the name may stand above the wavelengths
-            labels += [cell for cell in block.labels(axis) if not names_wavelengths(cell.text)]
-        name = next((cell for cell in labels if not is_plain(cell.text)), None)
+            labels = [cell for cell in block.labels(axis) if not names_wavelengths(cell.text)] + labels
+        # Names stand next to the values, or above their quantity and unit.
+        names = [cell for cell in reversed(labels) if not is_plain(cell.text)]
+        name = next((cell for cell in names if len(cell.text) > 1), next(iter(names), None))
         known = np.flatnonzero(np.isfinite(axes[axis])).tolist()
         series.append(Series(label, axes[axis][known].tolist(), tuple(cells[row] for row in known), name))
     if not series:
