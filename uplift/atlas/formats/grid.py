@@ -174,8 +174,9 @@ class Block:
         corner = row[self.column].text
         labels = [cell.text for cell in row if cell.text and cell is not row[self.column]]
         has_numbers = any(map(is_value, labels))
-        is_axis = names_wavelengths(corner)
-        return is_axis or (bool(labels) and (not has_numbers or not corner))
+        if names_wavelengths(corner):
+            return bool(labels) or len(corner.split()) == 1
+        return bool(labels) and (not has_numbers or not corner)
 
 
 def read_grid(grid: Grid, stem: str) -> Measurements:
@@ -375,6 +376,7 @@ def _tall(block: Block) -> Table:
         return Table([pairs], block.remarks, ("layout: several pairs a line",))
     series, unused = list[Series](), list[str]()
     axis = block.column
+    prefix = block.rows[0][axis].text if block.run.prefix else ""
     for column in range(block.width):
         if column in axes:
             # Of neighbouring columns of wavelengths the first one counts: others repeat it in other units.
@@ -382,13 +384,17 @@ def _tall(block: Block) -> Table:
             continue
         cells = block.cells(column)
         labels = block.labels(column)
-        label = " ".join(cell.text for cell in labels)
+        label = " ".join([prefix, *(cell.text for cell in labels)]).strip()
         if column < block.column or not any(is_value(cell.text) for cell in cells):
             unused.append(label)
             continue
         if axis != block.column:  # the name may stand above the wavelengths
             labels = [cell for cell in block.labels(axis) if not names_wavelengths(cell.text)] + labels
         # Names stand next to the values, or above their quantity and unit.
+        if block.heads and not labels:
+            problem = f"column {column + 1} has values and no label"
+            hint = "label it, and use another separator than the decimal comma"
+            raise block.grid.location.at(cells[0].line).error(problem, hint)
         names = [cell for cell in reversed(labels) if not is_plain(cell.text)]
         name = next((cell for cell in names if len(cell.text) > 1), next(iter(names), None))
         known = np.flatnonzero(np.isfinite(axes[axis])).tolist()

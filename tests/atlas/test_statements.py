@@ -1,0 +1,142 @@
+"""What texts state about scale, quantity and unit of wavelengths, and what they do not."""
+
+import numpy as np
+import pytest
+
+from uplift.atlas.statements import (
+    WAVE_NUMBER,
+    find_unit,
+    is_plain,
+    label_quantity,
+    label_scale,
+    names_wavelengths,
+    remark_quantity,
+    remark_scale,
+    remark_unit,
+    to_nm,
+    unit_by_values,
+)
+
+
+def divisor(scale):
+    return None if scale is None else scale.divisor
+
+
+def name(quantity):
+    return None if quantity is None else quantity.name
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        *dict.fromkeys(
+            ["Reflect. %", "(%R)", "%R", "R% 400", "R [%]", "ochre [%]", "R_pct", "reflectance in percent", "0-100"],
+            100,
+        ).items(),
+        *dict.fromkeys(
+            ["R-factor", "Reflectance factor", "fraction", "R (0-1)", "0..1", "in [0, 1]", "0 to 1"], 1
+        ).items(),
+        *dict.fromkeys(["50% grey", "grey 50 %", "Reflectance", "2020-01-01", "scale factor 10", "fraction 3"]).items(),
+        ("Reflectance factor [%]", 100),
+    ],
+)
+def test_scales_of_labels(text, expected):
+    assert divisor(label_scale(text.replace("_", " "))) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        *dict.fromkeys(
+            ["Units: % Reflectance", "Y Units: Reflectance (percentage)", "values in %", "%", "in percent"], 100
+        ).items(),
+        ("Reflectance as a fraction", 1),
+        *dict.fromkeys(
+            ["Humidity: 45 %", "Relative humidity (%)", "Gloss [%]", "Ink coverage %", "Battery level %"]
+        ).items(),
+    ],
+)
+def test_scales_of_remarks(text, expected):
+    assert divisor(remark_scale(text)) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected", "of_light"),
+    [
+        ("Reflectance", "reflectance", False),
+        ("%R", "reflectance", False),
+        ("Réflectance (%)", "reflectance", False),
+        ("Reflexionsgrad [%]", "reflectance", False),
+        ("%T", "transmittance", False),
+        ("T (%)", "transmittance", False),
+        ("T400", "transmittance", False),
+        ("Abs 400", "absorbance", False),
+        ("Absorbance", "absorbance", False),
+        ("log(1/R)", "log(1/r", False),
+        ("Rad. (Ref.)", "rad", True),
+        ("SPD", "spd", True),
+        ("[counts]", "counts", True),
+        ("Irradiance", "irradiance", True),
+        ("µW/cm²/nm", "µw/cm²", True),
+        ("W·m-2·nm-1", "w·m-2", True),
+        ("mW m^-2 nm^-1", "mw m^-2", True),
+        ("ochre", None, False),
+        ("a", None, False),
+        ("R", None, False),
+    ],
+)
+def test_quantities_of_labels(text, expected, of_light):
+    found = label_quantity(text)
+    assert name(found) == expected
+    assert found is None or found.of_light is of_light
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["LUX 250.5", "CCT: 3050", "CCT(K)=3050", "fc 23.3", "Duv 0.001", "CRI(Ra) 92", "Tcp [K] 3000", "PPFD 3",
+     "LUX 250,5", "Illuminance [lx] 300", "Color temperature 3000 K"],
+)  # fmt: skip
+def test_keys_of_light_meters(text):
+    assert remark_quantity([text]).of_light
+    assert remark_quantity([text, "Mode: reflectance"]).is_reflectance
+    assert remark_quantity(["x 0.43", "Illuminant: D65", "Lamp: xenon", "Scan counts: 3"]) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("Wavelength (nm)", 1), ("[nm]", 1), ("Wavelength nm.", 1), ("WavelengthNM", 1), ("Wavelength_um", 1e3),
+        ("λ/µm", 1e3), ("microns", 1e3), ("micrometers", 1e3), ("Å", 0.1), ("Wavelength (A)", 0.1), ("angstroms", 0.1),
+        ("cm-1", WAVE_NUMBER), ("Wavenumber (cm⁻¹)", WAVE_NUMBER), ("1/cm", WAVE_NUMBER), ("wavelength [m]", 1e9),
+        ("umber", None), ("name", None), ("Mean", None),
+    ],
+)  # fmt: skip
+def test_units(text, expected):
+    assert find_unit(text) == expected
+
+
+def test_units_of_remarks_are_about_wavelengths():
+    assert remark_unit(["Aperture: 8 mm", "Slit: 10 µm", "X Units: Wavelength (micrometers)"]) == 1e3
+    assert remark_unit(["Slit: 10 µm"]) is None
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e3, 0.1, 1e9, WAVE_NUMBER])
+def test_conversions(unit):
+    nm = np.array([380.0, 550.0, 780.0])
+    numbers = 1e7 / nm if unit == WAVE_NUMBER else nm / unit
+    np.testing.assert_allclose(to_nm(numbers, unit), nm)
+
+
+def test_units_by_values_need_an_order():
+    wavelengths = np.linspace(0.35, 2.5, 50)
+    assert unit_by_values(wavelengths) == unit_by_values(wavelengths[::-1]) == 1e3
+    assert unit_by_values(np.linspace(3.5e-7, 8e-7, 50)) == 1e9
+    assert unit_by_values(np.random.default_rng(0).permutation(wavelengths)) == 1.0
+    assert unit_by_values(np.linspace(350, 2500, 50)) == 1.0
+
+
+def test_labels_without_a_name():
+    assert all(map(is_plain, ["Reflectance", "R [%]", "%R", "[counts]", "Reflect. %", "value"]))
+    assert not any(map(is_plain, ["ochre", "R1", "G", "", "Sample reflectance"]))
+    assert all(map(names_wavelengths, ["Wavelength", "wl", "nm", "λ", "X"]))
+    assert not any(map(names_wavelengths, ["nm400", "ochre", "Sample"]))

@@ -1,0 +1,297 @@
+"""Tables as people have them: read right, with a note on what was assumed, or refused."""
+
+import numpy as np
+import pytest
+
+from tests.fuzz.tables import check
+from tests.helpers import raises, warns
+from uplift.atlas import read_atlas
+from uplift.common.errors import AtlasError, UnknownNameError
+from uplift.lights.lamps import read_lamps
+
+NM = np.arange(380, 781, 20)
+VALUES = np.round(0.08 + 0.47 / (1 + np.exp((600 - NM) / 20)), 4)
+
+
+def lines(pattern="{:g},{:g}", factor=1.0, nm=NM):
+    return "".join(pattern.format(at, round(value * factor, 6)) + "\n" for at, value in zip(nm, VALUES, strict=True))
+
+
+def row(name, factor=1.0, pattern="{:g}"):
+    return ",".join([name, *(pattern.format(round(value * factor, 6)) for value in VALUES)]) + "\n"
+
+
+HEADER = ",".join(["name", *map(str, NM)]) + "\n"
+
+
+def check_values(atlas, expected=VALUES):
+    for entry in atlas:
+        np.testing.assert_allclose(entry.wavelengths, NM, atol=1e-6)
+        np.testing.assert_allclose(entry.values, expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_generated_tables_are_read(tmp_path, seed):
+    assert check(seed, tmp_path) == "read"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# reflectance in percent\n" + HEADER + row("felt"),
+        "Paints (%R)\n" + HEADER + row("felt"),
+        "Units: % Reflectance\n" + HEADER + row("felt"),
+        HEADER + row("felt (%R)"),
+        "name," + ",".join(f"R% {at}" for at in NM) + "\n" + row("felt"),
+        "nm,Reflect. %\n" + lines(),
+        "nm,felt [%]\n" + lines(),
+        "Y Units: Reflectance (percentage)\nnm,felt\n" + lines(),
+        "nm,felt\n" + lines("{:g},{:g} %"),
+        "sample,wavelength,Reflectance (%)\n" + lines("felt,{:g},{:g}"),
+    ],
+)
+def test_a_stated_percentage_wins_over_small_values(save, text):
+    with warns("dark-percent"):
+        atlas = read_atlas(save(text))
+    assert "%" in atlas.sources[0].notes[-1] or "percent" in atlas.sources[0].notes[-1]
+    check_values(atlas, VALUES / 100)
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("# reflectance as a fraction\n" + HEADER + row("a", 100), "scales-contradict"),
+        ("nm,R (0-1)\n" + lines(factor=100), "scales-contradict"),
+        ("# values in percent\nnm,R (fraction)\n" + lines(), "scales-contradict"),
+        (HEADER + row("a").replace("0.", "1."), "scale-not-stated"),
+    ],
+)
+def test_contradictions_and_doubts_are_asked_about(save, text, code):
+    with raises(AtlasError, code) as caught:
+        read_atlas(save(text))
+    assert "measured=" in caught.value.hint
+
+
+def test_percent_signs_in_some_cells_are_refused(save):
+    with raises(AtlasError, "mixed-scales"):
+        read_atlas(save(HEADER + row("a").replace("\n", "%\n")))
+
+
+def test_names_with_percentages_are_names(save):
+    atlas = read_atlas(save(HEADER + row("grey 50%") + row("100 % black")))
+    assert atlas.names == ("grey 50%", "100 % black")
+    assert "assumed" in atlas.sources[0].notes[-1]
+    check_values(atlas)
+
+
+LIGHTS = (
+    "LUX\t250.5\nCCT\t3050\nCRI\t92.1\nx\t0.43\n" + lines("{:g}nm\t{:g}"),
+    "Illuminance [lx],344\n" + lines("Spectral Data {:g}[nm],{:g}"),
+    "Name,LUX,CCT," + HEADER[5:] + row("a,300,3000"),
+    "Wavelength,SPD\n" + lines(),
+    "Wavelength (nm),Irradiance (µW/cm²/nm)\n" + lines(),
+    "nm,Counts\n" + lines(factor=1000),
+)
+MATERIALS = (
+    "nm,Transmittance\n" + lines(),
+    "nm,%T\n" + lines(factor=100),
+    "nm,Absorbance\n" + lines(),
+    "name," + ",".join(f"Abs {at}" for at in NM) + "\n" + row("a"),
+)
+
+
+@pytest.mark.parametrize("text", LIGHTS)
+def test_lights_are_no_reflectances(save, text):
+    path = save(text)
+    with raises(AtlasError, "not-reflectance") as caught:
+        read_atlas(path)
+    assert "uplift lights" in caught.value.hint
+    check_values(read_lamps(path), VALUES / VALUES.max())
+
+
+@pytest.mark.parametrize("text", MATERIALS)
+def test_other_quantities_of_materials_are_neither(save, text):
+    with raises(AtlasError, "not-reflectance"):
+        read_atlas(save(text))
+    with raises(AtlasError, "not-a-lamp"):
+        read_lamps(save(text))
+
+
+@pytest.mark.parametrize(
+    "text", ["nm,R%\n" + lines(factor=100), "# Reflectance\n" + HEADER + row("a"), HEADER + row("%R a")]
+)
+def test_reflectances_are_no_lamps(save, text):
+    path = save(text)
+    if "%R a" in text:
+        path = save(text.replace("name", "Reflectance"))
+    with raises(AtlasError, "not-a-lamp"):
+        read_lamps(path)
+
+
+def test_columns_of_other_quantities_are_skipped_by_name(save):
+    text = "nm,ochre,Transmittance,Std Dev\n" + lines("{:g},{:g},0.5,0.001")
+    with warns("entry-skipped"):
+        atlas = read_atlas(save(text))
+    assert atlas.names == ("ochre",)
+    assert [entry.name for entry in atlas.skipped] == ["Transmittance", "Std Dev"]
+    with warns("entry-skipped"):
+        rows = read_atlas(save(HEADER + row("ochre") + row("Std Dev", 0.01)))
+    assert rows.names == ("ochre",)
+
+
+@pytest.mark.parametrize("label", ["{}[nm]", "{}nm", "nm{}", "R_{}", "X{}.0", "{}.0", "R% {}", "Spectral Data {}[nm]"])
+def test_labels_are_wavelengths_in_rows_and_columns(save, label):
+    factor = 100 if "%" in label else 1
+    heads = ["id", *(label.format(at) for at in NM)]
+    check_values(read_atlas(save(",".join(heads) + "\n" + row("a", factor), "wide.csv")))
+    labels = [label.format(at) for at in NM]
+    check_values(read_atlas(save("label,a\n" + lines("{},{:g}", factor, labels), "tall.csv")))
+
+
+@pytest.mark.parametrize(
+    ("head", "pattern", "numbers"),
+    [
+        ("Wavelength (µm),a", "{:.4f},{:g}", NM / 1000),
+        ("Wavelength [Å],a", "{:g},{:g}", NM * 10),
+        ("Wavenumber (cm-1),a", "{:.6f},{:g}", 1e7 / NM),
+        ("wavelength (m),a", "{:.4e},{:g}", NM * 1e-9),
+        ("wavelength,a", "{:.4f},{:g}", NM / 1000),
+        ("X Units: Wavelength (micrometers)", "{:.4f},{:g}", NM / 1000),
+        ("Wavelength range: 0.35-2.5 µm\nnm,a", "{:g},{:g}", NM),
+        ("Wavelength accuracy: 0.1 nm\nwavelength,a", "{:.4f},{:g}", NM / 1000),
+    ],
+)
+def test_units_of_wavelengths(save, head, pattern, numbers):
+    check_values(read_atlas(save(f"{head}\n" + lines(pattern, nm=numbers))))
+
+
+@pytest.mark.parametrize("text", [lines(nm=NM * 10), lines(nm=1e7 / NM), lines(nm=NM + 600)])
+def test_units_that_nothing_states_are_refused_by_their_numbers(save, text):
+    with raises(AtlasError, "atlas") as caught:
+        read_atlas(save(text))
+    assert "400–700 nm" in caught.value.problem
+
+
+def test_samples_in_any_order_are_sorted_with_a_note(save):
+    order = np.random.default_rng(0).permutation(len(NM))
+    shuffled = "nm,a\n" + "".join(f"{NM[at]},{VALUES[at]}\n" for at in order)
+    atlas = read_atlas(save(shuffled))
+    check_values(atlas)
+    assert any("sorted" in note for note in atlas.sources[0].notes)
+
+
+@pytest.mark.parametrize(
+    "outside",
+    [
+        ["350 -0.2", "352 -0.37"], ["350 -9999", "360 -1.23e34"], ["2400 0.4", "2401 -9999"],
+        ["973 0.7", "975 0.5", "975 0.6"], ["350 NaN", "900 n/a"], ["820 --", "840 -999"],
+    ],
+)  # fmt: skip
+def test_faults_outside_the_used_range_are_cut_off(save, outside):
+    atlas = read_atlas(save(lines("{:g} {:g}") + "\n".join(outside) + "\n"))
+    inside = (atlas[0].wavelengths >= 380) & (atlas[0].wavelengths <= 780)
+    np.testing.assert_allclose(atlas[0].values[inside], VALUES)
+
+
+@pytest.mark.parametrize("mark", ["", "NaN", "n/a", "--", "-9999", "-1.23e34", "#N/A"])
+def test_missing_values_within_the_range(save, mark):
+    text = HEADER + row("a").replace(f",{VALUES[5]:g},", f",{mark},", 1) + row("b")
+    path = save(text)
+    with raises(AtlasError, "missing-value") as caught:
+        read_atlas(path)
+    assert (caught.value.line, caught.value.entry) == (2, "a")
+    assert f"{NM[5]} nm" in caught.value.problem
+    filled = read_atlas(path, missing="interpolate")
+    assert NM[5] not in filled["a"].wavelengths
+    assert any("interpolated" in note for note in filled.sources[0].notes)
+    with warns("entry-skipped"):
+        kept = read_atlas(path, missing="skip")
+    assert kept.names == ("b",)
+    assert kept.sources[0].missing == "skip"
+    with raises(UnknownNameError, "unknown-name"):
+        read_atlas(path, missing="zero")
+
+
+def test_values_in_percent_as_spreadsheets_write_them(save):
+    text = (
+        HEADER.replace(",", ";")
+        + row("a", 100).replace(",", " %;").replace(".", ",").replace("a %", "a").strip()
+        + " %\n"
+    )
+    check_values(read_atlas(save(text)))
+
+
+@pytest.mark.parametrize("value", [10.0, 0.1])
+def test_a_value_ten_times_its_neighbours_is_warned_of(save, value):
+    values = np.full(81, 0.3 if value < 1 else 0.08)
+    values[40] *= 1.1 * value if value > 1 else value / 1.1
+    text = "nm,a\n" + "".join(f"{380 + 5 * at},{each:.4f}\n" for at, each in enumerate(values))
+    with warns("odd-value") as caught:
+        read_atlas(save(text))
+    assert (caught[0].entry, "580 nm" in caught[0].problem) == ("a", True)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        lines("{:g}.0 {:g}"),
+        "Data from x\nUser: u\n>>>>>Begin Spectral Data<<<<<\n" + lines("{:g}\t{:g}") + ">>>>>End<<<<<\nsigned\n",
+        lines("{:g},0;{:g}").replace("0.", "0,"),
+        "nm;a\n" + lines("{:g},0;{:g}").replace("0.", "0,"),
+        "nm,a,nm,b\n" + lines("{0:g},{1:g},{0:g},{1:g}"),
+        "pixel,nm,a\n" + "".join(f"{at},{line}\n" for at, line in enumerate(lines().split())),
+        "nm,cm-1,a\n" + "".join(f"{at:g},{1e7 / at:.6f},{value:g}\n" for at, value in zip(NM, VALUES, strict=True)),
+        "nm,a,,\n" + lines("{:g},{:g},,"),
+        "Sample No," + HEADER[5:] + "".join(row(str(number)) for number in range(101, 801, 100)),
+    ],
+)
+def test_where_a_table_begins_and_ends(save, text):
+    check_values(read_atlas(save(text)))
+
+
+def test_pairs_on_a_line_are_one_spectrum(save):
+    pairs = [f"{at:g} {value:g}" for at, value in zip(NM, VALUES, strict=True)]
+    atlas = read_atlas(save("\n".join(" ".join(pairs[at : at + 3]) for at in range(0, len(pairs), 3)), "paint.txt"))
+    assert atlas.names == ("paint",)
+    check_values(atlas)
+
+
+def test_a_second_table_is_named(save):
+    notes = read_atlas(save("nm R\n" + lines("{:g} {:g}") + "\nnm R\n" + lines("{:g} {:g}"))).sources[0].notes
+    assert any("line 25" in note for note in notes)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "nm," + ",".join(map(str, range(101, 801))) + "\n" + lines("{:g},{:g}" + ",0.5" * 699),
+        lines("{:g} {:g} 0.5"),
+        "nm,a\n" + lines("{:g},0,{:g}"),
+    ],
+)
+def test_tables_that_may_mean_two_things_are_refused(save, text):
+    with raises(AtlasError):
+        read_atlas(save(text))
+
+
+def test_values_without_their_wavelengths(tmp_path):
+    (tmp_path / "a.txt").write_text("a paint\n" + "".join(f"{value}\n" for value in VALUES))
+    with raises(AtlasError, "not-an-atlas"):
+        read_atlas(tmp_path / "a.txt")
+    for name in ("Wavelengths_1.txt", "Wavelengths_2.txt"):
+        (tmp_path / name).write_text("Wavelengths in microns\n" + "".join(f"{at / 1000}\n" for at in NM))
+        if name == "Wavelengths_1.txt":
+            check_values(read_atlas(tmp_path / "a.txt"))
+    with raises(AtlasError, "not-an-atlas"):  # which of the two?
+        read_atlas(tmp_path / "a.txt")
+
+
+@pytest.mark.parametrize(("xy", "factor"), [("{:g},0 {}", 100), ("{:g},0; {}", 100)])
+def test_decimal_commas_of_jcamp(save, xy, factor):
+    head = "##TITLE=a\n##JCAMP-DX=4.24\n##XUNITS=NANOMETERS\n##YUNITS=% REFLECTANCE\n##XYPOINTS=(XY..XY)\n"
+    text = "".join(
+        xy.format(at, f"{value * factor:.4f}".replace(".", ",")) + "\n" for at, value in zip(NM, VALUES, strict=True)
+    )
+    check_values(read_atlas(save(head + text + "##END=\n")))
+    pairs = "".join(f"{at:g},{value * factor:.0f}\n" for at, value in zip(NM, VALUES, strict=True))
+    check_values(read_atlas(save(head + pairs + "##END=\n")), np.round(VALUES, 2))
