@@ -1,5 +1,6 @@
 """Files in the layouts of instruments and programs give the spectra that they were written from."""
 
+import re
 import sys
 import zipfile
 
@@ -91,6 +92,31 @@ def test_scale_given_by_the_caller(save):
 def test_other_quantities_are_refused(save, text):
     with raises(AtlasError, "not-reflectance"):
         read_atlas(save(text))
+
+
+def test_conditions_of_cxf_are_kept_in_names(tmp_path):
+    path = LAYOUTS["cxf3"].save(MACBETH[:2], tmp_path)
+    spectrum = re.compile(r'<cc:ReflectanceSpectrum ColorSpecification="[^"]*"')
+    text = path.read_text()
+    (one, *_) = re.findall(r"<cc:ReflectanceSpectrum.*?</cc:ReflectanceSpectrum>", text, re.DOTALL)
+    three = "".join(
+        spectrum.sub(f'<cc:ReflectanceSpectrum ColorSpecification="{each}"', one) for each in ("M0", "M1", "U")
+    )
+    path.write_text(text.replace(one, three))
+    atlas = read_atlas(path)
+    assert atlas.names == ("dark skin M0", "dark skin M1", "dark skin U", "light skin")
+    assert any("M0, M1" in note for note in atlas.sources[0].notes)
+
+
+def test_ignored_values_of_libraries_are_missing(tmp_path):
+    path = LAYOUTS["envi_floats"].save(MACBETH[:1], tmp_path)
+    header = path.with_suffix(".hdr")
+    value = float(MACBETH[0].values[5])
+    header.write_text(f"{header.read_text()}data ignore value = {value!r}\n")
+    with raises(AtlasError, "missing-value") as caught:
+        read_atlas(path)
+    assert "430 nm" in caught.value.problem
+    assert 430 not in read_atlas(path, missing="interpolate")[0].wavelengths
 
 
 def test_transmittances_of_cxf_are_skipped(tmp_path):

@@ -47,23 +47,27 @@ def _content(cxf: Any, path: str) -> Measurements:
     for each in objects:
         name = (each.name or each.id or "").strip()
         choices = each.color_values.choice if each.color_values else []
-        kinds = [type(choice).__name__ for choice in choices]
-        reflectances = [choice for choice, kind in zip(choices, kinds, strict=True) if kind == REFLECTANCE]
-        for number, choice in enumerate(reflectances, 1):
-            condition = _condition(choice, specifications)
-            conditions.add(condition)
-            label = name if len(reflectances) == 1 else f"{name} {condition or choice.name or number}"
+        types = [type(choice).__name__ for choice in choices]
+        reflectances = [choice for choice, kind in zip(choices, types, strict=True) if kind == REFLECTANCE]
+        stated = [_condition(choice, specifications) for choice in reflectances]
+        conditions.update(filter(None, stated))
+        kinds = [
+            condition or choice.color_specification for condition, choice in zip(stated, reflectances, strict=True)
+        ]
+        if len(set(kinds)) < len(kinds):
+            kinds = [choice.name or str(number) for number, choice in enumerate(reflectances, 1)]
+        for kind, choice in zip(kinds, reflectances, strict=True):
+            label = name if len(reflectances) == 1 else f"{name} {kind}"
             spectra.append(_spectrum(label, choice, specifications))
-        others = [OTHER_SPECTRA[kind] for kind in kinds if kind in OTHER_SPECTRA]
+        others = [OTHER_SPECTRA[kind] for kind in types if kind in OTHER_SPECTRA]
         if others and not reflectances:
             skipped.append(SkippedEntry(name, f"it is {others[0]}, not reflectance", path))
-        colours.update(kind for kind in kinds if kind.startswith("Color"))
+        colours.update(kind for kind in types if kind.startswith("Color"))
     header = Header(one_line(information.description) if information else "")
     # the schema has values in (−0.1, 3); some programs write percent
     is_of_schema = all(-0.1 < value < 3 for spectrum in spectra for value in spectrum.values)
     scales = (Scale(1.0, "the schema of CxF3"),) if is_of_schema else ()
-    known = sorted(filter(None, conditions))
-    measured_as = (f"measurement conditions: {listed(known)}",) if known else ()
+    measured_as = (f"measurement conditions: {listed(sorted(conditions))}",) if conditions else ()
     notes = ("layout: an object per spectrum", *measured_as, *not_used_note(sorted(colours)))
     return Measurements(tuple(spectra), skipped=tuple(skipped), scales=scales, header=header, notes=notes)
 
@@ -76,13 +80,12 @@ def _measurements(resources: Any) -> dict[str, Any]:
 
 
 def _condition(choice: Any, specifications: dict[str, Any]) -> str:
-    """Return the measurement condition of ISO 13655, such as M1, or else the name of the colour specification."""
-    name = choice.color_specification or ""
-    measured = specifications.get(name)
+    """Return the measurement condition of ISO 13655, such as M1; empty if none is stated."""
+    measured = specifications.get(choice.color_specification)
     light = measured.device.device_illumination if measured and measured.device else None
-    stated = f"{light.value.value if light and light.value else ''} {name}"
+    stated = f"{light.value.value if light and light.value else ''} {choice.color_specification or ''}"
     found = CONDITION.search(stated)
-    return found[0] if found else name
+    return found[0] if found else ""
 
 
 def _spectrum(name: str, choice: Any, specifications: dict[str, Any]) -> Spectrum:
