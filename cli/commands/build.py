@@ -25,6 +25,7 @@ from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
+    from uplift.atlas import Atlas
     from uplift.lookup import Cube
 
 ALLOWED_WITH_PLAN = {"plan_path", "output", "debug", "force", "quiet", "verbose"}
@@ -185,6 +186,7 @@ def command(
     }
     inputs: tuple[str | Path, ...] = ()
     notes: list[UpliftWarning] = []
+    atlas = None
     if plan_path is not None:
         if others := [option for name, option in given.items() if name not in ALLOWED_WITH_PLAN]:
             raise click.UsageError(f"The plan already sets these options: leave out {', '.join(others)}.")
@@ -209,7 +211,6 @@ def command(
         from uplift.pipeline.build import build
 
         stated = {name: value for name, value in settings.items() if value not in (None, ())}
-        atlas = None
         if files:
             atlas, notes = collect_notes(partial(read_atlas, *files, measured=scale, missing=missing))
         make = partial(build, atlas, **stated)
@@ -232,6 +233,15 @@ def command(
     if slices is not None:
         say(f"{slices}: {pluralise(cube.data.lattice.dim, 'blue slice')}")
     print_notes(cube, notes)
+    _print_assumptions(atlas)
+
+
+def _print_assumptions(atlas: Atlas | None) -> None:
+    """Print the scale of files that state none."""
+    for source in () if atlas is None else atlas.sources:
+        for note in source.notes:
+            if "assumed" in note:
+                paragraph(f"{source.name}: {note}")
 
 
 def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]) -> str:

@@ -47,6 +47,7 @@ HINTS = {
 """Hints in place of the library's, by the code of an error or a warning."""
 IN_COMMANDS = {
     "an emission table": "'uplift lights texture'",
+    "read_lamps()": "'uplift lights' and as --light FILE",
     "shipped_atlases()": "'uplift atlas'",
     "tables.names('RGB space')": "'uplift help spaces'",
     "tables.names('camera')": "'uplift help observers'",

@@ -105,7 +105,7 @@ def test_lights_are_no_reflectances(save, text):
     path = save(text)
     with raises(AtlasError, "not-reflectance") as caught:
         read_atlas(path)
-    assert "uplift lights" in caught.value.hint
+    assert "read_lamps" in caught.value.hint
     check_values(read_lamps(path), VALUES / VALUES.max())
 
 

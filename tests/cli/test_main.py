@@ -335,7 +335,7 @@ def test_progress_off_terminals_is_a_line_now_and_then(monkeypatch, capsys):
         ("build --illuminant nosuch", "; 'uplift help illuminants' lists all"),
         ("build --observer nosuch", "; 'uplift help observers' lists all"),
         ("build --observer paints.csv", "use --space camera"),
-        ("lights build --atlas macbeth", "macbeth: the file states 'reflectance'"),
+        ("lights build --atlas macbeth", "macbeth: the file states 'reflectance spectrum'"),
         ("build --atlas colorchecker", "'uplift atlas' lists"),
         ("build --atlas macbeth --atlas paints.csv", "first used at macbeth:7; leave out one of the two files"),
         ("query 0.1,,0.2", "'0.1,,0.2' is not a colour"),

@@ -218,7 +218,7 @@ def wrong_quantity(quantity: Quantity, location: SourceLocation) -> AtlasError:
     """Create the error for values that are not reflectances."""
     hint = "measure the reflectance, or correct the statement if it is wrong: a cube holds reflectances"
     if quantity.of_light:
-        hint = "read lamps with 'uplift lights', or as --light FILE; an atlas holds reflectances"
+        hint = "it is read by read_lamps(): an atlas holds reflectances"
     problem = f"the file states {quantity.name} ('{truncate(quantity.text)}'), not reflectance"
     return location.error(problem, hint, code="not-reflectance")
 

@@ -91,7 +91,7 @@ LIGHT = {"light": str, "wish": RGB, "answer": RGB, "delta_e": POSITIVE, "possibl
 PROVENANCE = {
     "uplift?": str,
     "options?": {"*": None},  # which are checked where a build is repeated
-    "atlases?": [{**FILE, "measured?": str}, MAX_FILES],
+    "atlases?": [{**FILE, "measured?": str, "missing?": str}, MAX_FILES],
     "libraries?": [FILE, MAX_FILES],
     "families?": [{"name": str, "relevance": NUMBER}, MAX_FILES],
     "looks?": [{"name": str, "rgb": RGB, "weight": (0, 1), "lights": [LIGHT, MAX_LIGHTS]}, MAX_FILES],
