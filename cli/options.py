@@ -17,7 +17,7 @@ from click.shell_completion import CompletionItem
 
 from uplift.common.text import format_value, parse_float, parse_whole
 
-from .inputs import check_figure_page, check_light, check_page, check_plot, find_input_space, parse_wavelengths
+from .inputs import check_figure_page, check_page, check_plot, find_input_space, find_light, parse_wavelengths
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
@@ -150,7 +150,7 @@ class OutputFile(Checked):
 NUMBER, WHOLE = Number(), Whole()
 WHOLE_OR_AUTO = Whole(word="auto")
 WAVELENGTHS = Parsed(parse_wavelengths)
-LIGHT, INPUT_SPACE = Checked(check_light), Checked(find_input_space)
+LIGHT, INPUT_SPACE = Parsed(find_light), Checked(find_input_space)
 OUTPUT, PAGE, PLOT = OutputFile(str), OutputFile(check_page), OutputFile(check_plot)
 FIGURE_PAGE = OutputFile(check_figure_page)
 
@@ -175,8 +175,8 @@ def completion(*sources: str, files: bool = False) -> Callable[..., list[Complet
 
 complete_atlas = completion("atlas:shipped_atlases", files=True)
 complete_cube = completion("lookup.cube:PACKAGED", files=True)
-complete_light = completion("colorimetry.lights:COMMON_NAMES", "colorimetry.tables:names:illuminant")
-complete_observer = completion("colorimetry.tables:names:observer", "colorimetry.tables:names:camera")
+complete_light = completion("colorimetry.lights:COMMON_NAMES", "colorimetry.tables:names:illuminant", files=True)
+complete_observer = completion("colorimetry.tables:names:observer", "colorimetry.tables:names:camera", files=True)
 complete_space = completion("colorimetry.tables:names:RGB space")
 
 
@@ -194,8 +194,8 @@ def repeatable(
 
 
 atlas = partial(repeatable, "--atlas", "files", metavar="FILE", shell_complete=complete_atlas)
-LAMPS = ", such as led, 3200K or FL11"
-named_lights = partial(repeatable, metavar="NAME", type=LIGHT, shell_complete=complete_light)
+LAMPS = ", such as led, 3200K or FL11, or the file of a measured lamp"
+named_lights = partial(repeatable, metavar="NAME|FILE", type=LIGHT, shell_complete=complete_light)
 light = partial(named_lights, "--light", "lights", examples=LAMPS)
 """Why its defaults differ is in `uplift help illuminants`."""
 tolerance = partial(click.option, "--tolerance", metavar="ΔE00", type=NUMBER)
@@ -373,7 +373,12 @@ def observer(camera: str = "") -> Decorator:
 sensor = stacked(
     space("; or camera: raw values"),
     click.option(
-        "--illuminant", default="D65", help="Illuminant under which RGB are defined.", shell_complete=complete_light
+        "--illuminant",
+        metavar="NAME",
+        type=LIGHT,
+        default="D65",
+        help="Illuminant under which RGB are defined.",
+        shell_complete=complete_light,
     ),
     observer(", or with --space camera a camera: name or CSV file of sensitivities"),
 )

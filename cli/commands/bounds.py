@@ -16,6 +16,7 @@ from ..outputs import check_outputs
 from .query import Answers, colour_options, result_object
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.lights import Illuminant
     from uplift.lookup import Cube
     from uplift.lookup.metamer_bounds import Bounds
     from uplift.lookup.query import QueryResult
@@ -55,7 +56,7 @@ DIVISIONS, SINGLE_DIVISIONS = 2, 3
 @options.page("Write a page on which the colour under each --light is dragged within its bounds, for a file of looks.")
 @options.force
 def command(
-    lights: tuple[str, ...], style: str, plot_path: str | None, html: str | None, force: bool, **colours: Any
+    lights: tuple[Illuminant, ...], style: str, plot_path: str | None, html: str | None, force: bool, **colours: Any
 ) -> None:
     import numpy as np
 

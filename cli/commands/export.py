@@ -94,7 +94,13 @@ APPLIES = {
     type=options.WHOLE,
     help="Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier 33, film 192]",
 )
-@click.option("--light", metavar="NAME", help="Illuminant of a cube, clf or film table.")
+@click.option(
+    "--light",
+    metavar="NAME|FILE",
+    type=options.LIGHT,
+    shell_complete=options.complete_light,
+    help="Illuminant of a cube, clf or film table, or the file of a measured lamp.",
+)
 @options.adapt()
 @click.option(
     "--mode",

@@ -22,6 +22,7 @@ from ..output.diagnostics import warn
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.lights import Illuminant
     from uplift.colorimetry.sensor import Light
     from uplift.common.arrays import Array
     from uplift.lookup import Cube
@@ -65,7 +66,7 @@ class Answers:
         mode: str,
         method: str,
         fill_missing: bool,
-        lights: Sequence[str],
+        lights: Sequence[Illuminant],
         **colours: Any,
     ) -> None:
         from uplift.lookup import load
@@ -88,7 +89,8 @@ class Answers:
 
             setting = self.cube.observer, *data.sensor.range
             self.to_srgb = {each.illuminant: each.xyz_to_rgb for each in display_sensors(lights, *setting)}
-            self.lights = [light(name, *setting) for name in self.to_srgb]
+            named = {each.name: each for each in (light(given, *setting) for given in lights)}
+            self.lights = list(named.values())
 
     def __iter__(self) -> Iterator[list[QueryResult]]:
         """Answer block by block, and warn at the end of colours that were mapped or filled."""
@@ -175,7 +177,7 @@ class Answers:
 )
 @options.force
 def command(
-    lights: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
     style: str,
     plot_path: str | None,
     stored: str | None,

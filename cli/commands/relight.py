@@ -23,6 +23,7 @@ from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.lights import Illuminant
     from uplift.lookup import Cube
     from uplift.report.relight import Relit
 
@@ -91,7 +92,7 @@ def _check_output(path: str) -> str:
 @options.force
 def command(
     images: tuple[str, ...],
-    lights: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
     cube_path: str | None,
     files: tuple[str, ...],
     output: str,

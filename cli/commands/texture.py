@@ -109,7 +109,8 @@ image_options = options.stacked(
 @options.fill
 @options.repeatable(
     *("--errors", "errors", "Add a channel with the standard error, ΔE00, under an illuminant, such as error.A"),
-    metavar="NAME",
+    metavar="NAME|FILE",
+    type=options.LIGHT,
     shell_complete=options.complete_light,
 )
 def command(

@@ -15,6 +15,7 @@ from ..output.progress import progress_bar
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.lights import Illuminant
     from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
     from uplift.scene.wavelengths import Choice
@@ -81,7 +82,7 @@ def command(
     orders: tuple[int, int, int] | None,
     channels: str | None,
     files: tuple[str, ...],
-    lights: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
     style: str,
     plot_path: str | None,
     force: bool,

@@ -113,6 +113,9 @@ class Lamp:
         object.__setattr__(self, "wavelengths", wavelengths)
         object.__setattr__(self, "power", power)
 
+    def __str__(self) -> str:
+        return self.name
+
     def at(self, wavelengths: ArrayLike) -> Array:
         """Sample the power at evenly spaced wavelengths (N,) in nm.
 

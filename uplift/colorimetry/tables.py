@@ -82,9 +82,11 @@ def names(kind: str) -> tuple[str, ...]:
 def stated_name(kind: str, name: Illuminant) -> str:
     """Return the name that colour-science states for a name, which may be an alias or have other capitals.
 
-    A lamp, as an illuminant, has its own.
+    A lamp has its own, which must not be that of an illuminant.
     """
     if isinstance(name, Lamp):
+        if name.name in names(kind):
+            raise OptionError(f"a lamp must not have the name of an illuminant, got '{name}'", hint="rename the lamp")
         return name.name
     name, _ = lights.standard_name(name) if kind == "illuminant" else (name, None)
     if name in names(kind):

@@ -1,18 +1,22 @@
 """Lamps: spectral powers of colour-science, and from the formats of atlas files."""
 
+import os
 import warnings
 from dataclasses import replace
 
 import numpy as np
 
 from uplift.atlas.atlas import Atlas, merge, skipped_warning
-from uplift.atlas.document import Document, truncate
+from uplift.atlas.document import Document, SourceLocation, truncate
 from uplift.atlas.formats import read_any
-from uplift.atlas.measurements import Measurements, to_atlas
+from uplift.atlas.measurements import REFLECTANCE, Measurements, to_atlas
 from uplift.atlas.sources import find_atlas_file, read_named
 from uplift.colorimetry import tables
+from uplift.colorimetry.lights import Illuminant, Lamp
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, matching_functions
 from uplift.common.arrays import Array, StrPath
+from uplift.common.errors import UnknownNameError, UpliftError, unknown_name
+from uplift.common.text import listed
 from uplift.lights.discs import Lamps
 
 REFLECTANCES = "reflectance"
@@ -52,6 +56,83 @@ def read_lamps(*paths: StrPath) -> Atlas:
     if atlas.skipped:
         warnings.warn(skipped_warning(atlas.skipped, code="lamp-skipped"), stacklevel=2)
     return atlas
+
+
+def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
+    """Read a measured lamp, for functions that take the name of an illuminant.
+
+    Parameters
+    ----------
+    path : path-like
+        File of spectral powers, in a format of `uplift.read_atlas`: such as CSV or SPD with lines of a wavelength in nm
+        and a power, CGATS, IES TM-27 (.spdx) or a spreadsheet. The powers have any one unit.
+    name : str, optional
+        Name of a lamp in a file of several.
+
+    Returns
+    -------
+    Lamp
+        The lamp, with the name of the file without its suffix, or its own name if the file has several. Names that are
+        those of illuminants are not shortened. Negative powers, which are noise, are 0.
+
+    Raises
+    ------
+    AtlasError
+        The file cannot be read, states reflectances, or has several lamps and no ``name`` is given.
+    UnknownNameError
+        No lamp of the file has the name.
+
+    Examples
+    --------
+    >>> import uplift
+    >>> lamp = uplift.read_lamp("lamp.csv")  # doctest: +SKIP
+    >>> cube.standard_error([0.8, 0.2, 0.1], lamp)  # doctest: +SKIP
+    """
+    lamps = read_lamps(path)
+    location, file = SourceLocation(os.fspath(path)), os.path.basename(path)
+    if name is not None and name not in lamps.names:
+        raise unknown_name(name, lamps.names, f"lamp of {file}")
+    if name is None and len(lamps) != 1:
+        names = listed([f"'{each}'" for each in lamps.names])
+        problem = f"a light is one lamp, got a file of {len(lamps)}: {names}"
+        raise location.error(problem, f"name one of them, as in '{file}:{lamps.names[0]}'" if len(lamps) else "")
+    entry = lamps[0] if name is None else lamps[name]
+    if REFLECTANCE.search(entry.name):
+        raise location.at(entry.line, entry.name).error("a lamp has power, got reflectances", "give spectral powers")
+    short = os.path.splitext(file)[0] if len(lamps) == 1 else entry.name
+    long = file if len(lamps) == 1 else f"{file}:{entry.name}"
+    return Lamp(
+        long if _is_known(short) else short,
+        tuple(entry.wavelengths.tolist()),
+        tuple(np.maximum(entry.values, 0.0).tolist()),
+    )
+
+
+def find_light(text: str) -> Illuminant:
+    """Return the name of an illuminant, or else read the lamp of a file: ``lamp.csv``, or ``lamps.csv:NAME`` of several.
+
+    A name takes precedence over a file. Raises the errors of `read_lamp`, and `UnknownNameError` for a text that is
+    neither.
+    """
+    file, _, name = text.rpartition(":")
+    is_file = os.path.lexists(text)
+    is_part = not is_file and os.path.isfile(file)
+    try:
+        tables.stated_name("illuminant", text)
+    except UnknownNameError:
+        if is_file or is_part:
+            return read_lamp(file, name) if is_part else read_lamp(text)
+        raise
+    return text
+
+
+def _is_known(name: str) -> bool:
+    """Whether an illuminant has a name."""
+    try:
+        tables.stated_name("illuminant", name)
+    except UpliftError:
+        return False
+    return True
 
 
 def _read(document: Document) -> Atlas:
