@@ -116,7 +116,7 @@ def find_light(text: str) -> Illuminant:
     """Return the name of an illuminant, or the lamp of a file. Without a file of this name no reader is imported."""
     from uplift.colorimetry import tables
 
-    if text in tables.names("illuminant") or not os.path.lexists(text) and ":" not in text:
+    if text in tables.names("illuminant") or (not os.path.lexists(text) and ":" not in text):
         tables.stated_name("illuminant", text)
         return text
     from uplift.lights import lamps

@@ -23,6 +23,8 @@ Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
 HELP_ALL = "uplift.help-all"
 """Key of the context's ``meta`` while the whole help is printed."""
+INPUTS = "uplift.inputs"
+"""Key of the context's ``meta`` under which files of lamps are kept: those that name no file do no harm."""
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
 
@@ -143,6 +145,16 @@ class Checked(Parsed):
         return value
 
 
+class Light(Parsed):
+    """The name of an illuminant, or a file of a lamp, which is kept among the inputs of the command."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the name, or the lamp."""
+        if ctx is not None:
+            ctx.meta.setdefault(INPUTS, []).extend((value, value.rpartition(":")[0]))
+        return super().convert(value, param, ctx)
+
+
 class OutputFile(Checked):
     """The name of a file or folder that a command writes."""
 
@@ -150,7 +162,7 @@ class OutputFile(Checked):
 NUMBER, WHOLE = Number(), Whole()
 WHOLE_OR_AUTO = Whole(word="auto")
 WAVELENGTHS = Parsed(parse_wavelengths)
-LIGHT, INPUT_SPACE = Parsed(find_light), Checked(find_input_space)
+LIGHT, INPUT_SPACE = Light(find_light), Checked(find_input_space)
 OUTPUT, PAGE, PLOT = OutputFile(str), OutputFile(check_page), OutputFile(check_plot)
 FIGURE_PAGE = OutputFile(check_figure_page)
 

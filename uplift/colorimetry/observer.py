@@ -103,9 +103,7 @@ def sensor(
     )
 
 
-def on_range(
-    sensor: Sensor, start: float, end: float, step: float, *, illuminant: Illuminant | None = None
-) -> Sensor:
+def on_range(sensor: Sensor, start: float, end: float, step: float, *, illuminant: Illuminant | None = None) -> Sensor:
     """Return a sensor with a range of wavelengths, where the perfect reflector is white again.
 
     ``illuminant`` is that of the sensor, which must be given if it is a lamp.

@@ -109,7 +109,7 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
 
 
 def find_light(text: str) -> Illuminant:
-    """Return the name of an illuminant, or else read the lamp of a file: ``lamp.csv``, or ``lamps.csv:NAME`` of several.
+    """Return the name of an illuminant, or read the lamp of a file: ``lamp.csv``, or ``lamps.csv:NAME`` of several.
 
     A name takes precedence over a file. Raises the errors of `read_lamp`, and `UnknownNameError` for a text that is
     neither.

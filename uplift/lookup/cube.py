@@ -256,8 +256,8 @@ class Cube:
         rgb : array_like, shape (..., 3)
             Linear RGB in [0, 1].
         light : str, Lamp or Light, optional
-            Illuminant, by its name in colour-science, or measured. ``data.error_illuminant`` by default; others need a cube with
-            left-out entries, or raise `OptionError`.
+            Illuminant, by its name in colour-science, or measured. ``data.error_illuminant`` by default; others need
+            a cube with left-out entries, or raise `OptionError`.
 
         Returns
         -------

@@ -57,7 +57,9 @@ class Assessment:
     crowding: Crowding | None
 
 
-def assess(cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequence[Illuminant] = REPORT_LIGHTS) -> Assessment:
+def assess(
+    cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequence[Illuminant] = REPORT_LIGHTS
+) -> Assessment:
     """Assess a cube by its own lattice and, if given, by measured spectra."""
     data = cube.data
     sensors = display_sensors(lights, data.sensor.observer, *data.sensor.range)

@@ -125,7 +125,9 @@ class CubeDiff:
         return has_same_colours and has_same_entries and self.largest <= tolerance
 
 
-def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[Illuminant], images: Mapping[str, Array] | None = None) -> CubeDiff:
+def diff_cubes(
+    cubes: Mapping[str, Cube], lights: Sequence[Illuminant], images: Mapping[str, Array] | None = None
+) -> CubeDiff:
     """Compare two cubes, by name, at the nodes of both, at their entries, and at the colours of images.
 
     Entries are compared by name, each with the spectrum that the cube has for it, even where their colours differ.

@@ -67,7 +67,13 @@ class FilmTable:
 
 
 def write_film(
-    cube: Cube, path: StrPath, *, light: Illuminant | None = None, res: int = SIZE, share: float = SHARE, force: bool = False
+    cube: Cube,
+    path: StrPath,
+    *,
+    light: Illuminant | None = None,
+    res: int = SIZE,
+    share: float = SHARE,
+    force: bool = False,
 ) -> FilmTable:
     """Write a cube as a film table of chromaticities, .npy, and the TOML file that describes it.
 
