@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry import tables
-from uplift.colorimetry.camera import CAMERA, Camera, camera_sensor, read_camera
+from uplift.colorimetry.camera import CAMERA, CAMERA_FILES, Camera, camera_sensor, read_camera
 from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, Illuminant, Lamp
 from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
 from uplift.colorimetry.tables import WAVELENGTHS, samples
@@ -128,7 +128,7 @@ def on_range(sensor: Sensor, start: float, end: float, step: float, *, illuminan
 
 def is_camera_file(observer: str) -> bool:
     """Whether the name of an observer is that of a file of sensitivities, which is read."""
-    return observer.casefold().endswith(".csv")
+    return observer.casefold().endswith(CAMERA_FILES)
 
 
 def find_camera(camera: str | Camera) -> Camera:

@@ -35,6 +35,12 @@ TABLES = {
     "RGB space": "RGB_COLOURSPACES",
 }
 """All tables of colour-science that are used."""
+FILES = {
+    "illuminant": "read the power of a lamp with uplift.read_lamp, and pass the result",
+    "observer": "sensitivities of a camera need space='camera' and a file .csv, .tsv, .txt or .json",
+    "camera": "files of cameras end in .csv, .tsv, .txt or .json",
+}
+"""Hints for files in place of a name."""
 RESPONSES = ("observer", "camera")
 """Kinds that are 0 outside their tables: a wavelength without a value adds nothing. Others keep their last value."""
 SHORT_NAMES = {
@@ -159,9 +165,8 @@ def look_up(kind: str, name: str) -> Any:
     try:
         return table[name]
     except KeyError:
-        if kind == "illuminant" and os.path.isfile(name):
-            hint = "read the power of a lamp from the file with uplift.read_lamp"
-            raise UnknownNameError(f"unknown illuminant '{name}', which is a file", hint=hint) from None
+        if kind in FILES and os.path.isfile(name):
+            raise UnknownNameError(f"unknown {kind} '{name}', which is a file", hint=FILES[kind]) from None
         raise unknown_name(name, known, kind, f"tables.names('{kind}')") from None
 
 

@@ -1,4 +1,4 @@
-"""CSV text: the writer of the project, and the reader of tables that it wrote.
+"""CSV text: the writer of the project, the reader of tables that it wrote, and the parts of readers of others.
 
 A spreadsheet runs a cell that begins with ``=``, ``+``, ``-``, ``@`` or a tab as a formula. Such text is written with
 an apostrophe before it, which spreadsheets hide; `plain_cell` takes it away again. Numbers, also those formatted as
@@ -11,7 +11,12 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from uplift.common.text import parse_float
+
+DELIMITERS = (";", "\t", ",", " ")
+"""Delimiters of cells. The last one stands for any number of blanks."""
 _FORMULA = re.compile(r"'*[=+\-@\t\r\n＝＋－＠]")
+_DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
@@ -51,6 +56,55 @@ def parse_csv(data: bytes) -> list[dict[str, str]]:
     if any(None in row or None in row.values() for row in rows):
         raise ValueError("columns are missing, or lines differ in length")
     return rows
+
+
+def parse_decimal(text: str) -> float:
+    """Parse a number with a decimal point or a decimal comma, which may be infinite or NaN; `ValueError` otherwise.
+
+    >>> parse_decimal("0.25"), parse_decimal("0,25"), parse_decimal("-1,5e-3")
+    (0.25, 0.25, -0.0015)
+    """
+    return parse_float(text if "." in text else _DECIMAL_COMMA.sub(".", text))
+
+
+def is_decimal(text: str) -> bool:
+    """Whether `parse_decimal` accepts a text.
+
+    >>> is_decimal("0,5"), is_decimal("0,5,1"), is_decimal("0.5,1"), is_decimal("red")
+    (True, False, False, False)
+    """
+    try:
+        parse_decimal(text)
+    except ValueError:
+        return False
+    return True
+
+
+def find_delimiter(lines: Iterable[str]) -> str:
+    """Return the one of `DELIMITERS` that splits most numbers off lines, or else the first one.
+
+    >>> [find_delimiter([line]) for line in ("0,2;0,3", "0,2 0,3 0,4", "0.2, 0.3, 0.4", '"0,2","0,3"')]
+    [';', ' ', ',', ',']
+    """
+    lines = list(lines)
+
+    def numbers(delimiter: str) -> int:
+        return sum(is_decimal(cell) for line in lines for cell in split_line(line, delimiter))
+
+    return max(DELIMITERS, key=numbers)
+
+
+def split_line(line: str, delimiter: str) -> list[str]:
+    """Split a line into cells without the blanks around them. `ValueError` for a cell that is too long.
+
+    >>> split_line('"deep, red"; 0,2 ;', ";"), split_line("  0,2   0,3", " ")
+    (['deep, red', '0,2', ''], ['0,2', '0,3'])
+    """
+    try:
+        cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+    except csv.Error as error:
+        raise ValueError(str(error)) from error
+    return [cell.strip() for cell in cells if delimiter != " " or cell.strip()]
 
 
 def plain_cell(cell: str) -> str:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from uplift.atlas.atlas import Atlas, merge, skipped_warning
+from uplift.atlas.atlas import Atlas, Entry, merge, skipped_warning
 from uplift.atlas.document import Document, SourceLocation, truncate
 from uplift.atlas.formats import read_any
 from uplift.atlas.measurements import REFLECTANCE, Measurements, to_atlas
@@ -14,8 +14,9 @@ from uplift.atlas.sources import find_atlas_file, read_named
 from uplift.colorimetry import tables
 from uplift.colorimetry.lights import Illuminant, Lamp
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, matching_functions
+from uplift.colorimetry.spectra_json import POWER, is_json, read_spectra
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import UnknownNameError, UpliftError, unknown_name
+from uplift.common.errors import AtlasError, UnknownNameError, UpliftError, unknown_name
 from uplift.common.text import listed
 from uplift.lights.discs import Lamps
 
@@ -65,7 +66,7 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
     ----------
     path : path-like
         File of spectral powers, in a format of `uplift.read_atlas`: such as CSV or SPD with lines of a wavelength in nm
-        and a power, CGATS, IES TM-27 (.spdx) or a spreadsheet. The powers have any one unit.
+        and a power, CGATS, IES TM-27 (.spdx) or a spreadsheet, or JSON of rawtoaces. The powers have any one unit.
     name : str, optional
         Name of a lamp in a file of several.
 
@@ -88,7 +89,7 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
     >>> lamp = uplift.read_lamp("lamp.csv")  # doctest: +SKIP
     >>> cube.standard_error([0.8, 0.2, 0.1], lamp)  # doctest: +SKIP
     """
-    lamps = read_lamps(path)
+    lamps = _read_json(path) if is_json(path) else read_lamps(path)
     location, file = SourceLocation(os.fspath(path)), os.path.basename(path)
     if name is not None and name not in lamps.names:
         raise unknown_name(name, lamps.names, f"lamp of {file}")
@@ -124,6 +125,16 @@ def find_light(text: str) -> Illuminant:
             return read_lamp(file, name) if is_part else read_lamp(text)
         raise
     return text
+
+
+def _read_json(path: StrPath) -> Atlas:
+    """Read the lamp of a file of rawtoaces."""
+    spectra = read_spectra(path, POWER, AtlasError)
+    powers = spectra.values[:, 0]
+    stem = os.path.splitext(os.path.basename(path))[0]
+    if not powers.max() > 0:
+        raise SourceLocation(os.fspath(path)).error("a lamp must have power, got none above 0", "name another file")
+    return Atlas((Entry(stem, spectra.wavelengths, powers / powers.max(), path=os.fspath(path)),))
 
 
 def _is_known(name: str) -> bool:
