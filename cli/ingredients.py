@@ -6,8 +6,9 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from uplift.common.csv import parse_decimal
 from uplift.common.errors import ColourError, OptionError
-from uplift.common.text import format_value, parse_float
+from uplift.common.text import format_value
 
 from .colours import ColourSource
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.lookup import Cube
 
-PARTS = re.compile(r"\s*([0-9.+-][0-9.eE+-]*)\s*:(.*)", re.DOTALL)
+PARTS = re.compile(r"\s*([0-9.+-][0-9.,eE+-]*)\s*:(.*)", re.DOTALL)
 CONSTANT_SPECTRA = {"white": 1.0, "black": 0.0}
 """The perfect reflector and the perfect absorber: the same value at all wavelengths."""
 
@@ -71,6 +72,8 @@ class SpectrumResolver:
         try:
             [(rgb,)] = ColourSource((text,), space=self.space).blocks(self.cube.data.sensor)
         except ColourError as error:
+            if error.code == "ambiguous-numbers":
+                raise
             hint = "write '#rrggbb', 'r,g,b' in linear RGB, or an entry of the cube's atlas or of --atlas"
             raise ColourError(f"{error.problem} and not an atlas entry", hint=hint) from error
         return self.cube.reflectance(rgb, self.wavelengths)
@@ -78,7 +81,7 @@ class SpectrumResolver:
 
 def _positive(text: str, word: str) -> float:
     try:
-        parts = parse_float(text)
+        parts = parse_decimal(text)
     except ValueError:
         parts = 0.0
     if not 0 < parts < float("inf"):

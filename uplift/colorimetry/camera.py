@@ -124,7 +124,7 @@ def _read_table(path: StrPath) -> Array:
     table: list[list[float]] = []
     try:
         delimiter = find_delimiter(lines)
-        rows = [_without_end(split_line(line, delimiter)) for line in lines]
+        rows = [split_line(line, delimiter) for line in lines]
     except ValueError as error:
         raise OptionError(f"is not a readable table: {error}", path=path, hint=LAYOUT) from error
     for line, cells in enumerate(rows, 1):
@@ -140,10 +140,3 @@ def _read_table(path: StrPath) -> Array:
     numbers = np.array(table).reshape(-1, 4)
     descends = len(numbers) > 1 and (np.diff(numbers[:, 0]) < 0).all()
     return numbers[::-1] if descends else numbers
-
-
-def _without_end(cells: list[str]) -> list[str]:
-    """Return cells without the empty ones at the end, which spreadsheets add."""
-    while cells and not cells[-1]:
-        cells = cells[:-1]
-    return cells

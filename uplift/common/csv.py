@@ -81,30 +81,41 @@ def is_decimal(text: str) -> bool:
 
 
 def find_delimiter(lines: Iterable[str]) -> str:
-    """Return the one of `DELIMITERS` that splits most numbers off lines, or else the first one.
+    """Return the one of `DELIMITERS` that splits most numbers off lines, and few other cells.
 
-    >>> [find_delimiter([line]) for line in ("0,2;0,3", "0,2 0,3 0,4", "0.2, 0.3, 0.4", '"0,2","0,3"')]
-    [';', ' ', ',', ',']
+    Of lines without numbers it is the first one that they have.
+
+    >>> [find_delimiter([line]) for line in ("400,5;0,3", "0,2 0,3 0,4", "0.2, 0.3, 0.4", '"0,2","0,3"', "r,g")]
+    [';', ' ', ',', ',', ',']
     """
     lines = list(lines)
 
-    def numbers(delimiter: str) -> int:
-        return sum(is_decimal(cell) for line in lines for cell in split_line(line, delimiter))
+    def score(delimiter: str) -> tuple[int, int]:
+        cells = [cell for line in lines for cell in split_line(line, delimiter)]
+        numbers = sum(map(is_decimal, cells))
+        return numbers, -len(cells) if numbers else int(len(cells) > len(lines))
 
-    return max(DELIMITERS, key=numbers)
+    return max(DELIMITERS, key=score)
 
 
 def split_line(line: str, delimiter: str) -> list[str]:
-    """Split a line into cells without the blanks around them. `ValueError` for a cell that is too long.
+    """Split a line into cells without the blanks around them, and without empty cells at the end.
 
-    >>> split_line('"deep, red"; 0,2 ;', ";"), split_line("  0,2   0,3", " ")
-    (['deep, red', '0,2', ''], ['0,2', '0,3'])
+    `ValueError` for a cell that is too long.
+
+    >>> split_line('"deep, red"; 0,2 ;;', ";"), split_line("  0,2   0,3", " ")
+    (['deep, red', '0,2'], ['0,2', '0,3'])
     """
     try:
         cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
     except csv.Error as error:
         raise ValueError(str(error)) from error
-    return [cell.strip() for cell in cells if delimiter != " " or cell.strip()]
+    cells = [cell.strip() for cell in cells]
+    if delimiter == " ":
+        return [cell for cell in cells if cell]
+    while cells and not cells[-1]:
+        cells.pop()
+    return cells
 
 
 def plain_cell(cell: str) -> str:
