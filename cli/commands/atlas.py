@@ -11,6 +11,7 @@ import click
 from uplift.common.text import pluralise
 
 from .. import options
+from ..output.answers import as_lists
 from ..output.console import has_colours, make_table, paragraph, print_csv, print_fields, print_json, say, show, swatch
 from ..outputs import check_outputs
 
@@ -128,7 +129,7 @@ def _list_entries(
             "start": float(entry.wavelengths[0]),
             "end": float(entry.wavelengths[-1]),
             "step": entry.step,
-            "rgb": rgb.tolist(),
+            "rgb": as_lists(rgb),
             "in_gamut": bool(in_unit_cube(rgb)),
             "warnings": clips.get(entry.name, ()),
         }

@@ -10,7 +10,7 @@ import click
 from uplift.common.files import write_text
 
 from .. import options
-from ..output.answers import format_rgb, hex_code, patch
+from ..output.answers import as_lists, format_rgb, hex_code, patch
 from ..output.console import make_table, print_csv, print_fields, print_json_answers, say, show
 from ..outputs import check_outputs
 from .query import Answers, colour_options, result_object
@@ -122,7 +122,7 @@ def _print_csv(blocks: Iterable[Block]) -> None:
     columns = ["r", "g", "b", "light", "L*", "a*", "b*", "standard_error", "error_bound"]
     rows = (
         [
-            *result.rgb.tolist(),
+            *as_lists(result.rgb),
             each.light.name,
             *each.lab[row].tolist(),
             result.standard_errors.get(each.light.name),

@@ -83,19 +83,20 @@ def is_decimal(text: str) -> bool:
 def find_delimiter(lines: Iterable[str]) -> str:
     """Return the one of `DELIMITERS` that splits most numbers off lines, and few other cells.
 
-    Of lines without numbers it is the first one that they have.
+    Of lines without numbers it is the first one that they have, of lines without any a semicolon.
 
     >>> [find_delimiter([line]) for line in ("400,5;0,3", "0,2 0,3 0,4", "0.2, 0.3, 0.4", '"0,2","0,3"', "r,g")]
     [';', ' ', ',', ',', ',']
     """
     lines = list(lines)
+    present = [each for each in DELIMITERS if any(each in line for line in lines)] or DELIMITERS[:1]
 
     def score(delimiter: str) -> tuple[int, int]:
         cells = [cell for line in lines for cell in split_line(line, delimiter)]
         numbers = sum(map(is_decimal, cells))
         return numbers, -len(cells) if numbers else int(len(cells) > len(lines))
 
-    return max(DELIMITERS, key=score)
+    return present[0] if len(present) == 1 else max(present, key=score)
 
 
 def split_line(line: str, delimiter: str) -> list[str]:

@@ -13,6 +13,7 @@ from uplift import lookup
 from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.atlas.sources import find_atlas_file
 from uplift.colorimetry import Sensor, observer
+from uplift.colorimetry.sensor import format_rgb, in_unit_cube
 from uplift.colorimetry.srgb import MAX_NUMBER, WrittenColour, is_number, parse_colour
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError, PaletteError, unknown_name
@@ -184,7 +185,11 @@ class _RgbMaterial(SpecModel):
 
     def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
         cube = lookup.load(None if self.cube is None else folder / self.cube)
-        return SpectrumSpec(name, cube.reflectance(self.rgb.rgb(cube.data.sensor), sensor.wavelengths))
+        rgb = self.rgb.rgb(cube.data.sensor)
+        if not in_unit_cube(rgb):
+            problem = f"rgb of the material '{name}' must be in [0, 1], got {format_rgb(rgb)}"
+            raise PaletteError(problem, hint="write linear RGB from 0 to 1, or '#rrggbb' for 8-bit codes")
+        return SpectrumSpec(name, cube.reflectance(rgb, sensor.wavelengths))
 
 
 class _DesignedMaterial(SpecModel):
