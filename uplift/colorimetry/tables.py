@@ -36,7 +36,7 @@ TABLES = {
 }
 """All tables of colour-science that are used."""
 FILES = {
-    "illuminant": "read the power of a lamp with uplift.read_lamp, and pass the result",
+    "illuminant": "here lights are names; pass the lamp that uplift.read_lamp reads from the file",
     "observer": "sensitivities of a camera need space='camera' and a file .csv, .tsv, .txt or .json",
     "camera": "files of cameras end in .csv, .tsv, .txt or .json",
 }

@@ -103,7 +103,7 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
     short = os.path.splitext(file)[0] if len(lamps) == 1 else entry.name
     long = file if len(lamps) == 1 else f"{file}:{entry.name}"
     return Lamp(
-        long if _is_known(short) else short,
+        long if is_illuminant(short) else short,
         tuple(entry.wavelengths.tolist()),
         tuple(np.maximum(entry.values, 0.0).tolist()),
     )
@@ -137,8 +137,8 @@ def _read_json(path: StrPath) -> Atlas:
     return Atlas((Entry(stem, spectra.wavelengths, powers / powers.max(), path=os.fspath(path)),))
 
 
-def _is_known(name: str) -> bool:
-    """Whether an illuminant has a name."""
+def is_illuminant(name: str) -> bool:
+    """Whether an illuminant has the name."""
     try:
         tables.stated_name("illuminant", name)
     except UpliftError:

@@ -84,7 +84,9 @@ def make_scene(atlases: Mapping[str, Atlas], lights: Sequence[Illuminant] = ()) 
 
     def light_set(name: str, members: tuple[Illuminant, ...]) -> LightSet:
         powers = np.stack([observer.illuminant_spd(member, step=samples.STEP) for member in members])
-        return LightSet(nm, surfaces, tuple(map(str, members)), powers / (powers @ weights[:, 1:2]), weights, name)
+        return LightSet(
+            nm, surfaces, tuple(map(str, members)), powers / (powers @ weights[:, 1:2]), weights, members, name
+        )
 
     return Scene(tuple(light_set(*each) for each in named.items()))
 

@@ -30,7 +30,8 @@ class RenderSetup:
     """Materials under lights; `make_setup` makes one from names.
 
     Wavelengths (N,) in nm ascend evenly; reflectances are (M, N), the ``powers`` of the K ``lights`` (K, N), scaled so
-    that the perfect reflector has Y = 1 under each, and the colour-matching functions ``cmfs`` (N, 3).
+    that the perfect reflector has Y = 1 under each, and the colour-matching functions ``cmfs`` (N, 3). ``lights`` are
+    the names of the K ``illuminants``.
     """
 
     wavelengths: Array
@@ -38,6 +39,7 @@ class RenderSetup:
     lights: tuple[str, ...]
     powers: Array
     cmfs: Array
+    illuminants: tuple[Illuminant, ...]
 
     @cached_property
     def xyz(self) -> Array:
@@ -132,7 +134,7 @@ def make_setup(
     table = np.arange(shape[0], shape[1] + step / 2, step)
     cmfs = interp_curves(nm, table, observer.matching_functions(observer_name, *shape).T).T
     powers = interp_curves(nm, table, np.stack([observer.illuminant_spd(each, *shape) for each in lights]))
-    return RenderSetup(nm, materials, tuple(map(str, lights)), powers / (powers @ cmfs[:, 1])[:, None], cmfs)
+    return RenderSetup(nm, materials, tuple(map(str, lights)), powers / (powers @ cmfs[:, 1])[:, None], cmfs, lights)
 
 
 def interp_curves(wavelengths: Array, known: Array, curves: Array) -> Array:
