@@ -61,7 +61,7 @@ def _check_light(name: Any) -> str:
 
 
 def _refuse_key(value: Any) -> Any:
-    raise problem("unknown key")
+    raise problem("unknown key", "leave it out")
 
 
 Paths = Annotated[
