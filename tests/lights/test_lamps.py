@@ -130,6 +130,8 @@ def test_names_of_illuminants_are_not_taken(write):
         ("camera.json", '{"range": [400, 700, 300], "sensitivity": [[1, 2, 3], [1, 2, 3]]}', "atlas"),
         ("range.json", '{"range": [400, 800, 5], "spec": [1, 2, 3]}', "atlas"),
         ("short.json", '{"range": [450, 650, 200], "spec": [1, 2]}', "atlas"),
+        ("none.json", '{"spectral_data": {"index": {"main": ["power"]}, "data": {"main": {}}}}', "atlas"),
+        ("huge.json", '{"range": [400, 700, 300], "spec": [1, 1%s]}' % ("0" * 400), "atlas"),
         ("dark.json", '{"range": [400, 700, 300], "spec": [0, 0]}', "atlas"),
     ],
 )

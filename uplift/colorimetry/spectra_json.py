@@ -45,7 +45,7 @@ def read_spectra(path: StrPath, labels: tuple[str, ...], error: type[UpliftError
         raise error("is not a valid JSON file", path=path, hint=HINT) from cause
     try:
         spectra = _parse(table)
-    except (AttributeError, KeyError, TypeError, ValueError) as cause:
+    except (AttributeError, KeyError, TypeError, ValueError, OverflowError) as cause:
         raise error("is not JSON of rawtoaces, with spectral_data by wavelength", path=path, hint=HINT) from cause
     if sorted(spectra.labels) != sorted(labels):
         problem = f"must have the columns {', '.join(labels)}, got {', '.join(spectra.labels)}"
@@ -63,7 +63,7 @@ def _parse(table: dict[str, Any]) -> LabelledSpectra:
         start, end, step = map(float, table["range"])
         values = np.array(table[key], dtype=float).reshape(-1, len(labels))
         nm: Array = start + step * np.arange(len(values), dtype=np.float64)
-        if abs(nm[-1] - end) > 1e-6:
+        if not len(nm) or abs(nm[-1] - end) > 1e-6:
             raise ValueError("the range does not fit the number of rows")
         return LabelledSpectra(labels, nm, values)
     spectra = table["spectral_data"]

@@ -132,7 +132,7 @@ def _read_json(path: StrPath) -> Atlas:
     spectra = read_spectra(path, POWER, AtlasError)
     powers = spectra.values[:, 0]
     stem = os.path.splitext(os.path.basename(path))[0]
-    if not powers.max() > 0:
+    if not powers.max(initial=0) > 0:
         raise SourceLocation(os.fspath(path)).error("a lamp must have power, got none above 0", "name another file")
     return Atlas((Entry(stem, spectra.wavelengths, powers / powers.max(), path=os.fspath(path)),))
 
