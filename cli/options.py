@@ -343,7 +343,7 @@ def colours(xyz: str, space: str) -> Decorator:
     return stacked(
         click.argument("colour", metavar="[COLOUR]...", nargs=-1),
         click.option(
-            "--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input."
+            "--input", "input_path", metavar="FILE", help="Table of colours, one per line; '-' is standard input."
         ),
         click.option("--xyz", type=NUMBER, nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."),
         click.option(
@@ -379,19 +379,20 @@ def space(camera: str = "") -> Decorator:
 def observer(camera: str = "") -> Decorator:
     """``--observer``."""
     default, text = "CIE 1931 2 Degree Standard Observer", f"Standard observer{camera}."
-    return click.option("--observer", default=default, help=text, shell_complete=complete_observer)
+    metavar = "NAME|FILE" if camera else "NAME"
+    return click.option("--observer", metavar=metavar, default=default, help=text, shell_complete=complete_observer)
 
 
 sensor = stacked(
     space("; or camera: raw values"),
     click.option(
         "--illuminant",
-        metavar="NAME",
+        metavar="NAME|FILE",
         type=LIGHT,
         default="D65",
-        help="Illuminant under which RGB are defined.",
+        help="Illuminant under which RGB are defined; a cube needs a name, other commands read the file of a lamp.",
         shell_complete=complete_light,
     ),
-    observer(", or with --space camera a camera: name or CSV file of sensitivities"),
+    observer(", or with --space camera a camera: name or FILE of sensitivities (CSV, or JSON of rawtoaces)"),
 )
 """``space``, ``illuminant`` and ``observer``, for `uplift.colorimetry.observer.sensor`."""

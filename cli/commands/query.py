@@ -167,6 +167,7 @@ class Answers:
       uplift query --xy 0.17 0.7 --luminance 0.15 --format json
       echo 0.5,0.5,0.5 | uplift query - --format json
       uplift query '#cc3319' --cube macbeth-32.uplift --light FL11 --light HP1
+      uplift query '#cc3319' --light lamp.spd
       uplift query --check spectra.csv
 
     Standard errors are those of materials like the entries of the cube's atlas. RGB does not identify a material:

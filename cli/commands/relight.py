@@ -69,7 +69,7 @@ def _check_output(path: str) -> str:
       uplift relight wood.png -o wood.html
       uplift relight wood.png --atlas paints.csv --light led --light HP1 -o my.png
       uplift relight --cube macbeth-32.uplift --format json -o cube.html
-      uplift relight painting.exr --light 3200K --light led -o relit.exr
+      uplift relight painting.exr --light 3200K --light lamp.spd -o relit.exr
 
     Eye and camera adapt to lights that look white, so their white becomes the white of the screen. The eye does not
     adapt to a sodium lamp: such lights keep their tint. --adapt or --no-adapt shows all lights alike, and pages have a

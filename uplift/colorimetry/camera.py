@@ -18,7 +18,7 @@ CAMERA = "camera"
 """Name of the RGB space of raw values, balanced so that the perfect reflector is (1, 1, 1)."""
 LAYOUT = "give rows of a wavelength in nm and the sensitivities of red, green and blue"
 CAMERA_FILES = (".csv", ".tsv", ".txt", ".json")
-"""Suffixes of files of sensitivities, by which they are told from names."""
+"""Suffixes of files of sensitivities, which distinguish them from names."""
 MAX_BYTES = 1_000_000
 CORRELATED = 50.0
 """Distance in nm over which the correlation of the reflectances that a camera's matrix is fitted to falls to 1/e."""
