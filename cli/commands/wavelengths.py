@@ -99,6 +99,7 @@ def command(
     from uplift.scene import wavelengths as library
 
     check_outputs(plot_path, inputs=atlas_files(files))
+    observer.require_observer(camera["observer"], "weights of wavelengths")
     sensor = observer.sensor(**camera)
     atlas = merge(read_atlases(files).values())
     setting = library.make_setup(on_grid(atlas, library.grid()), lights or ("D65",), observer_name=camera["observer"])

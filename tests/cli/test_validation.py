@@ -101,6 +101,7 @@ file-not-found info none.uplift
 file-not-found lights build --atlas none.csv
 unknown-name lights build --space none
 unknown-name lights build --observer none
+option lights build --observer none.csv
 file-not-found lights info none.uplift --plot x.png --html x.html
 file-not-found lights query 1 1 1 --lights none.uplift --plot x.png
 unknown-name lights query 1 1 1 --input-space none --plot x.png
@@ -213,6 +214,7 @@ option wavelengths --wavelengths 0.4:0.7:0.1 --atlas macbeth
 unknown-name wavelengths --count 4 --illuminant none --plot x.png
 file-not-found wavelengths --count 4 --atlas macbeth --atlas none.csv --plot x.png
 option wavelengths --count 99 --plot x.png
+option wavelengths --count 4 --space camera --observer none.json --plot x.png
 unknown-name wavelengths --count 4 --light none --plot x.png
 option wavelengths --wavelengths 1:2:1 --plot x.png
 option wavelengths --tolerance 0 --plot x.png

@@ -79,7 +79,7 @@ def sensor(
         if tables.rgb_space(camera.name) is not None:
             raise OptionError(f"a camera must not have the name of an RGB space, got '{camera.name}'")
         return camera_sensor(camera, sensor(illuminant=illuminant))
-    if isinstance(observer, Camera) or is_camera_file(observer) or observer in tables.names("camera"):
+    if is_camera(observer):
         raise OptionError("a camera in place of an observer has its own RGB space", hint=f"use space='{CAMERA}'")
     rgb_space = tables.rgb_space(space)
     if rgb_space is None:
@@ -129,6 +129,19 @@ def on_range(sensor: Sensor, start: float, end: float, step: float, *, illuminan
 def is_camera_file(observer: str) -> bool:
     """Whether the name of an observer is that of a file of sensitivities, which is read."""
     return observer.casefold().endswith(CAMERA_FILES)
+
+
+def is_camera(observer: str | Camera) -> bool:
+    """Whether an observer is a camera, or the name or file of one."""
+    return isinstance(observer, Camera) or is_camera_file(observer) or observer in tables.names("camera")
+
+
+def require_observer(observer: str | Camera, purpose: str) -> None:
+    """Raise `OptionError` for a camera in place of an observer, where XYZ are needed for a ``purpose``."""
+    if is_camera(observer):
+        name = observer.name if isinstance(observer, Camera) else observer
+        problem = f"{purpose} need XYZ, which raw values of the camera '{name}' do not determine"
+        raise OptionError(problem, hint="use a standard observer")
 
 
 def find_camera(camera: str | Camera) -> Camera:

@@ -36,7 +36,7 @@ TABLES = {
 }
 """All tables of colour-science that are used."""
 FILES = {
-    "illuminant": "here lights are names; pass the lamp that uplift.read_lamp reads from the file",
+    "illuminant": "here an illuminant is a name; in Python pass the lamp that uplift.read_lamp reads",
     "observer": "sensitivities of a camera need space='camera' and a file .csv, .tsv, .txt or .json",
     "camera": "files of cameras end in .csv, .tsv, .txt or .json",
 }
