@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Sequence
 from functools import partial
@@ -128,11 +129,12 @@ def command(
             converter = texture.prepare_relighter(extra or load(), lights, adapt=balanced, threads=threads, **pixels)
             conversion = texture.convert(converter, paths[0], output, force=force, progress=progress)
         warn(conversion.warnings)
-        names = converter.header["uplift.lights"]
+        shown = json.loads(converter.header["uplift.texture"])["lights"]
         if style == "json":
-            print_json({"output": output, "lights": names.split(", "), "pixels": conversion.counts.pixels})
+            print_json({"output": output, "lights": shown, "pixels": conversion.counts.pixels})
         else:
-            paragraph(f"{output}: {Path(paths[0]).name} under {names}, {pluralise(conversion.counts.pixels, 'pixel')}")
+            names, count = ", ".join(shown), pluralise(conversion.counts.pixels, "pixel")
+            paragraph(f"{output}: {Path(paths[0]).name} under {names}, {count}")
     else:
         with progress_bar("computing spectra"):
             packaged = load()

@@ -125,6 +125,7 @@ def test_names_of_illuminants_are_not_taken(write):
         ("short.csv", "450,1\n500,2\n600,1\n", "atlas"),
         ("dark.csv", "400,0\n700,0\n", "atlas"),
         ("card.csv", "wavelength,reflectance\n400,0.1\n500,0.2\n700,0.3\n", "atlas"),
+        ("filter.csv", "nm;Transmittance\n400;0,1\n500;0,2\n700;0,3\n", "atlas"),
         ("other.json", "[]", "atlas"),
         ("broken.json", "{", "atlas"),
         ("camera.json", '{"range": [400, 700, 300], "sensitivity": [[1, 2, 3], [1, 2, 3]]}', "atlas"),

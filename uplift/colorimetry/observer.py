@@ -79,7 +79,7 @@ def sensor(
         if tables.rgb_space(camera.name) is not None:
             raise OptionError(f"a camera must not have the name of an RGB space, got '{camera.name}'")
         return camera_sensor(camera, sensor(illuminant=illuminant))
-    if is_camera(observer):
+    if isinstance(observer, Camera) or is_camera(observer):
         raise OptionError("a camera in place of an observer has its own RGB space", hint=f"use space='{CAMERA}'")
     rgb_space = tables.rgb_space(space)
     if rgb_space is None:

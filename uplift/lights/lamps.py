@@ -1,6 +1,7 @@
 """Lamps: spectral powers of colour-science, and from the formats of atlas files."""
 
 import os
+import re
 import warnings
 from dataclasses import replace
 
@@ -9,7 +10,7 @@ import numpy as np
 from uplift.atlas.atlas import Atlas, Entry, merge, skipped_warning
 from uplift.atlas.document import Document, SourceLocation, truncate
 from uplift.atlas.formats import read_any
-from uplift.atlas.measurements import REFLECTANCE, Measurements, to_atlas
+from uplift.atlas.measurements import Measurements, to_atlas
 from uplift.atlas.sources import find_atlas_file, read_named
 from uplift.colorimetry import tables
 from uplift.colorimetry.lights import Illuminant, Lamp
@@ -17,11 +18,13 @@ from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, matc
 from uplift.colorimetry.spectra_json import POWER, is_json, read_spectra
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import AtlasError, UnknownNameError, UpliftError, unknown_name
-from uplift.common.text import listed
+from uplift.common.text import listed, printable
 from uplift.lights.discs import Lamps
 
 REFLECTANCES = "reflectance"
 """Quantity of a measurement archive."""
+MATERIAL = re.compile(r"reflect|remission|transmi|absorb", re.IGNORECASE)
+"""Labels of columns that are not the power of a lamp."""
 VISIBLE = (400.0, 700.0)
 """Range in nm that a lamp must cover."""
 SAME_LAMP = 1e-3
@@ -90,7 +93,7 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
     >>> cube.standard_error([0.8, 0.2, 0.1], lamp)  # doctest: +SKIP
     """
     lamps = _read_json(path) if is_json(path) else read_lamps(path)
-    location, file = SourceLocation(os.fspath(path)), os.path.basename(path)
+    location, file = SourceLocation(os.fspath(path)), printable(os.path.basename(path))
     if name is not None and name not in lamps.names:
         raise unknown_name(name, lamps.names, f"lamp of {file}")
     if name is None and len(lamps) != 1:
@@ -98,8 +101,9 @@ def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
         problem = f"a light is one lamp, got a file of {len(lamps)}: {names}"
         raise location.error(problem, f"name one of them, as in '{file}:{lamps.names[0]}'" if len(lamps) else "")
     entry = lamps[0] if name is None else lamps[name]
-    if REFLECTANCE.search(entry.name):
-        raise location.at(entry.line, entry.name).error("a lamp has power, got reflectances", "give spectral powers")
+    if MATERIAL.search(entry.name):
+        problem = f"a lamp has power, got a column of '{truncate(entry.name)}'"
+        raise location.at(entry.line, entry.name).error(problem, "give spectral powers")
     short = os.path.splitext(file)[0] if len(lamps) == 1 else entry.name
     long = file if len(lamps) == 1 else f"{file}:{entry.name}"
     return Lamp(
