@@ -109,3 +109,15 @@ def test_scenes_name_lamps(run, refuse, home, files):
         assert refuse("plan", "scene.toml", "-o", "x.json").where == "scene.toml"
     scene.write_text('textures = ["wood.png"]\nlamp_files = []\n')
     assert refuse("plan", "scene.toml").code == "invalid-file"
+
+
+def test_palettes_name_lamps(run, refuse, home, files):
+    text = '[materials]\ncard = {{rgb = [0.5, 0.5, 0.5]}}\n[lights]\nday = {{illuminant = "{}"}}\n'
+    palette = home / "palette.toml"
+    for name in ("lamp.spd", "two.csv:warm"):
+        palette.write_text(text.format(name))
+        assert json.loads(run("palette", "palette.toml", "--format", "json").stdout)
+        assert refuse("palette", "palette.toml", "-o", name.partition(":")[0], "--force").code == "output-is-input"
+    for name in ("card.csv", "none.spd", "../lamp.spd", "two.csv", "D66"):
+        palette.write_text(text.format(name))
+        assert refuse("palette", "palette.toml", "-o", "x.csv").code in ("atlas", "unknown-name", "invalid-file")

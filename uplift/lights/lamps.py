@@ -119,16 +119,20 @@ def find_light(text: str) -> Illuminant:
     A name takes precedence over a file. Raises the errors of `read_lamp`, and `UnknownNameError` for a text that is
     neither.
     """
-    file, _, name = text.rpartition(":")
-    is_file = os.path.lexists(text)
-    is_part = not is_file and os.path.isfile(file)
+    file = lamp_file(text)
     try:
         tables.stated_name("illuminant", text)
     except UnknownNameError:
-        if is_file or is_part:
-            return read_lamp(file, name) if is_part else read_lamp(text)
+        if os.path.lexists(file):
+            return read_lamp(file, text[len(file) + 1 :] if file != text else None)
         raise
     return text
+
+
+def lamp_file(text: str) -> str:
+    """Return the file of ``lamp.csv``, or of ``lamps.csv:NAME``, if there is one."""
+    file = text.rpartition(":")[0]
+    return file if not os.path.lexists(text) and os.path.isfile(file) else text
 
 
 def _read_json(path: StrPath) -> Atlas:

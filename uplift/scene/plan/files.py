@@ -18,7 +18,7 @@ from uplift.common.spec_file import SpecFile, SpecModel, check_inside, problem, 
 from uplift.common.text import format_value
 from uplift.io.scene_colours import Images
 from uplift.io.texture.colours import check_encoding
-from uplift.lights.lamps import find_light, is_illuminant
+from uplift.lights.lamps import find_light, is_illuminant, lamp_file
 from uplift.lookup import Cube
 from uplift.pipeline.build import build, problem_of
 from uplift.pipeline.options import Options, recorded_options
@@ -169,8 +169,7 @@ def _read_lights(file: SpecFile, names: tuple[str, ...]) -> tuple[tuple[Illumina
         except UpliftError as error:
             file.fail(("lights", number), str(error), code=error.code)
         if isinstance(lights[-1], Lamp):
-            path = file.path.parent / name
-            files.append(path if os.path.exists(path) else Path(str(path).rpartition(":")[0]))
+            files.append(Path(lamp_file(str(file.path.parent / name))))
     try:
         observer.check_distinct(lights)
     except OptionError as error:
