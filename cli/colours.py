@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import codecs
-import csv
 import io
 import math
 import re
@@ -13,8 +12,9 @@ from typing import IO, TYPE_CHECKING
 
 import click
 
+from uplift.common.csv import DELIMITERS, find_delimiter, parse_decimal, split_line
 from uplift.common.errors import ColourError, UpliftWarning
-from uplift.common.text import format_value, parse_float
+from uplift.common.text import format_value
 
 from .inputs import find_input_space
 from .output.diagnostics import warn
@@ -24,7 +24,15 @@ if TYPE_CHECKING:
     from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
 
+AMBIGUOUS = re.compile(r"(?:[01](?:,\d+)?,){2}[01](?:,\d+)?", re.ASCII)
+"""Whole numbers between commas that may be three numbers from 0 to 1 with decimal commas."""
+RGBA = re.compile(r"[01](?:,[01]){3}")
+DECIMAL = re.compile(r"[+-]?\d+(?:,\d+)?", re.ASCII)
+"""A whole number, or one with a decimal comma."""
+DECIMALS = "write decimal points, or separate numbers with decimal commas by semicolons: '0,2;0,3;0,4'"
 HEX = re.compile(r"#?([0-9a-fA-F]{6})|#([0-9a-fA-F]{3})")
+STATED_DELIMITER = re.compile(r"\s*\"?sep=.\"?\s*", re.IGNORECASE)
+"""First line that states the delimiter to spreadsheets."""
 SYNTAX = "write three numbers (R G B) or a hex colour such as '#cc3319'"
 TABLE = "give a CSV file of colours"
 CHUNK = 1 << 16
@@ -63,6 +71,8 @@ class ColourSource:
         colours = _parse_words(self.words)
         if self.encoded:
             _warn_of_fractions(colours)
+        elif ambiguous := [word for word in self.words if _is_ambiguous(word)]:
+            raise _ambiguous(ambiguous[0])
         return [self._linear(colours, sensor)]
 
     def _read(self, path: str, sensor: Sensor, bounded: bool) -> Iterator[Array]:
@@ -75,15 +85,21 @@ class ColourSource:
     def parse_table(self, file: IO[bytes], name: str, sensor: Sensor, bounded: bool = False) -> Iterator[Array]:
         """Parse lines of 'r,g,b' or hex colours into blocks of linear RGB (n, 3), as the lines come.
 
-        A first line without numbers is a header. Further columns are ignored.
+        Cells are separated by commas, semicolons, tabs or blanks, and numbers may have decimal commas. A first line
+        without numbers is a header. Further columns are ignored.
         """
-        empty = True
+        empty, width = True, 0  # cells of the header
         for rows in _row_blocks(file, name):
-            colours = []
+            colours = list[Colour]()
             for line, text, row in rows:
+                if empty and not colours and not width and _is_header(row):
+                    width = len(row)
+                    continue
                 colour = _parse(row[:1] if row[0].startswith("#") else row)
                 if colour is None:
                     raise _not_a_colour(text, name, line)
+                if not self.encoded and width != len(row) and _is_ambiguous(text):
+                    raise _ambiguous(text, name, line)
                 self._check_range(colour, text, name, line, bounded)
                 colours.append(colour)
             if colours:
@@ -175,14 +191,24 @@ def _row_blocks(file: IO[bytes], name: str) -> Iterator[list[tuple[int, str, lis
 
 
 def _cells(text: str, name: str, line: int) -> list[str]:
-    """Return the cells of a line that are not empty; none of a header."""
+    """Return the cells of a line; none of an empty line, and of one that states the delimiter."""
+    if not text.strip("".join(DELIMITERS)) or (line == 1 and STATED_DELIMITER.match(text)):
+        return []
     try:
-        cells = re.split(r"[;\t ]+", text.strip()) if "," not in text else next(csv.reader([text]))
-    except csv.Error as error:
+        return split_line(text, find_delimiter([text]))
+    except ValueError as error:
         raise ColourError(str(error), path=name, line=line, hint=TABLE) from error
-    row = [cell.strip() for cell in cells if cell.strip()]
-    is_header = line == 1 and _parse(row[:1]) is None and all(_number(cell) is None for cell in row)
-    return [] if is_header else row
+
+
+def _is_header(row: Sequence[str]) -> bool:
+    """Whether the cells of a line are neither numbers nor a hex colour, not even a misspelt one."""
+    return re.match(r"#\w", row[0]) is None and _parse(row[:1]) is None and all(_number(cell) is None for cell in row)
+
+
+def _is_ambiguous(text: str) -> bool:
+    """Whether a text between commas may be three numbers with decimal commas; not red, green, blue and alpha."""
+    text = re.sub(r"\s", "", text)
+    return text.count(",") > 2 and RGBA.fullmatch(text) is None and AMBIGUOUS.fullmatch(text) is not None
 
 
 def _parse(parts: Sequence[str]) -> Colour | None:
@@ -195,15 +221,24 @@ def _parse(parts: Sequence[str]) -> Colour | None:
 
 
 def _parse_words(words: Sequence[str]) -> list[Colour]:
-    """Parse colours 'R G B', 'R,G,B' and '#rrggbb', one after the other."""
-    parts = [part for word in words for part in re.split(r"[,\s]+", word) if part]
+    """Parse colours 'R G B', 'R,G,B' and '#rrggbb', one after the other.
+
+    Three numbers of which one has a decimal comma, such as '0,2 0,3 1' or '0,2;0,3;1', are a colour too.
+    """
+    given = words
+    words = [word for text in given for word in re.split(r"[;\s]+", text) if word]
+    parts = list[str]()
+    while words:
+        has_commas = len(words) > 2 and all(map(DECIMAL.fullmatch, words[:3])) and "," in "".join(words[:3])
+        parts += words[:3] if has_commas else filter(None, words[0].split(","))
+        words = words[3 if has_commas else 1 :]
     colours: list[Colour] = []
     while parts:
         numbers = [_number(part) for part in parts[:3]]
         length = 3 if len(numbers) == 3 and None not in numbers else 1
         colour = _parse(parts[:length])
         if colour is None:
-            unread = parts[:4] if colours else words
+            unread = parts[:4] if colours else given
             raise _not_a_colour(" ".join(unread))
         colours.append(colour)
         parts = parts[length:]
@@ -221,9 +256,14 @@ def _warn_of_fractions(colours: Sequence[Colour]) -> None:
 
 def _number(word: str) -> float | None:
     try:
-        return parse_float(word)
+        return parse_decimal(word)
     except ValueError:
         return None
+
+
+def _ambiguous(text: str, path: str | None = None, line: int | None = None) -> ColourError:
+    problem = f"{format_value(text)} may have decimal commas, or more than three numbers"
+    return ColourError(problem, code="ambiguous-numbers", path=path, line=line, hint=DECIMALS)
 
 
 def _not_a_colour(text: str, path: str | None = None, line: int | None = None) -> ColourError:

@@ -6,10 +6,12 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from uplift.common.errors import ColourError, OptionError
-from uplift.common.text import format_value, parse_float
+from uplift.common.csv import parse_decimal
+from uplift.common.errors import ColourError, OptionError, UpliftWarning
+from uplift.common.text import format_value
 
 from .colours import ColourSource
+from .output.diagnostics import warn
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from uplift.common.arrays import Array
     from uplift.lookup import Cube
 
-PARTS = re.compile(r"\s*([0-9.+-][0-9.eE+-]*)\s*:(.*)", re.DOTALL)
+PARTS = re.compile(r"\s*([0-9.+-][0-9.,eE+-]*)\s*:(.*)", re.DOTALL)
 CONSTANT_SPECTRA = {"white": 1.0, "black": 0.0}
 """The perfect reflector and the perfect absorber: the same value at all wavelengths."""
 
@@ -26,13 +28,14 @@ CONSTANT_SPECTRA = {"white": 1.0, "black": 0.0}
 class SpectrumResolver:
     """Spectra at ``wavelengths`` (N,) of colours, by a cube, and of named entries, by the cube and an atlas.
 
-    Colours are in ``space``, or in that of the cube.
+    Colours are in ``space``, or in that of the cube. Those outside [0, 1] are mapped into the gamut by ``method``.
     """
 
     cube: Cube
     atlas: Atlas
     wavelengths: Array
     space: ImageSpace | None = None
+    method: str = "error"
 
     def ingredient(self, word: str, kind: str = "pigment") -> tuple[str, float, Array, Array | None]:
         """Return name, parts, spectrum (N,), and spectrum on black (N,) if one is given.
@@ -59,6 +62,7 @@ class SpectrumResolver:
         import numpy as np
 
         from uplift.atlas import Atlas, on_grid
+        from uplift.colorimetry.gamut import map_to_gamut
 
         entries = self.cube.data.atlas
         if text in entries.names:
@@ -71,14 +75,20 @@ class SpectrumResolver:
         try:
             [(rgb,)] = ColourSource((text,), space=self.space).blocks(self.cube.data.sensor)
         except ColourError as error:
+            if error.code == "ambiguous-numbers":
+                raise
             hint = "write '#rrggbb', 'r,g,b' in linear RGB, or an entry of the cube's atlas or of --atlas"
             raise ColourError(f"{error.problem} and not an atlas entry", hint=hint) from error
-        return self.cube.reflectance(rgb, self.wavelengths)
+        mapped = map_to_gamut(rgb, self.cube.data.sensor, self.method)
+        if mapped.count:
+            problem = f"{format_value(text)} lies outside [0, 1]: mapped into the gamut ({self.method})"
+            warn([UpliftWarning(problem)])
+        return self.cube.reflectance(mapped.rgb, self.wavelengths)
 
 
 def _positive(text: str, word: str) -> float:
     try:
-        parts = parse_float(text)
+        parts = parse_decimal(text)
     except ValueError:
         parts = 0.0
     if not 0 < parts < float("inf"):

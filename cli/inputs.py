@@ -18,6 +18,7 @@ from .startup import hide_drawing_notes
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
+    from uplift.colorimetry.lights import Illuminant
     from uplift.colorimetry.sensor import Sensor
     from uplift.colorimetry.spaces import ImageSpace
     from uplift.common.arrays import Array
@@ -111,11 +112,16 @@ def find_input_space(name: str) -> ImageSpace:
     return find_space(name)
 
 
-def check_light(name: str) -> None:
-    """Check the name of an illuminant."""
-    from uplift.colorimetry.tables import stated_name
+def find_light(text: str) -> Illuminant:
+    """Return the name of an illuminant, or the lamp of a file. Without a file of this name no reader is imported."""
+    from uplift.colorimetry import tables
 
-    stated_name("illuminant", name)
+    if text in tables.names("illuminant") or (not os.path.lexists(text) and ":" not in text):
+        tables.stated_name("illuminant", text)
+        return text
+    from uplift.lights import lamps
+
+    return lamps.find_light(text)
 
 
 def check_page(path: str) -> None:

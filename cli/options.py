@@ -17,12 +17,14 @@ from click.shell_completion import CompletionItem
 
 from uplift.common.text import format_value, parse_float, parse_whole
 
-from .inputs import check_figure_page, check_light, check_page, check_plot, find_input_space, parse_wavelengths
+from .inputs import check_figure_page, check_page, check_plot, find_input_space, find_light, parse_wavelengths
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 NEGATIVE_NUMBER = re.compile(r"-\.?\d")
 HELP_ALL = "uplift.help-all"
 """Key of the context's ``meta`` while the whole help is printed."""
+INPUTS = "uplift.inputs"
+"""Key of the context's ``meta`` under which files of lamps are kept: those that name no file do no harm."""
 OUTPUT_FORMAT = "uplift.output-format"
 """Key of the context's ``meta`` under which ``--format`` is kept."""
 
@@ -143,6 +145,16 @@ class Checked(Parsed):
         return value
 
 
+class Light(Parsed):
+    """The name of an illuminant, or a file of a lamp, which is kept among the inputs of the command."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the name, or the lamp."""
+        if ctx is not None:
+            ctx.meta.setdefault(INPUTS, []).extend((value, value.rpartition(":")[0]))
+        return super().convert(value, param, ctx)
+
+
 class OutputFile(Checked):
     """The name of a file or folder that a command writes."""
 
@@ -150,7 +162,7 @@ class OutputFile(Checked):
 NUMBER, WHOLE = Number(), Whole()
 WHOLE_OR_AUTO = Whole(word="auto")
 WAVELENGTHS = Parsed(parse_wavelengths)
-LIGHT, INPUT_SPACE = Checked(check_light), Checked(find_input_space)
+LIGHT, INPUT_SPACE = Light(find_light), Checked(find_input_space)
 OUTPUT, PAGE, PLOT = OutputFile(str), OutputFile(check_page), OutputFile(check_plot)
 FIGURE_PAGE = OutputFile(check_figure_page)
 
@@ -175,8 +187,8 @@ def completion(*sources: str, files: bool = False) -> Callable[..., list[Complet
 
 complete_atlas = completion("atlas:shipped_atlases", files=True)
 complete_cube = completion("lookup.cube:PACKAGED", files=True)
-complete_light = completion("colorimetry.lights:COMMON_NAMES", "colorimetry.tables:names:illuminant")
-complete_observer = completion("colorimetry.tables:names:observer", "colorimetry.tables:names:camera")
+complete_light = completion("colorimetry.lights:COMMON_NAMES", "colorimetry.tables:names:illuminant", files=True)
+complete_observer = completion("colorimetry.tables:names:observer", "colorimetry.tables:names:camera", files=True)
 complete_space = completion("colorimetry.tables:names:RGB space")
 
 
@@ -194,8 +206,8 @@ def repeatable(
 
 
 atlas = partial(repeatable, "--atlas", "files", metavar="FILE", shell_complete=complete_atlas)
-LAMPS = ", such as led, 3200K or FL11"
-named_lights = partial(repeatable, metavar="NAME", type=LIGHT, shell_complete=complete_light)
+LAMPS = ", such as led, 3200K or FL11, or the file of a measured lamp"
+named_lights = partial(repeatable, metavar="NAME|FILE", type=LIGHT, shell_complete=complete_light)
 light = partial(named_lights, "--light", "lights", examples=LAMPS)
 """Why its defaults differ is in `uplift help illuminants`."""
 tolerance = partial(click.option, "--tolerance", metavar="ΔE00", type=NUMBER)
@@ -336,7 +348,7 @@ def colours(xyz: str, space: str) -> Decorator:
     return stacked(
         click.argument("colour", metavar="[COLOUR]...", nargs=-1),
         click.option(
-            "--input", "input_path", metavar="FILE", help="CSV of colours, one per line; '-' is standard input."
+            "--input", "input_path", metavar="FILE", help="Table of colours, one per line; '-' is standard input."
         ),
         click.option("--xyz", type=NUMBER, nargs=3, metavar="X Y Z", help=f"Colour by XYZ {xyz}."),
         click.option(
@@ -372,14 +384,20 @@ def space(camera: str = "") -> Decorator:
 def observer(camera: str = "") -> Decorator:
     """``--observer``."""
     default, text = "CIE 1931 2 Degree Standard Observer", f"Standard observer{camera}."
-    return click.option("--observer", default=default, help=text, shell_complete=complete_observer)
+    metavar = "NAME|FILE" if camera else "NAME"
+    return click.option("--observer", metavar=metavar, default=default, help=text, shell_complete=complete_observer)
 
 
 sensor = stacked(
     space("; or camera: raw values"),
     click.option(
-        "--illuminant", default="D65", help="Illuminant under which RGB are defined.", shell_complete=complete_light
+        "--illuminant",
+        metavar="NAME|FILE",
+        type=LIGHT,
+        default="D65",
+        help="Illuminant under which RGB are defined; a cube needs a name, other commands read the file of a lamp.",
+        shell_complete=complete_light,
     ),
-    observer(", or with --space camera a camera: name or CSV file of sensitivities"),
+    observer(", or with --space camera a camera: name or FILE of sensitivities (CSV, or JSON of rawtoaces)"),
 )
 """``space``, ``illuminant`` and ``observer``, for `uplift.colorimetry.observer.sensor`."""

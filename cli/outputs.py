@@ -7,7 +7,7 @@ import click
 from uplift.common import files
 from uplift.common.errors import StrPath
 
-from .options import OutputFile
+from .options import INPUTS, OutputFile
 from .output.console import say
 
 Paths = Iterable[StrPath | None]
@@ -19,7 +19,7 @@ def check_outputs(*paths: StrPath | None, inputs: Paths = ()) -> None:
     It reads the files that its parameters name, and further ``inputs``, which patterns or files name. None are left
     out.
     """
-    files.check_outputs(paths, inputs=[*_stated_inputs(), *inputs], force=_is_forced())
+    files.check_outputs(paths, inputs=[*stated_inputs(), *inputs], force=_is_forced())
 
 
 def check_folder(path: StrPath | None, names: Sequence[str], inputs: Paths = ()) -> None:
@@ -30,7 +30,7 @@ def check_folder(path: StrPath | None, names: Sequence[str], inputs: Paths = ())
         from uplift.viz.figure import matplotlib
 
         matplotlib()
-    files.check_folder(path, names, inputs=[*_stated_inputs(), *inputs], force=_is_forced())
+    files.check_folder(path, names, inputs=[*stated_inputs(), *inputs], force=_is_forced())
 
 
 def write_files(path: StrPath, names: Sequence[str], *writers: Callable[..., None]) -> None:
@@ -45,11 +45,11 @@ def _is_forced() -> bool:
     return bool(click.get_current_context().params["force"])
 
 
-def _stated_inputs() -> list[str]:
-    """Return the texts of all parameters but outputs: those that name no file do no harm."""
+def stated_inputs() -> list[str]:
+    """Return the texts of all parameters but outputs, and files of lamps: those that name no file do no harm."""
     context = click.get_current_context()
     outputs = [param.name for param in context.command.params if isinstance(param.type, OutputFile)]
-    texts: list[str] = []
+    texts: list[str] = list(context.meta.get(INPUTS, ()))
     for name, value in context.params.items():
         if name not in outputs:
             texts += [text for text in (value if isinstance(value, tuple) else [value]) if isinstance(text, str)]

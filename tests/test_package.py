@@ -55,7 +55,7 @@ def test_data_and_licence_are_in_it_and_nothing_else(wheel, repository):
     library = {name for name in tracked if name.startswith("uplift/")}
     atlases = {f"uplift_{name}" for name in tracked if name.startswith("atlases/")}
     assert data == library | atlases
-    suffixes = ".c .cpp .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .npz .png .ti3 .toml .typed .uplift .xlsx"
+    suffixes = ".c .cpp .css .csv .cxf .cuh .exr .glsl .h .hlsl .j2 .js .npz .png .spd .ti3 .toml .typed .uplift .xlsx"
     assert {Path(name).suffix for name in library} == set(suffixes.split())
     assert {Path(name).suffix for name in atlases} == {".md", ".txt"}
 

@@ -36,7 +36,7 @@ def codes(tree: ast.AST) -> Iterator[tuple[str, str]]:
 def collect(root: Path = ROOT) -> list[dict[str, Any]]:
     """Return ``code``, ``kind`` ("error" or "warning") and ``packages`` that use it, by code."""
     found: dict[tuple[str, str], set[str]] = {}
-    for path in sorted((root / "uplift").rglob("*.py")):
+    for path in sorted(path for folder in ("cli", "uplift") for path in (root / folder).rglob("*.py")):
         package = ".".join(path.relative_to(root).parent.parts)
         for name, code in codes(ast.parse(path.read_text(encoding="utf-8"))):
             kind = "warning" if "warn" in name.lower() else "error"

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
         UpliftWarning,
     )
     from uplift.lights.build import build_emission
+    from uplift.lights.lamps import read_lamp
     from uplift.lights.lookup import EmissionTable, load_emission
     from uplift.lookup import Cube, load
     from uplift.pipeline.build import build
@@ -67,6 +68,7 @@ __all__ = [
     "load",
     "load_emission",
     "read_atlas",
+    "read_lamp",
     "read_looks",
     "write_atlas",
 ]
@@ -74,6 +76,7 @@ __all__ = [
 _EXPORTS = {
     "uplift.atlas": ("Atlas", "Entry", "read_atlas", "write_atlas"),
     "uplift.lights.build": ("build_emission",),
+    "uplift.lights.lamps": ("read_lamp",),
     "uplift.lights.lookup": ("EmissionTable", "load_emission"),
     "uplift.lookup": ("Cube", "load"),
     "uplift.pipeline.build": ("build",),

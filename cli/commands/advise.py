@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from uplift.colorimetry.lights import Illuminant
 from uplift.common.text import pluralise
 
 from .. import options
@@ -45,7 +46,7 @@ SHOWN = 4
 def command(
     images: tuple[str, ...],
     cube_path: str,
-    lights: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
     count: int,
     plot_path: str | None,
     style: str,
@@ -53,7 +54,7 @@ def command(
     **pixels: Any,
 ) -> None:
     from uplift.colorimetry.lights import RELIGHT_LIGHTS
-    from uplift.colorimetry.observer import light
+    from uplift.colorimetry.observer import check_distinct, light
     from uplift.colorimetry.srgb import hex_codes
     from uplift.io.scene_colours import Images
     from uplift.lookup import load
@@ -63,6 +64,7 @@ def command(
     check_outputs(plot_path, inputs=paths)
     cube = load(cube_path)
     sensor = cube.data.sensor
+    check_distinct(lights)
     lit = [light(name, cube.observer, *sensor.range) for name in lights or RELIGHT_LIGHTS]
     with progress_bar("choosing swatches"):
         colours = advice.colour_areas(Images(tuple(map(Path, paths)), **pixels), sensor)

@@ -11,11 +11,13 @@ import click
 from uplift.common.text import pluralise
 
 from .. import options
+from ..output.answers import as_lists
 from ..output.console import has_colours, make_table, paragraph, print_csv, print_fields, print_json, say, show, swatch
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
     from uplift.atlas import Atlas
+    from uplift.colorimetry.lights import Illuminant
     from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
 
@@ -73,7 +75,7 @@ def command(
             paragraph(f"{clip.name}: {clip} in a build", err=True)
         say(f"{output}: {pluralise(len(atlas), 'entry')}", err=True)
         return
-    rows, codes, smallest = _list_entries(atlas, target)
+    rows, codes, smallest = _list_entries(atlas, target, camera["illuminant"])
     if style == "json":
         fields = {
             **{name: getattr(target, name) for name in camera},
@@ -112,7 +114,9 @@ def _print_shipped(style: str) -> None:
         paragraph("Use a name as --atlas NAME, or in place of FILE.")
 
 
-def _list_entries(atlas: Atlas, sensor: Sensor) -> tuple[list[dict[str, Any]], Array, str | None]:
+def _list_entries(
+    atlas: Atlas, sensor: Sensor, illuminant: Illuminant
+) -> tuple[list[dict[str, Any]], Array, str | None]:
     """List all entries, with reflectances clipped as in a build; return 8-bit sRGB (n, 3) and `smallest_space`."""
     from uplift.atlas import resample
     from uplift.colorimetry.gamut import SRGB
@@ -122,7 +126,7 @@ def _list_entries(atlas: Atlas, sensor: Sensor) -> tuple[list[dict[str, Any]], A
     from uplift.colorimetry.srgb import to_display_codes
 
     resampled = resample(atlas, sensor.wavelengths)
-    display = make_sensor("sRGB", sensor.illuminant, sensor.observer)
+    display = make_sensor("sRGB", illuminant, sensor.observer)
     clips = {clip.name: (str(clip),) for clip in resampled.clips}
     rows = [
         {
@@ -130,14 +134,14 @@ def _list_entries(atlas: Atlas, sensor: Sensor) -> tuple[list[dict[str, Any]], A
             "start": float(entry.wavelengths[0]),
             "end": float(entry.wavelengths[-1]),
             "step": entry.step,
-            "rgb": rgb.tolist(),
+            "rgb": as_lists(rgb),
             "in_gamut": bool(in_unit_cube(rgb)),
             "warnings": clips.get(entry.name, ()),
         }
         for entry, rgb in zip(atlas.entries, sensor.rgb(resampled.values), strict=True)
     ]
     codes = to_display_codes(display.rgb(resampled.values), SRGB).astype(int)
-    return rows, codes, smallest_space(resampled.values, sensor.illuminant, sensor.observer)
+    return rows, codes, smallest_space(resampled.values, illuminant, sensor.observer)
 
 
 def _print_table(

@@ -10,12 +10,13 @@ import click
 from uplift.common.files import write_text
 
 from .. import options
-from ..output.answers import format_rgb, hex_code, patch
+from ..output.answers import as_lists, format_rgb, hex_code, patch
 from ..output.console import make_table, print_csv, print_fields, print_json_answers, say, show
 from ..outputs import check_outputs
 from .query import Answers, colour_options, result_object
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.lights import Illuminant
     from uplift.lookup import Cube
     from uplift.lookup.metamer_bounds import Bounds
     from uplift.lookup.query import QueryResult
@@ -55,7 +56,7 @@ DIVISIONS, SINGLE_DIVISIONS = 2, 3
 @options.page("Write a page on which the colour under each --light is dragged within its bounds, for a file of looks.")
 @options.force
 def command(
-    lights: tuple[str, ...], style: str, plot_path: str | None, html: str | None, force: bool, **colours: Any
+    lights: tuple[Illuminant, ...], style: str, plot_path: str | None, html: str | None, force: bool, **colours: Any
 ) -> None:
     import numpy as np
 
@@ -121,7 +122,7 @@ def _print_csv(blocks: Iterable[Block]) -> None:
     columns = ["r", "g", "b", "light", "L*", "a*", "b*", "standard_error", "error_bound"]
     rows = (
         [
-            *result.rgb.tolist(),
+            *as_lists(result.rgb),
             each.light.name,
             *each.lab[row].tolist(),
             result.standard_errors.get(each.light.name),

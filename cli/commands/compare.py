@@ -18,6 +18,7 @@ from ..outputs import check_folder, write_files
 from ..startup import use_one_blas_thread
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.lights import Illuminant
     from uplift.lab.comparison.compare import Comparison, TunedFilter
 
 FILES = ("compare-boxes.png", "compare-cost.png", "compare.html")
@@ -71,7 +72,7 @@ SPECTRA = ("surfaces.csv", "lights.csv")
 @options.force
 def command(
     files: tuple[str, ...],
-    lights: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
     tolerance: float | None,
     filters: bool,
     every: bool,
@@ -106,7 +107,7 @@ def command(
         _print_records(comparison, tuned, style)
 
 
-def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[str, ...], output: str) -> None:
+def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[Illuminant, ...], output: str) -> None:
     from uplift.atlas import merge, write_atlas
     from uplift.lab.comparison.compare import make_scene, represent
     from uplift.scene.representations import find_representation
@@ -122,7 +123,7 @@ def _write_spectra(name: str, files: tuple[str, ...], lights: tuple[str, ...], o
 
 
 def _measure(
-    files: tuple[str, ...], lights: tuple[str, ...], *, filters: bool, quick: bool
+    files: tuple[str, ...], lights: tuple[Illuminant, ...], *, filters: bool, quick: bool
 ) -> tuple[Comparison, tuple[TunedFilter, ...]]:
     from uplift.lab.comparison.compare import COARSE_STRIDE, FINE_STRIDE, compare, make_scene, tune_filters
     from uplift.lab.comparison.fitted import scene_representations

@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from uplift.colorimetry.lights import Illuminant
 from uplift.common.text import pluralise
 
 from .. import options
@@ -47,7 +48,7 @@ def command(
     first: str,
     second: str,
     images: tuple[str, ...],
-    lights: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
     tolerance: float | None,
     worst: int,
     output: str | None,

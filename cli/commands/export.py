@@ -12,6 +12,7 @@ from uplift.common.text import pluralise, round_up
 from .. import options
 from ..output.console import say
 from ..output.progress import progress_bar
+from ..outputs import stated_inputs
 
 if TYPE_CHECKING:
     from uplift.cube import CubeData
@@ -94,7 +95,13 @@ APPLIES = {
     type=options.WHOLE,
     help="Nodes of a table along each axis. [default: coeff 64, cube, clf and fourier 33, film 192]",
 )
-@click.option("--light", metavar="NAME", help="Illuminant of a cube, clf or film table.")
+@click.option(
+    "--light",
+    metavar="NAME|FILE",
+    type=options.LIGHT,
+    shell_complete=options.complete_light,
+    help="Illuminant of a cube, clf or film table, or the file of a measured lamp.",
+)
 @options.adapt()
 @click.option(
     "--mode",
@@ -121,8 +128,9 @@ def command(cube: str, output: str | None, style: str | None, fill_missing: bool
 
     form = check_form(style, settings.get("table")) if style in PROGRAMS else style
     files = output_files(output or Path(cube).stem + SUFFIXES[style], form)
-    path = check_output(files[0], inputs=[cube], force=force)
-    check_outputs(files, inputs=[cube], force=True)  # second files that exist are judged by their content
+    inputs = stated_inputs()
+    path = check_output(files[0], inputs=inputs, force=force)
+    check_outputs(files, inputs=inputs, force=True)  # second files that exist are judged by their content
     loaded = load(cube).fill_missing() if fill_missing else load(cube)
     say(f"{path}: {_write(loaded, path, style, force=force, **settings)}")
 

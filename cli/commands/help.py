@@ -38,6 +38,14 @@ Without --light, 'relight', 'bounds' and 'advise' take A, FL11 and HP1, under wh
 'diff' take the lights of ordinary scenes, D65, A, FL2, FL11 and LED-B3, and 'report' adds FL7, which builds do not use.
 'compare' has a smooth set and a spiky one, 'wavelengths' the illuminant of sRGB, and 'query' none: errors cost time.
 """
+LAMP_FILES = """
+The file of a measured lamp is a light as well: wavelengths in nm and powers of any unit as CSV, SPD, CGATS, TM-27
+(.spdx) or another format of 'uplift atlas', or JSON of rawtoaces. 'lamps.csv:NAME' is one lamp of several.
+"""
+CAMERA_FILES = """
+The file of a camera is used with --space camera: wavelengths in nm and sensitivities of red, green and blue as .csv,
+.tsv or .txt, or .json of rawtoaces.
+"""
 OCIO_SPACES = """
 Spaces of the configuration $OCIO, or else of OpenColorIO's built-in ACES studio configuration, are valid too, and for
 --input-space x,y of red, green, blue and white.
@@ -99,7 +107,11 @@ def _illuminants() -> list[Part]:
     from uplift.colorimetry.lights import COMMON_NAMES, DESCRIPTIONS
 
     words = ", ".join(f"{name} ({illuminant})" for name, illuminant in COMMON_NAMES.items())
-    return [DESCRIPTIONS, f"Names in words: {words}. {TEMPERATURES}", DEFAULT_LIGHTS, *_names("illuminant")]
+    return [DESCRIPTIONS, f"Names in words: {words}. {TEMPERATURES}", LAMP_FILES, DEFAULT_LIGHTS, *_names("illuminant")]
+
+
+def _observers() -> list[Part]:
+    return [*_names("observer"), *_names("camera"), CAMERA_FILES]
 
 
 def _spaces() -> list[Part]:
@@ -121,7 +133,7 @@ TOPICS: dict[str, tuple[str, Callable[[], list[Part]]]] = {
     "gamut": ("colours outside [0, 1]: --out-of-gamut", lambda: [GAMUT_MEANINGS]),
     "illuminants": ("names of lights: --light, --illuminant", _illuminants),
     "modes": ("ways to interpolate a cube: query --mode", lambda: [MODE_MEANINGS]),
-    "observers": ("names of observers and cameras: --observer", lambda: [*_names("observer"), *_names("camera")]),
+    "observers": ("names of observers and cameras: --observer", _observers),
     "spaces": ("names of RGB spaces: --space, --input-space", _spaces),
 }
 """Summary and parts by topic. No topic has the name of a command."""

@@ -75,6 +75,7 @@ def _as_options(settings: dict[str, Any]) -> str:
             words += [option] * value
         else:
             values = value if isinstance(value, list) else [value]
+            values = [each["name"] if isinstance(each, dict) else each for each in values]
             words += [
                 f"{option} {shlex.quote(f'{each:g}' if isinstance(each, float) else str(each))}" for each in values
             ]

@@ -6,6 +6,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from uplift.common.errors import OutputError, UpliftWarning
 from uplift.common.text import pluralise
@@ -13,7 +14,7 @@ from uplift.common.text import pluralise
 from .. import options
 from ..ingredients import SpectrumResolver
 from ..inputs import check_range, find_input_space
-from ..output.answers import coordinates, describe_coordinates, format_rgb, hex_code, patch, print_spectrum
+from ..output.answers import as_lists, coordinates, describe_coordinates, format_rgb, hex_code, patch, print_spectrum
 from ..output.console import has_colours, make_table, print_json, say, show
 from ..output.diagnostics import warn
 from ..output.progress import progress_bar
@@ -112,7 +113,7 @@ if TYPE_CHECKING:
 @options.cube()
 @options.atlas("Measured spectra whose entries are ingredients")
 @options.output_wavelengths
-@options.out_of_gamut("scale", "which keeps the hue of bright mixtures", "mixtures and pixels")
+@options.out_of_gamut("scale", "which keeps the hue of bright mixtures; ingredients: error", "mixtures and pixels")
 @options.output_format("table", "json")
 @options.plot("Plot the ramp from the first ingredient to the last")
 @click.option("--steps", type=options.Whole(2, 1000), default=9, help="Number of swatches on the ramp.")
@@ -179,7 +180,10 @@ def command(
         check_range(wavelengths, cube.wavelengths)
     further = np.array([]) if theories or over is not None else as_wavelengths(wavelengths, cube.wavelengths)
     grid = np.concatenate([sensor.wavelengths, further])  # for colours, followed by those of the output
-    resolver = SpectrumResolver(cube, read_atlas(*files) if files else Atlas(), grid, space)
+    # The default is for mixtures: an ingredient outside [0, 1] is a mistake, unless the option is given.
+    is_given = click.get_current_context().get_parameter_source("method") is ParameterSource.COMMANDLINE
+    atlas = read_atlas(*files) if files else Atlas()
+    resolver = SpectrumResolver(cube, atlas, grid, space, method if is_given else "error")
     names, parts, spectra, on_black = zip(*(resolver.ingredient(word, kind) for word in words), strict=True)
     ingredients = Ingredients(np.stack(spectra), on_black)
     if theories:
@@ -238,7 +242,7 @@ def command(
     # The mixture, followed by the ramp from its first to its last ingredient.
     colours = [{"parts": row.tolist(), **_colour(cube, rgb)} for row, rgb in zip(amounts, mapped.rgb, strict=True)]
     if style == "json":
-        spectrum = {"wavelengths": further.tolist(), "spectrum": mixed[0, count:].tolist()}
+        spectrum = {"wavelengths": further.tolist(), "spectrum": as_lists(mixed[0, count:])}
         print_json({"kind": kind, "names": names, **colours[0], **spectrum, "ramp": colours[1:]}, indent=None)
         return
     fields = {kind: title, "linear RGB": f"{format_rgb(mapped.rgb[0])}  {colours[0]['hex']}"}
@@ -277,4 +281,4 @@ def _print_theories(cube: Cube, names: tuple[str, ...], parts: Array, spectra: A
 
 
 def _colour(cube: Cube, rgb: Array) -> dict[str, Any]:
-    return {"rgb": rgb.tolist(), "hex": hex_code(cube, rgb), **coordinates(cube, rgb)}
+    return {"rgb": as_lists(rgb), "hex": hex_code(cube, rgb), **coordinates(cube, rgb)}

@@ -53,7 +53,7 @@ def command(scene: str, output: str | None, quick: bool, style: str, force: bool
 
     scene_file = read_scene_file(scene)
     path = scene_file.path.with_suffix(SUFFIX) if output is None else Path(output)
-    check_outputs(path, inputs=(*scene_file.textures, *scene_file.atlases))
+    check_outputs(path, inputs=(*scene_file.textures, *scene_file.atlases, *scene_file.lamp_files))
     summary.check_path(scene_file, path)
     with progress_bar() as progress:
         result = plan(scene_file, QUICK if quick else SearchGrid(), progress)

@@ -16,12 +16,22 @@ from uplift.common.text import pluralise, printable
 from .. import options
 from ..colours import find_colours
 from ..inputs import check_range
-from ..output.answers import coordinates, describe_coordinates, format_rgb, hex_code, patch, print_spectrum, sparkline
+from ..output.answers import (
+    as_lists,
+    coordinates,
+    describe_coordinates,
+    format_rgb,
+    hex_code,
+    patch,
+    print_spectrum,
+    sparkline,
+)
 from ..output.console import emit, has_colours, paragraph, print_csv, print_json, print_json_answers, say
 from ..output.diagnostics import warn
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.lights import Illuminant
     from uplift.colorimetry.sensor import Light
     from uplift.common.arrays import Array
     from uplift.lookup import Cube
@@ -65,7 +75,7 @@ class Answers:
         mode: str,
         method: str,
         fill_missing: bool,
-        lights: Sequence[str],
+        lights: Sequence[Illuminant],
         **colours: Any,
     ) -> None:
         from uplift.lookup import load
@@ -88,7 +98,8 @@ class Answers:
 
             setting = self.cube.observer, *data.sensor.range
             self.to_srgb = {each.illuminant: each.xyz_to_rgb for each in display_sensors(lights, *setting)}
-            self.lights = [light(name, *setting) for name in self.to_srgb]
+            named = {each.name: each for each in (light(given, *setting) for given in lights)}
+            self.lights = list(named.values())
 
     def __iter__(self) -> Iterator[list[QueryResult]]:
         """Answer block by block, and warn at the end of colours that were mapped or filled."""
@@ -156,6 +167,7 @@ class Answers:
       uplift query --xy 0.17 0.7 --luminance 0.15 --format json
       echo 0.5,0.5,0.5 | uplift query - --format json
       uplift query '#cc3319' --cube macbeth-32.uplift --light FL11 --light HP1
+      uplift query '#cc3319' --light lamp.spd
       uplift query --check spectra.csv
 
     Standard errors are those of materials like the entries of the cube's atlas. RGB does not identify a material:
@@ -175,7 +187,7 @@ class Answers:
 )
 @options.force
 def command(
-    lights: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
     style: str,
     plot_path: str | None,
     stored: str | None,
@@ -245,13 +257,13 @@ def result_object(answers: Answers, result: QueryResult) -> dict[str, Any]:
     cube = answers.cube
     return {
         "cube": answers.origin,
-        "rgb": result.rgb.tolist(),
-        "requested_rgb": result.requested_rgb.tolist(),
+        "rgb": as_lists(result.rgb),
+        "requested_rgb": as_lists(result.requested_rgb),
         "wavelengths": result.wavelengths.tolist(),
-        "reflectance": result.reflectance.tolist(),
-        "xyz": result.xyz.tolist(),
+        "reflectance": as_lists(result.reflectance),
+        "xyz": as_lists(result.xyz),
         **coordinates(cube, result.rgb),
-        "round_trip": {"rgb": result.round_trip.tolist(), "delta_e_2000": result.delta_e_2000},
+        "round_trip": {"rgb": as_lists(result.round_trip), "delta_e_2000": result.delta_e_2000},
         "cell": list(result.cell),
         "status": [status.label for status in result.statuses],
         "realisable": result.realisable,
@@ -262,7 +274,7 @@ def result_object(answers: Answers, result: QueryResult) -> dict[str, Any]:
         "standard_errors": dict(result.standard_errors),
         "error_bounds": dict(result.error_bounds),
         "lights": {
-            light: {"srgb": rgb.tolist(), "hex": code, "xyz": result.light_xyz[light].tolist()}
+            light: {"srgb": as_lists(rgb), "hex": code, "xyz": as_lists(result.light_xyz[light])}
             for light, (rgb, code) in answers.light_colours(result).items()
         },
         "unlike_atlas": result.unlike_atlas,
@@ -271,11 +283,12 @@ def result_object(answers: Answers, result: QueryResult) -> dict[str, Any]:
 
 def _fields(answers: Answers, result: QueryResult) -> dict[str, str]:
     from uplift.colorimetry.delta_e import delta_e_rgb
+    from uplift.colorimetry.sensor import SLACK
 
     cube = answers.cube
     data, atlas, rgb = cube.data, cube.data.atlas, result.rgb
     fields = {}
-    if (result.requested_rgb != rgb).any():
+    if (abs(result.requested_rgb - rgb) > 2 * SLACK).any():
         moved = float(delta_e_rgb(data.sensor, result.requested_rgb.clip(-LARGEST, LARGEST), rgb))
         fields["requested"] = f"{format_rgb(result.requested_rgb)}  outside [0, 1], mapped by ΔE00 {moved:.2g}"
     fields["linear RGB"] = f"{format_rgb(rgb)}  {hex_code(cube, rgb)}"
@@ -310,10 +323,10 @@ def _print_csv(answers: Answers, results: Iterable[QueryResult]) -> None:
     wavelengths = cube.wavelengths if answers.wavelengths is None else answers.wavelengths
     rows = (
         [
-            *(*result.rgb.tolist(), result.delta_e_2000, result.standard_error, result.error_bound),
+            *(*as_lists(result.rgb), result.delta_e_2000, result.standard_error, result.error_bound),
             *(each.get(light) for light in known for each in (result.standard_errors, result.error_bounds)),
             *(code for _, code in answers.light_colours(result).values()),
-            *(result.entry, *result.reflectance.tolist()),
+            *(result.entry, *as_lists(result.reflectance)),
         ]
         for result in results
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Sequence
 from functools import partial
@@ -23,6 +24,7 @@ from ..outputs import check_outputs
 from ..startup import enable_jit_cache
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.lights import Illuminant
     from uplift.lookup import Cube
     from uplift.report.relight import Relit
 
@@ -68,7 +70,7 @@ def _check_output(path: str) -> str:
       uplift relight wood.png -o wood.html
       uplift relight wood.png --atlas paints.csv --light led --light HP1 -o my.png
       uplift relight --cube macbeth-32.uplift --format json -o cube.html
-      uplift relight painting.exr --light 3200K --light led -o relit.exr
+      uplift relight painting.exr --light 3200K --light lamp.spd -o relit.exr
 
     Eye and camera adapt to lights that look white, so their white becomes the white of the screen. The eye does not
     adapt to a sodium lamp: such lights keep their tint. --adapt or --no-adapt shows all lights alike, and pages have a
@@ -91,7 +93,7 @@ def _check_output(path: str) -> str:
 @options.force
 def command(
     images: tuple[str, ...],
-    lights: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
     cube_path: str | None,
     files: tuple[str, ...],
     output: str,
@@ -127,11 +129,12 @@ def command(
             converter = texture.prepare_relighter(extra or load(), lights, adapt=balanced, threads=threads, **pixels)
             conversion = texture.convert(converter, paths[0], output, force=force, progress=progress)
         warn(conversion.warnings)
-        names = converter.header["uplift.lights"]
+        shown = json.loads(converter.header["uplift.texture"])["lights"]
         if style == "json":
-            print_json({"output": output, "lights": names.split(", "), "pixels": conversion.counts.pixels})
+            print_json({"output": output, "lights": shown, "pixels": conversion.counts.pixels})
         else:
-            paragraph(f"{output}: {Path(paths[0]).name} under {names}, {pluralise(conversion.counts.pixels, 'pixel')}")
+            names, count = ", ".join(shown), pluralise(conversion.counts.pixels, "pixel")
+            paragraph(f"{output}: {Path(paths[0]).name} under {names}, {count}")
     else:
         with progress_bar("computing spectra"):
             packaged = load()

@@ -14,6 +14,7 @@ from ..output.progress import progress_bar
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.lights import Illuminant
     from uplift.report.assessment import Assessment
 
 
@@ -50,7 +51,7 @@ def command(
     cube: str,
     files: tuple[str, ...],
     folders: tuple[str, ...],
-    lights: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
     output: str | None,
     style: str,
     worst: int,

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from uplift.common.errors import OptionError, OutputError
+from uplift.common.files import check_outputs
 from uplift.common.progress import Progress
 from uplift.common.text import pluralise
 
@@ -109,7 +110,8 @@ image_options = options.stacked(
 @options.fill
 @options.repeatable(
     *("--errors", "errors", "Add a channel with the standard error, ΔE00, under an illuminant, such as error.A"),
-    metavar="NAME",
+    metavar="NAME|FILE",
+    type=options.LIGHT,
     shell_complete=options.complete_light,
 )
 def command(
@@ -151,6 +153,8 @@ def convert(
     from uplift.io.texture.sequence import converter_for, run
 
     pairs = _texture_paths(sources, target)
+    existing = [path for _, path in pairs if path.exists()]
+    check_outputs(existing, inputs=click.get_current_context().meta.get(options.INPUTS, ()), force=True)
     cores = os.cpu_count() or 1
     count = processes or min(cores, len(pairs))
     settings = texture.TextureSettings(cubes, pixel_encoding, threads=max(cores // count, 1), **given)

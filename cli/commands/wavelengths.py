@@ -15,6 +15,7 @@ from ..output.progress import progress_bar
 from ..outputs import check_outputs
 
 if TYPE_CHECKING:
+    from uplift.colorimetry.lights import Illuminant
     from uplift.colorimetry.sensor import Sensor
     from uplift.common.arrays import Array
     from uplift.scene.wavelengths import Choice
@@ -81,7 +82,7 @@ def command(
     orders: tuple[int, int, int] | None,
     channels: str | None,
     files: tuple[str, ...],
-    lights: tuple[str, ...],
+    lights: tuple[Illuminant, ...],
     style: str,
     plot_path: str | None,
     force: bool,
@@ -98,6 +99,7 @@ def command(
     from uplift.scene import wavelengths as library
 
     check_outputs(plot_path, inputs=atlas_files(files))
+    observer.require_observer(camera["observer"], "weights of wavelengths")
     sensor = observer.sensor(**camera)
     atlas = merge(read_atlases(files).values())
     setting = library.make_setup(on_grid(atlas, library.grid()), lights or ("D65",), observer_name=camera["observer"])

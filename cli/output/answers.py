@@ -59,6 +59,13 @@ def hex_code(cube: Cube, rgb: Array) -> str:
     return "#" + "".join(f"{round(float(code)):02x}" for code in cube.encode(rgb))
 
 
+def as_lists(values: Array) -> list[Any]:
+    """Return colours or reflectances as lists. Rounding errors of 0 are 0."""
+    from uplift.colorimetry.sensor import ROUNDING
+
+    return list((values * (abs(values) > ROUNDING) + 0.0).tolist())  # -0.0 + 0.0 is 0.0
+
+
 def format_rgb(rgb: Iterable[float]) -> str:
     """Return numbers with six decimals, separated by spaces."""
     return " ".join(f"{round(value, 6) + 0.0:.6f}" for value in rgb)  # -0.0 + 0.0 is 0.0
@@ -104,7 +111,7 @@ def describe_coordinates(values: dict[str, Any]) -> dict[str, str]:
     hue = "grey" if wavelength is None else f"{kind}{wavelength:.0f} nm, purity {values['purity']:.2f}"
     codes = []
     for name in ("hsv", "hsl", "yiq"):
-        first, second, third = (round(value, 2) for value in values[name])
+        first, second, third = (round(value, 2) + 0.0 for value in values[name])
         if name != "yiq":
             first %= 1  # a hue of 1 is 0
         codes.append(f"{name.upper()} {first:.2f} {second:.2f} {third:.2f}")

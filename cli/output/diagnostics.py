@@ -39,8 +39,8 @@ HINTS = {
     "not-a-cube": "'uplift build --atlas FILE' makes one of spectra, and 'uplift lights' reads emission tables",
     "not-an-emission-table": "build one with 'uplift lights build', or use 'uplift query' and the like for a cube",
     "not-spectra": "name an atlas; a cube is used with --cube, an image with 'uplift texture' and 'uplift relight'",
-    "rgb-like-codes": "use --encoded for 8-bit codes",
-    "rgb-out-of-gamut": "map it inside with --out-of-gamut",
+    "rgb-like-codes": "write 8-bit codes as '#rrggbb', or use --encoded where the command has it",
+    "rgb-out-of-gamut": "map it inside with --out-of-gamut desaturate",
     "sparse-cube": "use --fill-missing where the command has it, or a cube built without --scene",
     "texture-differs": "use --resume with --force to convert the image again, or choose another name",
 }

@@ -30,6 +30,7 @@ CONTENT = {
     "camera.csv": "380,1,0,0\n550,0,1,0\n780,0,0,1\n",
     "looks.toml": "",
     "chart.csv": "",
+    "lamp.csv": "400,1\n550,2\n700,3\n",
     "paint.csv": "",
     "answers.csv": "",
     "plan.json": "",
@@ -46,12 +47,12 @@ NAMED = {
 }
 """Inputs that other inputs, patterns and texts name."""
 WRITTEN = """
-advise image.exr wood.*.exr --cube cube.uplift | --plot x.png | x.png
+advise image.exr wood.*.exr --cube cube.uplift --light lamp.csv | --plot x.png | x.png
 atlas atlas.txt library.txt | -o x.txt | x.txt
 bounds --cube cube.uplift --input colours.csv | --plot x.pdf | x.pdf
 bounds --cube cube.uplift --input colours.csv | --html x.html | x.html
 build --atlas atlas.txt --library library.txt --look looks.toml --observer camera.csv | -o x.uplift | x.uplift
-build --atlas atlas.txt --library library.txt --scene image.exr | -o x.uplift --debug | x.exr
+build --atlas atlas.txt --library library.txt --scene image.exr --light lamp.csv | -o x.uplift --debug | x.exr
 build --plan plan.json | -o x.uplift | x.uplift
 build --plan plan.json | | plan.uplift
 chart --from chart.csv --atlas atlas.txt | -o out | out/chart.csv out/chart.png out/chart.html
@@ -59,6 +60,7 @@ compare --atlas atlas.txt --atlas library.txt | -o out | out/compare-boxes.png o
 compare --atlas atlas.txt --write PF16 | -o out | out/surfaces.csv out/lights.csv
 diff cube.uplift cube2.uplift image.exr wood.*.exr | -o x.html | x.html
 export cube.uplift | -o x.npz | x.npz
+export cube.uplift --light lamp.csv | -o x.cube | x.cube
 lights build --atlas atlas.txt | -o x.uplift | x.uplift
 lights export lights.uplift | -o x.h | x.h
 lights info lights.uplift | --plot x.svg | x.svg
@@ -77,17 +79,17 @@ plan scene.toml | | scene.plan.json
 query --cube cube.uplift --input colours.csv | --plot x.png | x.png
 relight image.exr wood.*.exr --cube cube.uplift | -o x.png | x.png
 relight image.exr --atlas atlas.txt --atlas library.txt | -o x.html | x.html
-relight image.exr --cube cube.uplift | -o x.exr | x.exr
+relight image.exr --cube cube.uplift --light lamp.csv | -o x.exr | x.exr
 report recorded.uplift | -o x.html | x.html
-report cube2.uplift --atlas atlas.txt | | cube2.html
+report cube2.uplift --atlas atlas.txt --light lamp.csv | | cube2.html
 slices cube.uplift | -o x.exr | x.exr
 slices cube.uplift | --plot x.png | x.png
 study moments --atlas atlas.txt | -o out | out/moments.png out/moments-patches.png
 study stability --atlas atlas.txt | -o out | out/stability.png
 study sensitivity recorded.uplift | -o out | out/sensitivity-locality.png
 texture image.exr --cube cube.uplift --cube cube2.uplift --mask mask.exr | -o x.exr | x.exr
-texture image.exr wood.*.exr | -o out | out/image.exr out/wood.2.exr
-wavelengths --count 4 --atlas atlas.txt --observer camera.csv | --plot x.png | x.png
+texture image.exr wood.*.exr --errors lamp.csv | -o out | out/image.exr out/wood.2.exr
+wavelengths --count 4 --atlas atlas.txt --observer camera.csv --light lamp.csv | --plot x.png | x.png
 """
 """Commands with all their inputs | the outputs that are added | the files that these are."""
 WITHOUT_ROWS = {"check": "--update replaces the cubes that it checks", "samples": "reads no file of the user"}

@@ -12,6 +12,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 from uplift_cli import colours
+from uplift_cli.output.diagnostics import hint_for
 
 import uplift
 from uplift.colorimetry.observer import display_sensors
@@ -53,6 +54,9 @@ def macbeth_cube(cubes):
         (["0.8", "0.2", "0.1"], [0.8, 0.2, 0.1]),
         (["0.8, 0.2, 0.1"], [0.8, 0.2, 0.1]),
         (["0.8 0.2 0.1"], [0.8, 0.2, 0.1]),
+        (["0,8", "0,2", "0,1"], [0.8, 0.2, 0.1]),
+        (["0,8 0,2 1"], [0.8, 0.2, 1]),
+        (["0,8;0,2;0,1"], [0.8, 0.2, 0.1]),
         (["-0.0", "0.2", "1e-1"], [0, 0.2, 0.1]),
         (["123456"], [0.006048833022857055, 0.03433980680868217, 0.09305896284668747]),
     ],
@@ -69,6 +73,56 @@ def test_several_colours_have_a_row_each(ask, run, refuse, home):
     assert run("query", *words, "--plot").stdout.count("#") == 4
     assert (home / "plot.png").is_file()
     assert refuse("query", *words, "0.5").code == "colour"
+
+
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ("0,2,0,3,0,4", "ambiguous-numbers"),
+        ("0,2, 0,3, 0,4", "ambiguous-numbers"),
+        ("1,0,5,0,25", "ambiguous-numbers"),
+        ("1,0,0,5", "ambiguous-numbers"),
+        ("0,2,0,3,0.4", "colour-outside"),
+        ("0.2,,0.3,0.4", "colour"),
+        ("#ff000", "colour"),
+        ("#ff000, red", "colour"),
+    ],
+)
+def test_lines_that_may_be_misread(refuse, table, line, code):
+    codes = {"colour-outside": "rgb-out-of-gamut"}
+    error = refuse("query", "--input", table(f"{line}\n"))
+    assert error.code == codes.get(code, code)
+    assert line in error.problem
+
+
+def test_whole_numbers_between_commas(ask, refuse, table):
+    text = "r,g,b,i,j,k\n0,1,0,3,0,4\n"
+    assert ask("query", "--input", table(text))[0]["rgb"] == [0, 1, 0]
+    assert ask("query", "--input", table("1,0,0,1\n"))[0]["rgb"] == [1, 0, 0]
+    assert ask("query", "--encoded", "--input", table("0,255,0,25,0,25\n"))[0]["rgb"] == [0, 1, 0]
+    assert [one["rgb"] for one in ask("query", "1,0,0", "0,1,0")] == [[1, 0, 0], [0, 1, 0]]
+    for words in (("0,2,0,3,0,4",), ("1,0,0,0,1,0",), ("0,2,0,3,0,4", "--out-of-gamut", "clip")):
+        assert refuse("query", *words).code == "ambiguous-numbers"
+
+
+def test_rounding_is_not_out_of_gamut(run, ask):
+    words = "query", "1.000000001", "-6e-17", "0.5"
+    result = run(*words, "--format", "json")
+    assert not result.stderr
+    answer = json.loads(result.stdout)
+    assert answer["rgb"] == [1, 0, 0.5]
+    assert answer["requested_rgb"][1] == 0
+    assert "requested" not in run(*words).stdout
+    assert all(abs(value) > 1e-12 or value == 0 for value in answer["reflectance"])
+
+
+@pytest.mark.parametrize("command", [("query",), ("bounds",), ("mix",)])
+def test_the_advice_on_colours_outside_the_gamut_works_as_it_stands(run, refuse, command):
+    words = (*command, "1.2,0,0")
+    hint = hint_for(refuse(*words))
+    option = hint[hint.index("--") :].split()
+    assert option == ["--out-of-gamut", "desaturate"]
+    assert run(*words, *option).stdout
 
 
 @pytest.mark.parametrize(("method", "rgb"), [("clip", [1, 0.3, 0]), ("desaturate-oklab", [1, 0.4215, 0.1069])])
@@ -105,6 +159,11 @@ def test_colours_of_another_display(ask, name):
         "0.8,0.2,0.1\r\n0.1,0.1,0.1\r\n",
         "0.8 0.2 0.1\n\n0.1\t0.1\t0.1\n\n",
         "0.8;0.2;0.1\n 0.1; 0.1; 0.1\n",
+        "\ufeffr;g;b\n0,8;0,2;0,1\n0,1;0,1;0,1\n",
+        "sep=;\nRot;Grün;Blau;Name\n0,8;0,2;0,1;brick, red\n;;;\n0,1;0,1;0,1;coal;;\n",
+        "0,8\t0,2\t0,1\n0,1 0,1  0,1\n",
+        '"0,8","0,2","0,1"\n"0,1","0,1","0,1"\n',
+        "0.8,\t0.2,\t0.1\n0.1, 0.1, 0.1\n",
         "r,g,b,name\n0.8,0.2,0.1,brick\n0.1,0.1,0.1,coal\n",
     ],
 )

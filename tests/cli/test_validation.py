@@ -43,6 +43,9 @@ unknown-name advise wood.png --cube {} --input-space none --plot x.png
 file-not-found atlas macbeth none.csv -o x.csv
 unknown-name atlas macbeth -o x.csv --space none
 unknown-name atlas macbeth --illuminant none
+atlas atlas macbeth --illuminant mine
+unknown-name atlas macbeth --observer mine
+file-not-found atlas macbeth --space camera --observer none.json
 unknown-name bounds #888 --html x.html --plot x.png --light none
 colour bounds --input none.csv --plot x.png
 output build --dim 2 -o none/cube
@@ -51,6 +54,7 @@ file-exists build --dim 2 -o mine
 option build --dim 1
 out-of-memory build --dim 1000000000000
 unknown-name build --illuminant D66
+atlas build --light mine
 unknown-name build --space no/where
 unknown-name build --observer CIE
 unknown-name build --model moment
@@ -97,6 +101,7 @@ file-not-found info none.uplift
 file-not-found lights build --atlas none.csv
 unknown-name lights build --space none
 unknown-name lights build --observer none
+option lights build --observer none.csv
 file-not-found lights info none.uplift --plot x.png --html x.html
 file-not-found lights query 1 1 1 --lights none.uplift --plot x.png
 unknown-name lights query 1 1 1 --input-space none --plot x.png
@@ -106,6 +111,8 @@ file-not-found lights texture wood.png none.png -o out
 unknown-name lights texture wood.png fire.exr -o out --input-space none
 option lights texture wood.png fire.exr -o out --wavelengths 1:2:1
 colour mix teal
+ambiguous-numbers mix 0,2,0,3,0,4
+rgb-out-of-gamut mix #888 1.5,0,0
 option mix -1:#ffffff
 rgb-out-of-gamut mix 1:1.5,0,0
 colour mix #802020/#c03030
@@ -140,6 +147,9 @@ option query 0.5 0.6 0.3 --input-space 1,2
 colour query --xy 0.3 0 --luminance 0.2
 colour-unrealisable query --xyz 0.05 0.9 0.1
 unknown-name query #fff --light FL99
+unknown-name query #fff --light none.spd
+atlas query #fff --light mine
+ambiguous-numbers query 0,2,0,3,0,4
 file-not-found query #fff --cube none.uplift
 option query #fff --wavelengths red
 option query #fff --wavelengths 400:700
@@ -204,6 +214,7 @@ option wavelengths --wavelengths 0.4:0.7:0.1 --atlas macbeth
 unknown-name wavelengths --count 4 --illuminant none --plot x.png
 file-not-found wavelengths --count 4 --atlas macbeth --atlas none.csv --plot x.png
 option wavelengths --count 99 --plot x.png
+option wavelengths --count 4 --space camera --observer none.json --plot x.png
 unknown-name wavelengths --count 4 --light none --plot x.png
 option wavelengths --wavelengths 1:2:1 --plot x.png
 option wavelengths --tolerance 0 --plot x.png

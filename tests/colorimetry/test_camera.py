@@ -1,5 +1,7 @@
 """Sensors of cameras: sensitivities by name and from files, and the matrix of a camera that is a linear map of XYZ."""
 
+import json
+
 import colour
 import numpy as np
 import pytest
@@ -56,9 +58,90 @@ def test_a_file_is_read(tmp_path):
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "Canon 5D\nnm;R;G;B\n400;0;0;2\n500;0;4;1\n600;2;1;0\n700;0,5;0;0\n",
+        "\ufeffnm\tR\tG\tB\n400\t0\t0\t2\n500\t0\t4\t1\n600\t2\t1\t0\n700\t0,5\t0\t0\n",
+        "400 0 0 2\n500  0 4 1\n600 2 1 0\n700 0,5 0 0\n",
+        '"400","0","0","2"\n"500","0","4","1"\n"600","2","1","0"\n"700","0,5","0","0"\n',
+        "700, 0.5, 0, 0,\n600, 2, 1, 0,\n500, 0, 4, 1,\n400, 0, 0, 2,\n,,,,\n",
+    ],
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_tables_of_any_spreadsheet(tmp_path, text, encoding):
+    path = tmp_path / "mine.txt"
+    path.write_text(text, encoding=encoding)
+    camera = read_camera(path)
+    assert camera.wavelengths.tolist() == [400, 500, 600, 700]
+    assert camera.sensitivities.tolist() == [[0, 0, 0.5], [0, 1, 0.25], [0.5, 0.25, 0], [0.125, 0, 0]]
+
+
+ROWS = {"400": [0, 0, 2], "500": [0, 4, 1], "600": [2, 1, 0]}
+
+
+def json_of(labels, rows):
+    return {"header": {"model": "x"}, "spectral_data": {"index": {"main": labels}, "data": {"main": rows}}}
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        json_of(["R", "G", "B"], ROWS),
+        json_of(["B", "G", "R"], {nm: row[::-1] for nm, row in reversed(ROWS.items())}),
+        {"maker": "x", "model": "y", "range": [400, 600, 100], "sensitivity": list(ROWS.values())},
+    ],
+)
+def test_json_of_rawtoaces(tmp_path, table):
+    path = tmp_path / "mine.json"
+    path.write_text(json.dumps(table))
+    camera = observer.find_camera(str(path))
+    assert (camera.name, camera.wavelengths.tolist()) == ("mine", [400, 500, 600])
+    assert camera.sensitivities.tolist() == [[0, 0, 0.5], [0, 1, 0.25], [0.5, 0.25, 0]]
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        [],
+        {},
+        {"spectral_data": {}},
+        {"spectral_data": {"index": [], "data": []}},
+        json_of(["X", "Y", "Z"], ROWS),
+        json_of(["R", "G", "B"], {**ROWS, "700": [1, 2]}),
+        json_of(["R", "G", "B"], {**ROWS, "red": [1, 2, 3]}),
+        json_of(["R", "G", "B"], {"400": [1, 2, "x"]}),
+        json_of(["R", "G", "B"], {}),
+        {"range": [400, 700, 5], "sensitivity": list(ROWS.values())},
+        {"range": [400, 600], "sensitivity": list(ROWS.values())},
+        {"range": [400, 600, 100], "sensitivity": [1, 2]},
+        {"range": [400, 600, 100], "sensitivity": []},
+    ],
+)
+def test_bad_json(tmp_path, table):
+    path = tmp_path / "bad.json"
+    path.write_text(json.dumps(table))
+    with raises(OptionError, "option") as caught:
+        read_camera(path)
+    assert caught.value.path == path
+
+
+def test_a_file_of_another_suffix_is_named_as_a_file(tmp_path):
+    path = tmp_path / "mine.xyz"
+    path.write_text(TABLE)
+    for space in (CAMERA, "sRGB"):
+        with raises(UnknownNameError, "unknown-name") as caught:
+            observer.sensor(space, observer=str(path))
+        assert ".json" in caught.value.hint
+
+
+@pytest.mark.parametrize(
     "rows",
     [
         "",
+        "400,1,,2,3\n700,1,2,3\n",
+        "400,0,1,0,2,0,3\n700,0,3,0,2,0,1\n",
+        "400,1,2,3,4\n700,1,2,3,4\n",
+        "400,1,2,3\n700,2,3,1\n500,3,1,2\n",
         "400,1,1,1\n",
         "400,1,nan,1\n700,1,1,1\n",
         "700,1,1,1\n400,1,1,1\n",

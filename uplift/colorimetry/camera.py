@@ -7,14 +7,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry.sensor import Sensor
+from uplift.colorimetry.spectra_json import RGB, is_json, read_spectra
 from uplift.common.arrays import Array, StrPath
+from uplift.common.csv import find_delimiter, is_decimal, parse_decimal, split_line
 from uplift.common.errors import OptionError
 from uplift.common.files import read_bytes
-from uplift.common.text import format_value, parse_float
+from uplift.common.text import format_value
 
 CAMERA = "camera"
 """Name of the RGB space of raw values, balanced so that the perfect reflector is (1, 1, 1)."""
 LAYOUT = "give rows of a wavelength in nm and the sensitivities of red, green and blue"
+CAMERA_FILES = (".csv", ".tsv", ".txt", ".json")
+"""Suffixes of files of sensitivities, which distinguish them from names."""
 MAX_BYTES = 1_000_000
 CORRELATED = 50.0
 """Distance in nm over which the correlation of the reflectances that a camera's matrix is fitted to falls to 1/e."""
@@ -92,27 +96,47 @@ def camera_sensor(camera: Camera, standard: Sensor) -> Sensor:
 
 
 def read_camera(path: StrPath) -> Camera:
-    """Read sensitivities from a CSV file: rows of a wavelength in nm, red, green and blue.
+    """Read the sensitivities of a file, of the name of which is that of the camera.
 
-    Rows without numbers before the first with numbers are headers; lines that begin with ``#`` are comments. Raises
-    `OptionError` for anything else.
+    Rows of a table have a wavelength in nm, red, green and blue, separated by commas, semicolons, tabs or blanks, with
+    decimal points or commas, in ascending or descending order. Rows before them with fewer than two numbers are
+    headers; lines that begin with ``#`` are comments. JSON (``.json``) is that of rawtoaces. Raises `OptionError` for
+    anything else.
     """
-    text = read_bytes(path, OptionError, limit=MAX_BYTES, hint=LAYOUT).decode("utf-8-sig", errors="replace")
+    if is_json(path):
+        spectra = read_spectra(path, RGB, OptionError)
+        wavelengths, sensitivities = spectra.wavelengths, spectra.values
+    else:
+        table = _read_table(path)
+        wavelengths, sensitivities = table[:, 0], table[:, 1:]
+    name = Path(path).stem.encode(errors="backslashreplace").decode()
+    try:
+        return Camera(name, wavelengths, sensitivities)
+    except OptionError as error:
+        raise OptionError(error.problem, code=error.code, path=path, hint=error.hint) from error
+
+
+def _read_table(path: StrPath) -> Array:
+    """Read rows (N, 4) of a wavelength and three sensitivities, in ascending order if they descend."""
+    data = read_bytes(path, OptionError, limit=MAX_BYTES, hint=LAYOUT)
+    encoding = "utf-16" if data.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig"
+    lines = data.decode(encoding, errors="replace").splitlines()
     table: list[list[float]] = []
-    for line, row in enumerate(text.splitlines(), 1):
-        cells = [cell for cell in (cell.strip(' "') for cell in row.split(",")) if cell]
-        is_header = not table and not any(cell[0] in "+-.0123456789" for cell in cells)
+    try:
+        delimiter = find_delimiter(lines)
+        rows = [split_line(line, delimiter) for line in lines]
+    except ValueError as error:
+        raise OptionError(f"is not a readable table: {error}", path=path, hint=LAYOUT) from error
+    for line, cells in enumerate(rows, 1):
+        is_header = not table and sum(map(is_decimal, cells)) < 2
         if not cells or cells[0].startswith("#") or is_header:
             continue
         try:
-            wavelength, red, green, blue = map(parse_float, cells)
+            wavelength, red, green, blue = map(parse_decimal, cells)
         except ValueError as error:
-            problem = f"a row must have four numbers, got {format_value(row)}"
+            problem = f"a row must have four numbers, got {format_value(lines[line - 1])}"
             raise OptionError(problem, path=path, line=line, hint=LAYOUT) from error
         table.append([wavelength, red, green, blue])
     numbers = np.array(table).reshape(-1, 4)
-    name = Path(path).stem.encode(errors="backslashreplace").decode()
-    try:
-        return Camera(name, numbers[:, 0], numbers[:, 1:])
-    except OptionError as error:
-        raise OptionError(error.problem, code=error.code, path=path, hint=error.hint) from error
+    descends = len(numbers) > 1 and (np.diff(numbers[:, 0]) < 0).all()
+    return numbers[::-1] if descends else numbers

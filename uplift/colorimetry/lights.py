@@ -1,12 +1,15 @@
 """Illuminants for each purpose, by the names of colour-science, and sets of lamps.
 
 Temperatures such as 3200K are names too: from 4000K to 25000K of CIE daylight (CIE 15:2004, 3.1) of this nominal
-temperature, as D65 is 6500K, and below, from 1000K, of black bodies.
+temperature, as D65 is 6500K, and below, from 1000K, of black bodies. A `Lamp` is a measured light in place of a name.
 """
 
+import math
 import re
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
@@ -64,6 +67,72 @@ KMENT_LIGHTS = {"smooth": ("A", "B", "C"), "spiky": ("FL2", "FL7", "FL11")}
 
 STANDARD_ILLUMINANTS = ("A", "D50", "D55", "D65", "D75")
 """Illuminants that an emission table without an atlas returns exactly."""
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """A measured light, which functions take in place of the name of an illuminant; `uplift.read_lamp` reads files.
+
+    Parameters
+    ----------
+    name : str
+        Name in results.
+    wavelengths : tuple of float
+        At least two wavelengths in nm, ascending.
+    power : tuple of float
+        Relative spectral power at the wavelengths, not negative, not all 0. Outside it keeps its first and last value.
+
+    Raises
+    ------
+    OptionError
+        The wavelengths or the power are not as described.
+
+    Examples
+    --------
+    >>> Lamp("lamp", (400, 600, 700), (0, 2, 1)).at([350, 500, 600, 800]).tolist()
+    [0.0, 1.0, 2.0, 1.0]
+    """
+
+    name: str
+    wavelengths: tuple[float, ...]
+    power: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        wavelengths, power = tuple(map(float, self.wavelengths)), tuple(map(float, self.power))
+        problem = ""
+        if not len(wavelengths) == len(power) >= 2:
+            problem = f"must have at least 2 wavelengths and as many powers, got {len(wavelengths)} and {len(power)}"
+        elif not all(map(math.isfinite, (*wavelengths, *power))):
+            problem = "must have finite wavelengths and powers"
+        elif (np.diff(wavelengths) <= 0).any():
+            problem = "must have ascending wavelengths"
+        elif min(power) < 0 or max(power) == 0:
+            problem = f"must have powers of at least 0, one of them above, got {min(power):g} to {max(power):g}"
+        if problem:
+            raise OptionError(f"the lamp '{self.name}' {problem}")
+        object.__setattr__(self, "wavelengths", wavelengths)
+        object.__setattr__(self, "power", power)
+
+    def __str__(self) -> str:
+        return self.name
+
+    def at(self, wavelengths: ArrayLike) -> Array:
+        """Sample the power at evenly spaced wavelengths (N,) in nm.
+
+        Powers that are measured at a smaller step are averaged with triangular weights, so that no narrow line is lost.
+        Others are interpolated linearly.
+        """
+        nm = np.asarray(wavelengths, dtype=float)
+        step, own = np.diff(nm[:2]).sum(), float(np.median(np.diff(self.wavelengths)))
+        count = math.ceil(step / own - 1e-6) if step > own else 1
+        offsets = step / count * np.arange(1 - count, count)
+        weights = count - np.abs(np.arange(1 - count, count))
+        shifted = np.interp(nm[:, None] + offsets, self.wavelengths, self.power)
+        return np.asarray(shifted @ weights / weights.sum())
+
+
+Illuminant = str | Lamp
+"""The name of an illuminant, or a measured light."""
 
 
 def standard_name(name: str) -> tuple[str, float | None]:

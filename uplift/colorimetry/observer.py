@@ -5,15 +5,15 @@ observers are 0.
 Names that are unknown raise `UnknownNameError`, whose hint gives the nearest ones.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from uplift.colorimetry import tables
-from uplift.colorimetry.camera import CAMERA, Camera, camera_sensor, read_camera
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT
+from uplift.colorimetry.camera import CAMERA, CAMERA_FILES, Camera, camera_sensor, read_camera
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, Illuminant, Lamp
 from uplift.colorimetry.sensor import Light, Sensor, in_unit_cube
 from uplift.colorimetry.tables import WAVELENGTHS, samples
 from uplift.common.arrays import Array
@@ -33,7 +33,7 @@ def grid() -> Array:
 
 def sensor(
     space: str = "sRGB",
-    illuminant: str = DEFAULT_ILLUMINANT,
+    illuminant: Illuminant = DEFAULT_ILLUMINANT,
     observer: str | Camera = DEFAULT_OBSERVER,
     wavelengths: tuple[float, float, float] = WAVELENGTHS,
 ) -> Sensor:
@@ -47,7 +47,7 @@ def sensor(
     space : str
         RGB space: a name of colour-science, a short name such as ``AP1``, or a name of OpenColorIO, such as
         ``lin_rec2020``, of a space that colour-science has as well. ``"camera"`` are raw values of a camera.
-    illuminant : str
+    illuminant : str or Lamp
         Illuminant that the RGB refer to.
     observer : str or Camera
         Colour-matching functions; for the space ``"camera"`` a camera, see `find_camera`. XYZ of a camera's sensor are
@@ -73,13 +73,13 @@ def sensor(
     [0.5, 0.5, 0.5]
     """
     if wavelengths != WAVELENGTHS:
-        return on_range(sensor(space, illuminant, observer), *wavelengths)
+        return on_range(sensor(space, illuminant, observer), *wavelengths, illuminant=illuminant)
     if space == CAMERA:
         camera = find_camera(observer)
         if tables.rgb_space(camera.name) is not None:
             raise OptionError(f"a camera must not have the name of an RGB space, got '{camera.name}'")
         return camera_sensor(camera, sensor(illuminant=illuminant))
-    if isinstance(observer, Camera) or is_camera_file(observer) or observer in tables.names("camera"):
+    if isinstance(observer, Camera) or is_camera(observer):
         raise OptionError("a camera in place of an observer has its own RGB space", hint=f"use space='{CAMERA}'")
     rgb_space = tables.rgb_space(space)
     if rgb_space is None:
@@ -103,11 +103,15 @@ def sensor(
     )
 
 
-def on_range(sensor: Sensor, start: float, end: float, step: float) -> Sensor:
-    """Return a sensor with a range of wavelengths, where the perfect reflector is white again."""
+def on_range(sensor: Sensor, start: float, end: float, step: float, *, illuminant: Illuminant | None = None) -> Sensor:
+    """Return a sensor with a range of wavelengths, where the perfect reflector is white again.
+
+    ``illuminant`` is that of the sensor, which must be given if it is a lamp.
+    """
     if sensor.range == (start, end, step):
         return sensor
-    wide = light(sensor.illuminant, sensor.observer, start, end, step)
+    illuminant = sensor.illuminant if illuminant is None else illuminant
+    wide = light(illuminant, sensor.observer, start, end, step)
     wavelengths = np.arange(start, end + step / 2, step)
     sensitivities = None
     if sensor.sensitivities is not None:
@@ -116,7 +120,7 @@ def on_range(sensor: Sensor, start: float, end: float, step: float) -> Sensor:
         sensor,
         wavelengths=wavelengths,
         cmfs=samples("observer", sensor.observer, start, end, step),
-        power=samples("illuminant", sensor.illuminant, start, end, step),
+        power=samples("illuminant", illuminant, start, end, step),
         xyz_to_rgb=sensor.xyz_to_rgb / (sensor.xyz_to_rgb @ wide.white)[:, None],
         sensitivities=sensitivities,
     )
@@ -124,7 +128,20 @@ def on_range(sensor: Sensor, start: float, end: float, step: float) -> Sensor:
 
 def is_camera_file(observer: str) -> bool:
     """Whether the name of an observer is that of a file of sensitivities, which is read."""
-    return observer.casefold().endswith(".csv")
+    return observer.casefold().endswith(CAMERA_FILES)
+
+
+def is_camera(observer: str | Camera) -> bool:
+    """Whether an observer is a camera, or the name or file of one."""
+    return isinstance(observer, Camera) or is_camera_file(observer) or observer in tables.names("camera")
+
+
+def require_observer(observer: str | Camera, purpose: str) -> None:
+    """Raise `OptionError` for a camera in place of an observer, where XYZ are needed for a ``purpose``."""
+    if is_camera(observer):
+        name = observer.name if isinstance(observer, Camera) else observer
+        problem = f"{purpose} need XYZ, which raw values of the camera '{name}' do not determine"
+        raise OptionError(problem, hint="use a standard observer")
 
 
 def find_camera(camera: str | Camera) -> Camera:
@@ -138,7 +155,7 @@ def find_camera(camera: str | Camera) -> Camera:
 
 
 def display_sensors(
-    illuminants: Sequence[str],
+    illuminants: Sequence[Illuminant],
     observer: str,
     start: float = START,
     end: float = END,
@@ -148,20 +165,31 @@ def display_sensors(
 ) -> tuple[Sensor, ...]:
     """Create a sensor, by default of sRGB, for each illuminant, without duplicates.
 
-    Their linear RGB can be displayed directly: the white of each illuminant becomes the white of the screen.
+    Their linear RGB can be displayed directly: the white of each illuminant becomes the white of the screen. Raises
+    `OptionError` for two lamps of one name.
     """
+    check_distinct(illuminants)
     sensors = (sensor(space, name, observer, (start, end, step)) for name in illuminants)
     return tuple({each.illuminant: each for each in sensors}.values())
 
 
+def check_distinct(illuminants: Iterable[Illuminant]) -> None:
+    """Check that no two different lamps, nor a lamp and an illuminant, have the same name in results."""
+    known: dict[str, Lamp | None] = {}
+    for each in illuminants:
+        name, lamp = tables.stated_name("illuminant", each), each if isinstance(each, Lamp) else None
+        if known.setdefault(name, lamp) != lamp:
+            raise OptionError(f"two lights have the name '{name}'", hint="rename one of them")
+
+
 def light(
-    illuminant: str, observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
+    illuminant: Illuminant, observer: str = DEFAULT_OBSERVER, start: float = START, end: float = END, step: float = STEP
 ) -> Light:
     """Create a light, by default on the wavelengths of `grid`.
 
     Parameters
     ----------
-    illuminant : str
+    illuminant : str or Lamp
         Illuminant.
     observer : str
         Colour-matching functions.
@@ -191,13 +219,13 @@ def matching_functions(
     return samples("observer", observer, start, end, step)
 
 
-def illuminant_spd(illuminant: str, start: float = START, end: float = END, step: float = STEP) -> Array:
+def illuminant_spd(illuminant: Illuminant, start: float = START, end: float = END, step: float = STEP) -> Array:
     """Return the relative spectral power of an illuminant. Shape (N,)."""
     return samples("illuminant", illuminant, start, end, step)
 
 
 def smallest_space(
-    reflectances: ArrayLike, illuminant: str = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
+    reflectances: ArrayLike, illuminant: Illuminant = DEFAULT_ILLUMINANT, observer: str = DEFAULT_OBSERVER
 ) -> str | None:
     """Find the smallest of `COMMON_SPACES` that holds all colours of reflectances (…, 81) on `grid`; None if none does.
 

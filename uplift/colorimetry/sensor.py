@@ -13,6 +13,8 @@ from uplift.common.text import format_value
 
 SLACK = 1e-9
 """Distance from [0, 1] that counts as rounding."""
+ROUNDING = 1e-12
+"""Size of a number that is printed as 0."""
 MIN_CODE = 10
 """Largest of three whole numbers from which they are taken for 8-bit codes."""
 
@@ -49,8 +51,8 @@ def raise_out_of_gamut(outside: Array) -> NoReturn:
 
 
 def format_rgb(rgb: Array) -> str:
-    """Format a colour (3,) for a message."""
-    return "(" + ", ".join(f"{value:g}" for value in rgb) + ")"
+    """Format a colour (3,) for a message. Rounding errors of 0 are 0."""
+    return "(" + ", ".join("0" if abs(value) < ROUNDING else f"{value:g}" for value in rgb) + ")"
 
 
 @dataclass(frozen=True, eq=False)

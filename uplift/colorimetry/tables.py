@@ -7,6 +7,7 @@ Copyright 2013 Colour Developers, BSD-3-Clause, as part of colour-science.
 
 import functools
 import operator
+import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,9 +17,10 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry import lights
+from uplift.colorimetry.lights import Illuminant, Lamp
 from uplift.common.arrays import Array
 from uplift.common.colour_science import colour_science
-from uplift.common.errors import OptionError, unknown_name
+from uplift.common.errors import OptionError, UnknownNameError, unknown_name
 
 PATH = Path(__file__).parent / "tables.npz"
 START, END, STEP = WAVELENGTHS = (380.0, 780.0, 5.0)
@@ -33,6 +35,12 @@ TABLES = {
     "RGB space": "RGB_COLOURSPACES",
 }
 """All tables of colour-science that are used."""
+FILES = {
+    "illuminant": "here an illuminant is a name; in Python pass the lamp that uplift.read_lamp reads",
+    "observer": "sensitivities of a camera need space='camera' and a file .csv, .tsv, .txt or .json",
+    "camera": "files of cameras end in .csv, .tsv, .txt or .json",
+}
+"""Hints for files in place of a name."""
 RESPONSES = ("observer", "camera")
 """Kinds that are 0 outside their tables: a wavelength without a value adds nothing. Others keep their last value."""
 SHORT_NAMES = {
@@ -77,8 +85,15 @@ def names(kind: str) -> tuple[str, ...]:
     return tuple(_file()[f"{kind}: names"].tolist())
 
 
-def stated_name(kind: str, name: str) -> str:
-    """Return the name that colour-science states for a name, which may be an alias or have other capitals."""
+def stated_name(kind: str, name: Illuminant) -> str:
+    """Return the name that colour-science states for a name, which may be an alias or have other capitals.
+
+    A lamp has its own, which must not be that of an illuminant.
+    """
+    if isinstance(name, Lamp):
+        if name.name in names(kind):
+            raise OptionError(f"a lamp must not have the name of an illuminant, got '{name}'", hint="rename the lamp")
+        return name.name
     name, _ = lights.standard_name(name) if kind == "illuminant" else (name, None)
     if name in names(kind):
         return str(_file()[f"{kind}: stated"][names(kind).index(name)])
@@ -86,15 +101,20 @@ def stated_name(kind: str, name: str) -> str:
 
 
 @functools.cache
-def samples(kind: str, name: str, start: float = START, end: float = END, step: float = STEP) -> Array:
-    """Sample spectra by name; the result is read-only. Shape (N,) or (N, 3).
+def samples(kind: str, name: Illuminant, start: float = START, end: float = END, step: float = STEP) -> Array:
+    """Sample spectra by name, or those of a lamp; the result is read-only. Shape (N,) or (N, 3).
 
     Outside its table a spectrum keeps its last value, as CIE 15 has it for lights, and one of `RESPONSES` is 0.
     ``kind`` is one of the keys of `TABLES`, such as ``"display"`` for the power of the primaries of a display.
     """
+    wavelengths = np.arange(start, end + step / 2, step)
+    if isinstance(name, Lamp):
+        values = name.at(wavelengths)
+        values.setflags(write=False)
+        return values
     name, kelvin = lights.standard_name(name) if kind == "illuminant" else (name, None)
     if kelvin is not None and kelvin < lights.DAYLIGHT_FROM:
-        values = lights.black_body(kelvin, np.arange(start, end + step / 2, step))
+        values = lights.black_body(kelvin, wavelengths)
     elif kind in SPECTRA and (start, end, step) == WAVELENGTHS and name in names(kind):
         values = _file()[f"{kind}: samples"][names(kind).index(name)]
     else:
@@ -145,6 +165,8 @@ def look_up(kind: str, name: str) -> Any:
     try:
         return table[name]
     except KeyError:
+        if kind in FILES and os.path.isfile(name):
+            raise UnknownNameError(f"unknown {kind} '{name}', which is a file", hint=FILES[kind]) from None
         raise unknown_name(name, known, kind, f"tables.names('{kind}')") from None
 
 

@@ -1,4 +1,4 @@
-"""CSV text: the writer of the project, and the reader of tables that it wrote.
+"""CSV text: the writer of the project, the reader of tables that it wrote, and the parts of readers of others.
 
 A spreadsheet runs a cell that begins with ``=``, ``+``, ``-``, ``@`` or a tab as a formula. Such text is written with
 an apostrophe before it, which spreadsheets hide; `plain_cell` takes it away again. Numbers, also those formatted as
@@ -11,7 +11,12 @@ import re
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from uplift.common.text import parse_float
+
+DELIMITERS = (";", "\t", ",", " ")
+"""Delimiters of cells. The last one stands for any number of blanks."""
 _FORMULA = re.compile(r"'*[=+\-@\t\r\n＝＋－＠]")
+_DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9])")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 
 
@@ -51,6 +56,67 @@ def parse_csv(data: bytes) -> list[dict[str, str]]:
     if any(None in row or None in row.values() for row in rows):
         raise ValueError("columns are missing, or lines differ in length")
     return rows
+
+
+def parse_decimal(text: str) -> float:
+    """Parse a number with a decimal point or a decimal comma, which may be infinite or NaN; `ValueError` otherwise.
+
+    >>> parse_decimal("0.25"), parse_decimal("0,25"), parse_decimal("-1,5e-3")
+    (0.25, 0.25, -0.0015)
+    """
+    return parse_float(text if "." in text else _DECIMAL_COMMA.sub(".", text))
+
+
+def is_decimal(text: str) -> bool:
+    """Whether `parse_decimal` accepts a text.
+
+    >>> is_decimal("0,5"), is_decimal("0,5,1"), is_decimal("0.5,1"), is_decimal("red")
+    (True, False, False, False)
+    """
+    try:
+        parse_decimal(text)
+    except ValueError:
+        return False
+    return True
+
+
+def find_delimiter(lines: Iterable[str]) -> str:
+    """Return the one of `DELIMITERS` that splits most numbers off lines, and few other cells.
+
+    Of lines without numbers it is the first one that they have, of lines without any a semicolon.
+
+    >>> [find_delimiter([line]) for line in ("400,5;0,3", "0,2 0,3 0,4", "0.2, 0.3, 0.4", '"0,2","0,3"', "r,g")]
+    [';', ' ', ',', ',', ',']
+    """
+    lines = list(lines)
+    present = [each for each in DELIMITERS if any(each in line for line in lines)] or DELIMITERS[:1]
+
+    def score(delimiter: str) -> tuple[int, int]:
+        cells = [cell for line in lines for cell in split_line(line, delimiter)]
+        numbers = sum(map(is_decimal, cells))
+        return numbers, -len(cells) if numbers else int(len(cells) > len(lines))
+
+    return present[0] if len(present) == 1 else max(present, key=score)
+
+
+def split_line(line: str, delimiter: str) -> list[str]:
+    """Split a line into cells without the blanks around them, and without empty cells at the end.
+
+    `ValueError` for a cell that is too long.
+
+    >>> split_line('"deep, red"; 0,2 ;;', ";"), split_line("  0,2   0,3", " ")
+    (['deep, red', '0,2'], ['0,2', '0,3'])
+    """
+    try:
+        cells = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
+    except csv.Error as error:
+        raise ValueError(str(error)) from error
+    cells = [cell.strip() for cell in cells]
+    if delimiter == " ":
+        return [cell for cell in cells if cell]
+    while cells and not cells[-1]:
+        cells.pop()
+    return cells
 
 
 def plain_cell(cell: str) -> str:

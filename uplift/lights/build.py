@@ -99,6 +99,7 @@ def build_emission(
     """
     _check_count("knots", knots, MAX_KNOTS)
     _check_count("rings", rings, MAX_RINGS)
+    observers.require_observer(observer, "emission tables")
     sensor = observers.sensor(space, "D65", observer)
     radiometry = sensor.cmfs / sensor.cmfs[:, 1].sum()
     matrix = primaries_of(look_up_space(space)).rgb_to_xyz

@@ -1,19 +1,23 @@
 """Lamps: spectral powers of colour-science, and from the formats of atlas files."""
 
+import os
 import warnings
 from dataclasses import replace
 
 import numpy as np
 
-from uplift.atlas.atlas import Atlas, merge, skipped_warning
-from uplift.atlas.document import Document, truncate
+from uplift.atlas.atlas import Atlas, Entry, merge, skipped_warning
+from uplift.atlas.document import Document, SourceLocation, truncate
 from uplift.atlas.formats import read_any
-from uplift.atlas.measurements import Measurements, to_atlas
+from uplift.atlas.measurements import Measurements, is_missing, to_atlas
 from uplift.atlas.sources import find_atlas_file, read_named
 from uplift.colorimetry import tables
+from uplift.colorimetry.lights import Illuminant, Lamp
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, matching_functions
+from uplift.colorimetry.spectra_json import POWER, is_json, read_spectra
 from uplift.common.arrays import Array, StrPath
-from uplift.common.errors import AtlasError
+from uplift.common.errors import AtlasError, UnknownNameError, UpliftError, unknown_name
+from uplift.common.text import listed, printable
 from uplift.lights.discs import Lamps
 
 VISIBLE = (400.0, 700.0)
@@ -53,6 +57,95 @@ def read_lamps(*paths: StrPath) -> Atlas:
     return atlas
 
 
+def read_lamp(path: StrPath, name: str | None = None) -> Lamp:
+    """Read a measured lamp, for functions that take the name of an illuminant.
+
+    Parameters
+    ----------
+    path : path-like
+        File of spectral powers, in a format of `uplift.read_atlas`: such as CSV or SPD with lines of a wavelength in nm
+        and a power, CGATS, IES TM-27 (.spdx) or a spreadsheet, or JSON of rawtoaces. The powers have any one unit.
+    name : str, optional
+        Name of a lamp in a file of several.
+
+    Returns
+    -------
+    Lamp
+        The lamp, with the name of the file without its suffix, or its own name if the file has several. Names that are
+        those of illuminants are not shortened. Negative powers, which are noise, are 0.
+
+    Raises
+    ------
+    AtlasError
+        The file cannot be read, states reflectances, or has several lamps and no ``name`` is given.
+    UnknownNameError
+        No lamp of the file has the name.
+
+    Examples
+    --------
+    >>> import uplift
+    >>> lamp = uplift.read_lamp("lamp.csv")  # doctest: +SKIP
+    >>> cube.standard_error([0.8, 0.2, 0.1], lamp)  # doctest: +SKIP
+    """
+    lamps = _read_json(path) if is_json(path) else read_lamps(path)
+    location, file = SourceLocation(os.fspath(path)), printable(os.path.basename(path))
+    if name is not None and name not in lamps.names:
+        raise unknown_name(name, lamps.names, f"lamp of {file}")
+    if name is None and len(lamps) != 1:
+        names = listed([f"'{each}'" for each in lamps.names])
+        problem = f"a light is one lamp, got a file of {len(lamps)}: {names}"
+        raise location.error(problem, f"name one of them, as in '{file}:{lamps.names[0]}'" if len(lamps) else "")
+    entry = lamps[0] if name is None else lamps[name]
+    short = os.path.splitext(file)[0] if len(lamps) == 1 else entry.name
+    long = file if len(lamps) == 1 else f"{file}:{entry.name}"
+    return Lamp(
+        long if is_illuminant(short) else short,
+        tuple(entry.wavelengths.tolist()),
+        tuple(np.maximum(entry.values, 0.0).tolist()),
+    )
+
+
+def find_light(text: str) -> Illuminant:
+    """Return the name of an illuminant, or read the lamp of a file: ``lamp.csv``, or ``lamps.csv:NAME`` of several.
+
+    A name takes precedence over a file. Raises the errors of `read_lamp`, and `UnknownNameError` for a text that is
+    neither.
+    """
+    file = lamp_file(text)
+    try:
+        tables.stated_name("illuminant", text)
+    except UnknownNameError:
+        if os.path.lexists(file):
+            return read_lamp(file, text[len(file) + 1 :] if file != text else None)
+        raise
+    return text
+
+
+def lamp_file(text: str) -> str:
+    """Return the file of ``lamp.csv``, or of ``lamps.csv:NAME``, if there is one."""
+    file = text.rpartition(":")[0]
+    return file if not os.path.lexists(text) and os.path.isfile(file) else text
+
+
+def _read_json(path: StrPath) -> Atlas:
+    """Read the lamp of a file of rawtoaces."""
+    spectra = read_spectra(path, POWER, AtlasError)
+    powers = spectra.values[:, 0]
+    stem = os.path.splitext(os.path.basename(path))[0]
+    if not powers.max(initial=0) > 0:
+        raise SourceLocation(os.fspath(path)).error("a lamp must have power, got none above 0", "name another file")
+    return Atlas((Entry(stem, spectra.wavelengths, powers / powers.max(), path=os.fspath(path)),))
+
+
+def is_illuminant(name: str) -> bool:
+    """Whether an illuminant has the name."""
+    try:
+        tables.stated_name("illuminant", name)
+    except UpliftError:
+        return False
+    return True
+
+
 def _read(document: Document) -> Atlas:
     chosen, found = read_any(document)
     if isinstance(found, Atlas):
@@ -76,8 +169,9 @@ def _scaled(document: Document, measurements: Measurements) -> Measurements:
         quantity = spectrum.quantity or measurements.quantity
         if quantity is not None and not quantity.of_light:
             continue
-        values = np.asarray(spectrum.values, dtype=float)
-        highest = float(values[np.isfinite(values)].max(initial=0))
+        values = np.array(spectrum.values, dtype=float)
+        values[is_missing(values)] = np.nan
+        highest = float(np.nan_to_num(values).max(initial=0))
         if highest <= 0:
             raise document.location.at(spectrum.line, spectrum.name).error(
                 "a lamp must have power, got none above 0", "remove the lamp"

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from uplift.colorimetry.delta_e import rgb_to_lab
+from uplift.colorimetry.lights import Illuminant
 from uplift.common.arrays import Array, Mask
 from uplift.common.errors import unknown_name
 from uplift.cube import CubeData, read, write
@@ -245,7 +246,7 @@ class Cube:
         source = load() if other is None else other
         return Cube(fill_missing(self.data, points, source.data, blocks.as_thread_count(threads)))
 
-    def standard_error(self, rgb: ArrayLike, light: str | Light | None = None) -> Array | None:
+    def standard_error(self, rgb: ArrayLike, light: Illuminant | Light | None = None) -> Array | None:
         """Estimate the difference that 68 % of measurements stay within, as learnt from left-out atlas entries.
 
         It holds for materials like those of the atlas, which colours alone do not identify; see `unlike_atlas`.
@@ -254,9 +255,9 @@ class Cube:
         ----------
         rgb : array_like, shape (..., 3)
             Linear RGB in [0, 1].
-        light : str or Light, optional
-            Illuminant, by its name in colour-science. ``data.error_illuminant`` by default; others need a cube with
-            left-out entries, or raise `OptionError`.
+        light : str, Lamp or Light, optional
+            Illuminant, by its name in colour-science, or measured. ``data.error_illuminant`` by default; others need
+            a cube with left-out entries, or raise `OptionError`.
 
         Returns
         -------
@@ -266,7 +267,7 @@ class Cube:
         errors = expected_errors(self, rgb, light)
         return None if errors is None else errors[..., 0]
 
-    def error_bound(self, rgb: ArrayLike, light: str | Light | None = None) -> Array | None:
+    def error_bound(self, rgb: ArrayLike, light: Illuminant | Light | None = None) -> Array | None:
         """Estimate the difference that 95 % of measurements stay within, which is learnt separately.
 
         Parameters
@@ -366,13 +367,13 @@ def load(path: str | os.PathLike[str] | None = None) -> Cube:
     return Cube(read(DEFAULT if path is None else find_file(path)))
 
 
-def expected_errors(cube: Cube, rgb: ArrayLike, light: str | Light | None = None) -> Array | None:
+def expected_errors(cube: Cube, rgb: ArrayLike, light: Illuminant | Light | None = None) -> Array | None:
     """Standard errors and error bounds (…, 2) of a cube that has estimates. Those of nodes are under one light."""
     data = cube.data
     if data.points.standard_error is None:
         return None
-    lit: Light | None = light if not isinstance(light, str) else None
-    if isinstance(light, str):
+    lit: Light | None = light if not isinstance(light, Illuminant) else None
+    if isinstance(light, Illuminant):
         lit = import_module(OBSERVER).light(light, cube.observer, *data.sensor.range)
     function: blocks.Function = partial(node_errors, data)
     if lit is not None and lit.name != data.error_illuminant:

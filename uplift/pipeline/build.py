@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, fields, replace
+from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Protocol
@@ -13,7 +13,7 @@ import numpy as np
 
 from uplift.colorimetry import observer as observers
 from uplift.colorimetry.camera import Camera
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, ERROR_ILLUMINANT, SCENE_LIGHTS, Illuminant
 from uplift.colorimetry.sensor import Sensor
 from uplift.common.arrays import Mask, StrPath
 from uplift.common.errors import OptionError
@@ -85,7 +85,7 @@ def build(
     shortest: float = observers.START,
     longest: float = observers.END,
     step: float = observers.STEP,
-    lights: Sequence[str] = SCENE_LIGHTS,
+    lights: Sequence[Illuminant] = SCENE_LIGHTS,
     prior: PriorName = "learnt",
     neutral: NeutralName = "expected",
     library: AtlasLike = None,
@@ -135,7 +135,7 @@ def build(
         The coefficients are shared by the whole range, so a much wider one resolves less (docs/accuracy.md).
     step : {1, 5, 10}, default 5
         Distance in nm of the wavelengths at which spectra are integrated and compared.
-    lights : sequence of str, default ("D65", "A", "FL2", "FL11", "LED-B3")
+    lights : sequence of str or Lamp, default ("D65", "A", "FL2", "FL11", "LED-B3")
         Illuminants under which fitted atlas entries must keep their measured colours.
     prior : {"learnt", "smooth"}, default "learnt"
         Spectra of colours that no entry constrains: those expected of real materials, or smooth ones.
@@ -226,6 +226,7 @@ def problem_of(options: Options, observer: str | Camera, solver: str | Solver) -
     wavelengths = options.shortest, options.longest, options.step
     sensor = observers.sensor(options.space, options.illuminant, observer, wavelengths)
     names = (*options.lights, ERROR_ILLUMINANT)
+    observers.check_distinct(options.lights)
     *lights, error_light = (observers.light(name, sensor.observer, *sensor.range) for name in names)
     problem = Problem(sensor, options.spectrum_model(), tuple(lights), error_light, options.threshold)
     if solver != SOLVERS[0]:
@@ -347,7 +348,7 @@ def build_stages(
         learnt["error_bound"] = bound / standard
     provenance = {
         "uplift": version(),
-        "options": asdict(options) | {"lights": list(options.lights), "leave_out": list(options.leave_out)},
+        "options": options.record(),
         "atlases": [
             {"name": source.name, "digest": source.digest, **source.changed_options()} for source in atlas.sources
         ],

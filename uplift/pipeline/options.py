@@ -1,14 +1,14 @@
 """Build options and their validation."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from numbers import Integral, Real
 from typing import Any, Literal, get_args
 
 import numpy as np
 
 from uplift.colorimetry.camera import CAMERA
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS, Illuminant, Lamp
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP
 from uplift.common import machine
 from uplift.common.errors import OptionError, unknown_name
@@ -75,7 +75,7 @@ class Options:
     shortest: float = START
     longest: float = END
     step: float = STEP
-    lights: tuple[str, ...] = SCENE_LIGHTS
+    lights: tuple[Illuminant, ...] = SCENE_LIGHTS
     prior: str = "learnt"
     neutral: str = "expected"
     leave_out: tuple[str, ...] = ()
@@ -125,6 +125,11 @@ class Options:
             if not least <= value <= most:
                 yield f"{name} must be in [{least:g}, {most:g}], got {format_value(value)}", ""
 
+    def record(self) -> dict[str, Any]:
+        """Return the options as JSON can record them; `recorded_options` reads them. Lamps are recorded with power."""
+        values = asdict(self)
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
+
     def spectrum_model(self, coefficients: int | None = None) -> Model:
         """Create the spectrum model, from `shortest` to `longest` nm, of the nodes or of other moments."""
         if self.model == Sigmoid.name:
@@ -141,15 +146,36 @@ def recorded_options(options: dict[str, Any]) -> dict[str, Any]:
     if "coefficients" in current:  # up to file version 3 entries had as many
         current.setdefault("entry_coefficients", current["coefficients"])
     current = {"prior": "smooth", "leave_out": (), **current}  # the defaults up to file version 3
-    return {name: tuple(value) if isinstance(value, list) else value for name, value in current.items()}
+    current = {name: tuple(value) if isinstance(value, list) else value for name, value in current.items()}
+    if isinstance(current.get("lights"), tuple):
+        current["lights"] = tuple(map(_recorded_light, current["lights"]))
+    return current
+
+
+def _recorded_light(value: Any) -> Any:
+    """Return the lamp that a record describes, or any other value as it is."""
+    if not isinstance(value, dict):
+        return value
+    try:
+        return Lamp(str(value["name"]), tuple(value["wavelengths"]), tuple(value["power"]))
+    except (KeyError, TypeError, ValueError) as error:
+        raise OptionError("a recorded lamp must have a name, wavelengths and power") from error
 
 
 def _plain(name: str, kind: Any, value: Any) -> Any:
     """Return the value of an option, by its annotation, as JSON can record it."""
-    if kind == tuple[str, ...]:
+    if kind in (tuple[str, ...], tuple[Illuminant, ...]):
+        if isinstance(value, Lamp):
+            value = [value]
         if not isinstance(value, Iterable):
             raise OptionError(f"{name} must be names, got {format_value(value)}")
-        return tuple(_plain(name, str, each) for each in ([value] if isinstance(value, str) else value))
+        values = [value] if isinstance(value, str) else value
+        return tuple(
+            each if isinstance(each, Lamp) and name == "lights" else _plain(name, str, each) for each in values
+        )
+    if isinstance(value, Lamp):
+        hint = "build under an illuminant of colour-science, and give the lamp as one of the lights"
+        raise OptionError(f"{name} must be a name, which a cube records, got the lamp '{value}'", hint=hint)
     if name == "dim" and isinstance(value, str) and value == AUTO:
         return AUTO
     accepted, recorded, label = TYPES[kind]

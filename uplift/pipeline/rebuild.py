@@ -81,7 +81,7 @@ def rebuild(
     atlas = _read(stored.data, atlases)
     library = tuple(file.path for file in libraries)
     scene = StoredScene(stored.data) if "scene" in stored.data.provenance else None
-    given = asdict(options)
+    given = asdict(options) | {"lights": options.lights}
     sensor = stored.data.sensor
     if sensor.sensitivities is not None:
         given["observer"] = Camera(sensor.space, sensor.wavelengths, sensor.sensitivities)

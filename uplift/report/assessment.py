@@ -8,7 +8,7 @@ import numpy as np
 
 from uplift.atlas import Atlas
 from uplift.colorimetry import Sensor
-from uplift.colorimetry.lights import REPORT_LIGHTS
+from uplift.colorimetry.lights import REPORT_LIGHTS, Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.common.arrays import Array
 from uplift.cube import CubeData, summarise
@@ -57,7 +57,9 @@ class Assessment:
     crowding: Crowding | None
 
 
-def assess(cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequence[str] = REPORT_LIGHTS) -> Assessment:
+def assess(
+    cube: Cube, name: str, size: int, atlas: Atlas | None, lights: Sequence[Illuminant] = REPORT_LIGHTS
+) -> Assessment:
     """Assess a cube by its own lattice and, if given, by measured spectra."""
     data = cube.data
     sensors = display_sensors(lights, data.sensor.observer, *data.sensor.range)

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.observer import light
+from uplift.colorimetry.lights import Illuminant
+from uplift.colorimetry.observer import check_distinct, light
 from uplift.common.arrays import Array, Indices
 from uplift.common.errors import OptionError
 from uplift.common.machine import check_memory
@@ -124,7 +125,9 @@ class CubeDiff:
         return has_same_colours and has_same_entries and self.largest <= tolerance
 
 
-def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping[str, Array] | None = None) -> CubeDiff:
+def diff_cubes(
+    cubes: Mapping[str, Cube], lights: Sequence[Illuminant], images: Mapping[str, Array] | None = None
+) -> CubeDiff:
     """Compare two cubes, by name, at the nodes of both, at their entries, and at the colours of images.
 
     Entries are compared by name, each with the spectrum that the cube has for it, even where their colours differ.
@@ -132,6 +135,7 @@ def diff_cubes(cubes: Mapping[str, Cube], lights: Sequence[str], images: Mapping
     """
     sensor = common_sensor(cube.data for cube in cubes.values())
     first, second = cubes.values()
+    check_distinct(lights)
     under = [light(name, sensor.observer, *sensor.range) for name in lights]
 
     size = sum(cube.data.lattice.size for cube in cubes.values())

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from uplift.colorimetry import Sensor
 from uplift.colorimetry.delta_e import delta_e_2000, rgb_to_lab
 from uplift.colorimetry.gamut import SRGB, conversion
-from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS
+from uplift.colorimetry.lights import DESCRIPTIONS, RELIGHT_LIGHTS, Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.srgb import to_display_codes
 from uplift.common.arrays import Array, Floats, StrPath
@@ -128,7 +128,7 @@ def relight(
     name: str,
     rgb: Floats,
     cubes: Mapping[str, Cube],
-    lights: Sequence[str] = RELIGHT_LIGHTS,
+    lights: Sequence[Illuminant] = RELIGHT_LIGHTS,
     *,
     opacity: Floats | None = None,
     reduction: int = 1,

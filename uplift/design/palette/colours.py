@@ -5,6 +5,7 @@ from numpy.typing import ArrayLike
 
 from uplift.colorimetry import Sensor, observer
 from uplift.colorimetry.delta_e import lab_jacobian
+from uplift.colorimetry.lights import Illuminant
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
 
@@ -35,15 +36,15 @@ def lab_per_rgb(sensor: Sensor, rgb: ArrayLike) -> Array:
     return jacobian @ np.linalg.inv(sensor.xyz_to_rgb) * gain[..., None]
 
 
-def illuminant(sensor: Sensor, name: str) -> Array:
+def illuminant(sensor: Sensor, name: Illuminant) -> Array:
     """Compute the spectral power of an illuminant.
 
     Parameters
     ----------
     sensor : Sensor
         Gives the wavelengths.
-    name : str
-        Name of the illuminant in colour-science.
+    name : str or Lamp
+        Name of the illuminant in colour-science, or a measured lamp.
 
     Returns
     -------

@@ -1,6 +1,7 @@
 """Palette spec as a TOML file (docs/palette.md): lights and materials by kind, goals, free colours, differences."""
 
 import math
+import os
 import re
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -13,14 +14,16 @@ from uplift import lookup
 from uplift.atlas import Atlas, on_grid, read_atlas
 from uplift.atlas.sources import find_atlas_file
 from uplift.colorimetry import Sensor, observer
+from uplift.colorimetry.sensor import format_rgb, in_unit_cube
 from uplift.colorimetry.srgb import MAX_NUMBER, WrittenColour, is_number, parse_colour
 from uplift.common.arrays import Array, StrPath
 from uplift.common.errors import ColourError, PaletteError, unknown_name
-from uplift.common.spec_file import InsidePath, Key, SpecFile, SpecModel, problem, read_toml, resolves
+from uplift.common.spec_file import InsidePath, Key, SpecFile, SpecModel, check_inside, problem, read_toml, resolves
 from uplift.common.text import format_value
 from uplift.design.palette.colours import MAX_KELVIN, MIN_KELVIN, illuminant, planck
 from uplift.design.palette.factor import COUNTS
 from uplift.design.palette.palette import ColourGoal, Fit, MinDifference, Palette, SpectrumSpec
+from uplift.lights.lamps import find_light, is_illuminant, lamp_file
 
 NAME = re.compile(r"[^\W_][\w .+-]*(?<! )")  # names appear in tables, plots and atlases
 
@@ -55,9 +58,10 @@ def read_palette(path: StrPath) -> Palette:
     for goal in goals:
         if goal.free is not None:
             free.setdefault(goal.free, _FreeRange())
+    named = (*table.materials.values(), *table.lights.values())
     return Palette(
         sensor=sensor,
-        lights=tuple(light.spectrum(name, sensor) for name, light in table.lights.items()),
+        lights=tuple(light.spectrum(name, sensor, folder) for name, light in table.lights.items()),
         materials=tuple(each.spectrum(name, sensor, folder) for name, each in table.materials.items()),
         goals=goals,
         free={name: _free_range(file, name, colours, sensor) for name, colours in free.items()},
@@ -68,7 +72,7 @@ def read_palette(path: StrPath) -> Palette:
         model_error=table.model_error,
         count=int(table.coefficients),
         fit=table.fit,
-        sources=(file.path, *(folder / each.file for each in table.materials.values() if each.file is not None)),
+        sources=(file.path, *(Path(lamp_file(str(folder / each.file))) for each in named if each.file is not None)),
     )
 
 
@@ -77,6 +81,14 @@ def _parse_colour(value: Any) -> WrittenColour:
         return parse_colour(value)
     except ColourError as error:
         raise problem(error.problem, error.hint, error.code) from error
+
+
+def _check_light(name: str) -> None:
+    """Check the name of an illuminant, or else that of a file, which has a suffix."""
+    if is_illuminant(name) or not os.path.splitext(name)[1]:
+        observer.illuminant_spd(name)
+    else:
+        check_inside(name)
 
 
 def _parse_bounds(value: Any) -> tuple[float, float]:
@@ -120,29 +132,40 @@ class _KnownLight(SpecModel):
             raise problem("a light has a luminance or a norm, not both", "remove one of them")
         return self
 
-    def power(self, sensor: Sensor) -> Array:
+    @property
+    def file(self) -> str | None:
+        """The file of a lamp."""
+        return None
+
+    def power(self, sensor: Sensor, folder: Path) -> Array:
         """Return the power (N,) of luminance 1."""
         raise NotImplementedError
 
-    def spectrum(self, name: str, sensor: Sensor) -> SpectrumSpec:
+    def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
         """Return the scaled power."""
-        power = self.power(sensor)
+        power = self.power(sensor, folder)
         if self.norm is not None:
             return SpectrumSpec(name, power * (self.norm / np.sqrt(np.mean(power**2))))
         return SpectrumSpec(name, power * (1.0 if self.luminance is None else self.luminance))
 
 
 class _IlluminantLight(_KnownLight):
-    illuminant: Annotated[str, resolves(observer.illuminant_spd)]
+    """An illuminant by its name, or a lamp by its file."""
 
-    def power(self, sensor: Sensor) -> Array:
-        return illuminant(sensor, self.illuminant)
+    illuminant: Annotated[str, resolves(_check_light)]
+
+    @property
+    def file(self) -> str | None:
+        return None if is_illuminant(self.illuminant) else self.illuminant
+
+    def power(self, sensor: Sensor, folder: Path) -> Array:
+        return illuminant(sensor, self.illuminant if self.file is None else find_light(str(folder / self.file)))
 
 
 class _BlackBodyLight(_KnownLight):
     planck: _Kelvin
 
-    def power(self, sensor: Sensor) -> Array:
+    def power(self, sensor: Sensor, folder: Path) -> Array:
         return planck(sensor, self.planck)
 
 
@@ -150,7 +173,11 @@ class _DesignedLight(SpecModel):
     design: Literal[True]
     bounds: _Bounds = (0.0, math.inf)
 
-    def spectrum(self, name: str, sensor: Sensor) -> SpectrumSpec:
+    @property
+    def file(self) -> str | None:
+        return None
+
+    def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
         return SpectrumSpec(name, None, *self.bounds)
 
 
@@ -184,7 +211,11 @@ class _RgbMaterial(SpecModel):
 
     def spectrum(self, name: str, sensor: Sensor, folder: Path) -> SpectrumSpec:
         cube = lookup.load(None if self.cube is None else folder / self.cube)
-        return SpectrumSpec(name, cube.reflectance(self.rgb.rgb(cube.data.sensor), sensor.wavelengths))
+        rgb = self.rgb.rgb(cube.data.sensor)
+        if not in_unit_cube(rgb):
+            problem = f"rgb of the material '{name}' must be in [0, 1], got {format_rgb(rgb)}"
+            raise PaletteError(problem, hint="write linear RGB from 0 to 1, or '#rrggbb' for 8-bit codes")
+        return SpectrumSpec(name, cube.reflectance(rgb, sensor.wavelengths))
 
 
 class _DesignedMaterial(SpecModel):

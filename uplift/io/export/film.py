@@ -23,6 +23,7 @@ from string import Template
 import numpy as np
 
 from uplift.colorimetry.dominant import crossing
+from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import DEFAULT_OBSERVER, END, START, STEP, grid, illuminant_spd, matching_functions
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.solid import solid
@@ -66,7 +67,13 @@ class FilmTable:
 
 
 def write_film(
-    cube: Cube, path: StrPath, *, light: str | None = None, res: int = SIZE, share: float = SHARE, force: bool = False
+    cube: Cube,
+    path: StrPath,
+    *,
+    light: Illuminant | None = None,
+    res: int = SIZE,
+    share: float = SHARE,
+    force: bool = False,
 ) -> FilmTable:
     """Write a cube as a film table of chromaticities, .npy, and the TOML file that describes it.
 
@@ -111,14 +118,14 @@ class Scene:
     """Matrix to the RGB space of the cube."""
 
 
-def _scene(sensor: Sensor, light: str | None) -> Scene:
-    name, cmfs = light or sensor.illuminant, matching_functions(DEFAULT_OBSERVER)
-    xyz, power = cmfs / cmfs[:, 1].sum(), illuminant_spd(name)
+def _scene(sensor: Sensor, light: Illuminant | None) -> Scene:
+    given, cmfs = light or sensor.illuminant, matching_functions(DEFAULT_OBSERVER)
+    xyz, power = cmfs / cmfs[:, 1].sum(), illuminant_spd(given)
     power = power / (power @ xyz[:, 1])
     # The reader's RGB are adapted to the light by CAT16; the cube's have the white of its illuminant.
     cones = CAT16 @ np.stack([power @ xyz, sensor.light.white], axis=1)
     adapt = np.linalg.solve(CAT16, (cones[:, 1] / cones[:, 0])[:, None] * CAT16)
-    return Scene(name, xyz, power, power @ xyz, sensor.xyz_to_rgb @ adapt)
+    return Scene(str(given), xyz, power, power @ xyz, sensor.xyz_to_rgb @ adapt)
 
 
 def _chromaticities(size: int) -> Array:

@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from uplift.colorimetry.delta_e import delta_e_rgb
+from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import decode, encode
@@ -48,7 +49,7 @@ FOURIER_COUNT, LEVEL = 3, 16
 
 
 def write_lut(
-    cube: Cube, light: str, path: StrPath, *, res: int = SIZE, adapt: bool = True, force: bool = False
+    cube: Cube, light: Illuminant, path: StrPath, *, res: int = SIZE, adapt: bool = True, force: bool = False
 ) -> TableError:
     """Write the colours of reflectances under a light as a table of ``res``³ nodes, 2 to 129, ``.clf`` or ``.cube``.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Floats
@@ -46,7 +47,7 @@ class Relighter(Converter):
 
 def prepare_relighter(
     cube: Cube,
-    lights: Sequence[str],
+    lights: Sequence[Illuminant],
     *,
     adapt: bool = True,
     encoding: str = "auto",
@@ -63,7 +64,7 @@ def prepare_relighter(
     ----------
     cube : Cube
         The cube.
-    lights : sequence of str
+    lights : sequence of str or Lamp
         At least one light, as for `uplift.colorimetry.observer.light`.
     adapt : bool, default True
         Whether the white of each light is the white of the RGB space (Bradford). Otherwise colours have its tint.

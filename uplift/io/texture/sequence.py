@@ -10,6 +10,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from uplift.colorimetry.lights import Illuminant
 from uplift.common.errors import OptionError, OutputError, StrPath, TextureError, UpliftError, needs_package
 from uplift.common.files import check_folder, make_folder, remove_stale
 from uplift.common.progress import ProgressCallback, ignore_progress
@@ -46,7 +47,7 @@ class TextureSettings:
         Gamut mapping for pixels outside [0, 1]; not used for ``emission``.
     space : str or None
         RGB space of the images, None for the one that each file states.
-    errors : tuple of str
+    errors : tuple of str or Lamp
         Lights whose standard errors have a channel; not used for ``emission``.
     mask : str or None
         Path of the image of which cube a pixel belongs to; see `uplift.io.texture.mask`.
@@ -64,7 +65,7 @@ class TextureSettings:
     encoding: str = "auto"
     out_of_gamut: str = "clip"
     space: str | None = None
-    errors: tuple[str, ...] = ()
+    errors: tuple[Illuminant, ...] = ()
     mask: str | None = None
     emission: bool = False
     fill_missing: bool = False

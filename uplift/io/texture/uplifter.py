@@ -5,7 +5,7 @@ import json
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import partial
 from typing import Any, ClassVar
 
@@ -13,7 +13,8 @@ import numpy as np
 
 from uplift import models
 from uplift.colorimetry.gamut import check_method, map_to_gamut
-from uplift.colorimetry.observer import light
+from uplift.colorimetry.lights import Illuminant, Lamp
+from uplift.colorimetry.observer import check_distinct, light
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace, find_space
 from uplift.common.arrays import Array, Floats, Indices, Values
@@ -305,7 +306,7 @@ def prepare(
     encoding: str = "auto",
     out_of_gamut: str = "clip",
     space: str | None = None,
-    errors: Sequence[str] = (),
+    errors: Sequence[Illuminant] = (),
     threads: int = 2,
 ) -> Uplifter:
     """Prepare a cube for textures.
@@ -350,8 +351,11 @@ def prepare(
     pixels = kind.pixels(cube, threads)
     settings: dict[str, Any] = {"depth": depth, "encoding": encoding, "out_of_gamut": out_of_gamut}
     settings |= {} if space is None else {"space": space}
+    check_distinct(errors)
     lights = [light(name, cube.observer, *cube.data.sensor.range) for name in dict.fromkeys(errors)]
     settings |= {"errors": [each.name for each in lights]} if lights else {}
+    lamps = [asdict(each) for each in errors if isinstance(each, Lamp)]
+    settings |= {"lamps": lamps} if lamps else {}
     description = json.dumps({"as": kind.name, **pixels.details, **settings}, allow_nan=False)
     header = {**exr.attributes(cube.data), "uplift.texture": description, **kind.header}
     return Uplifter(

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from uplift.atlas import Atlas, Entry, merge, on_grid
 from uplift.colorimetry import delta_e_2000, observer
-from uplift.colorimetry.lights import KMENT_LIGHTS
+from uplift.colorimetry.lights import KMENT_LIGHTS, Illuminant
 from uplift.colorimetry.sensor import SLACK
 from uplift.common.arrays import Array
 from uplift.common.errors import AtlasError, OptionError, UpliftError, UpliftWarning
@@ -71,18 +71,22 @@ class Scene:
         return Scene(tuple(replace(each, reflectances=each.reflectances[kept]) for each in self.sets))
 
 
-def make_scene(atlases: Mapping[str, Atlas], lights: Sequence[str] = ()) -> Scene:
+def make_scene(atlases: Mapping[str, Atlas], lights: Sequence[Illuminant] = ()) -> Scene:
     """Combine the entries of atlases with sets of lights. Raises `AtlasError`, `UnknownNameError`."""
     merged = merge(atlases.values())
     if not merged.entries:
         raise AtlasError("the atlases have no entries", hint="give an atlas of reflectances")
-    named = {NAMED_SET: tuple(dict.fromkeys(lights))} if lights else KMENT_LIGHTS
+    observer.check_distinct(lights)
+    given: dict[str, tuple[Illuminant, ...]] = {NAMED_SET: tuple(dict.fromkeys(lights))}
+    named = given if lights else KMENT_LIGHTS
     nm, weights = samples.wavelengths(), samples.xyz_weights()
     surfaces = on_grid(merged, nm)
 
-    def light_set(name: str, members: tuple[str, ...]) -> LightSet:
+    def light_set(name: str, members: tuple[Illuminant, ...]) -> LightSet:
         powers = np.stack([observer.illuminant_spd(member, step=samples.STEP) for member in members])
-        return LightSet(nm, surfaces, members, powers / (powers @ weights[:, 1:2]), weights, name)
+        return LightSet(
+            nm, surfaces, tuple(map(str, members)), powers / (powers @ weights[:, 1:2]), weights, members, name
+        )
 
     return Scene(tuple(light_set(*each) for each in named.items()))
 

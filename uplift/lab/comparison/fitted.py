@@ -36,8 +36,8 @@ def scene_representations(scene: Scene) -> tuple[Representation, ...]:
 
 def _wavelengths(scene: Scene) -> Iterator[Representation]:
     """Wavelengths, weights, and powers of the lights, as `uplift.scene.wavelengths` fits them together."""
-    names = [name for light_set in scene.sets for name in light_set.lights]
-    setup = make_setup(scene.surfaces, names, wavelengths=samples.wavelengths())
+    lights = [light for light_set in scene.sets for light in light_set.illuminants]
+    setup = make_setup(scene.surfaces, lights, wavelengths=samples.wavelengths())
     for count in WAVELENGTHS:
         yield fitted_wavelengths(choose(setup, count=count).sampling, scene.powers)
 
@@ -75,7 +75,7 @@ def _factors(scene: Scene) -> Iterator[Representation]:
 def _moments(scene: Scene) -> Iterator[Representation]:
     """Moments of the surfaces, fitted to their spectra, their colours under the lights, and RGB."""
     sensor = observer.sensor()
-    lights = tuple(observer.light(name) for light_set in scene.sets for name in light_set.lights)
+    lights = tuple(observer.light(light) for light_set in scene.sets for light in light_set.illuminants)
     measured = scene.surfaces[:, :: samples.TABLE_STRIDE]
     for count in MOMENTS:
         model = Moments(count)

@@ -191,7 +191,7 @@ def _others(setup: RenderSetup, tests: EvaluationSet, observer_name: str) -> Ite
             yield Rendering.of_sampling("wavelengths of Meyer", sampling)
     if observer_name != DEFAULT_OBSERVER:
         return
-    powers = np.stack([illuminant_spd(light, step=samples.STEP) for light in setup.lights])
+    powers = np.stack([illuminant_spd(light, step=samples.STEP) for light in setup.illuminants])
     powers /= powers @ samples.xyz_weights()[:, 1:2]
     surfaces = interp_curves(samples.wavelengths(), setup.wavelengths, setup.reflectances)
     for each in all_representations(powers, surfaces):

@@ -6,18 +6,19 @@ from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field
+from pydantic import BeforeValidator, ConfigDict, Field
 
 from uplift.colorimetry import Sensor, observer
-from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS
+from uplift.colorimetry.lights import DEFAULT_ILLUMINANT, SCENE_LIGHTS, Illuminant, Lamp
 from uplift.common.arrays import StrPath
-from uplift.common.errors import PlanFileError, unknown_name
+from uplift.common.errors import OptionError, PlanFileError, UnknownNameError, UpliftError, unknown_name
 from uplift.common.files import file_digest
 from uplift.common.progress import ProgressCallback, ignore_progress
 from uplift.common.spec_file import SpecFile, SpecModel, check_inside, problem, read_json, read_toml, resolves
 from uplift.common.text import format_value
 from uplift.io.scene_colours import Images
 from uplift.io.texture.colours import check_encoding
+from uplift.lights.lamps import find_light, is_illuminant, lamp_file
 from uplift.lookup import Cube
 from uplift.pipeline.build import build, problem_of
 from uplift.pipeline.options import Options, recorded_options
@@ -45,20 +46,28 @@ def _as_list(value: Any) -> Any:
     return [value] if isinstance(value, str) else value
 
 
-def _light_names(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Each light once, as colour-science spells it."""
-    return tuple(dict.fromkeys(observer.light(name).name for name in names))
+def _check_light(name: Any) -> str:
+    """Check the name of an illuminant, or else that of a file in the folder of the scene file."""
+    if not isinstance(name, str):
+        raise problem(f"must be text, got {format_value(name)}")
+    try:
+        return observer.light(name).name
+    except UnknownNameError as error:
+        if not os.path.splitext(name)[1]:
+            raise problem(error.problem, error.hint, error.code) from error
+    except UpliftError as error:
+        raise problem(error.problem, error.hint, error.code) from error
+    return _check_path(name)
+
+
+def _refuse_key(value: Any) -> Any:
+    raise problem("unknown key", "leave it out")
 
 
 Paths = Annotated[
     tuple[Annotated[Path, BeforeValidator(_check_path)], ...], BeforeValidator(_as_list), Field(min_length=1)
 ]
-Lights = Annotated[
-    tuple[Annotated[str, resolves(observer.light)], ...],
-    BeforeValidator(_as_list),
-    Field(min_length=1),
-    AfterValidator(_light_names),
-]
+Lights = Annotated[tuple[Annotated[Any, BeforeValidator(_check_light)], ...], BeforeValidator(_as_list)]
 Observer = Annotated[str, resolves(observer.matching_functions)]
 
 
@@ -74,7 +83,7 @@ class SceneFile:
         Images whose colours are uplifted.
     atlases : tuple of Path
         Files of measured spectra that the textures are painted from.
-    lights : tuple of str
+    lights : tuple of str or Lamp
         Illuminants of the scene.
     tolerance : float
         Tolerated ΔE00, in [0.01, 100].
@@ -91,6 +100,8 @@ class SceneFile:
         Encoding of the textures: "auto", "linear" or "encoded".
     space, illuminant, observer : str
         RGB space of the textures.
+    lamp_files : tuple of Path
+        Files of those of the lights that are lamps.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -98,7 +109,7 @@ class SceneFile:
     path: Annotated[Path, Field(strict=True)]
     textures: Paths
     atlases: Paths = ()
-    lights: Lights = SCENE_LIGHTS
+    lights: Annotated[Lights, Field(min_length=1)] = SCENE_LIGHTS
     tolerance: Annotated[float, Field(strict=True, ge=0.01, le=100, allow_inf_nan=False)] = 1.0
     quantile: Annotated[float, Field(strict=True, ge=0.5, le=1, allow_inf_nan=False)] = 0.975
     minimise: Minimised = "balance"
@@ -108,6 +119,7 @@ class SceneFile:
     space: Annotated[str, resolves(observer.sensor)] = "sRGB"
     illuminant: Annotated[str, resolves(observer.illuminant_spd)] = DEFAULT_ILLUMINANT
     observer: Observer = observer.DEFAULT_OBSERVER
+    lamp_files: Annotated[tuple[Path, ...], BeforeValidator(_refuse_key)] = ()
 
     def sensor(self) -> Sensor:
         """Look up the RGB space of the textures.
@@ -142,7 +154,27 @@ def read_scene_file(path: StrPath) -> SceneFile:
     # No value of a TOML file is a path: the key is refused there.
     scene = replace(file, values={"path": file.path, **file.values}).validate(SceneFile)
     textures, atlases = _expand(file, "textures", scene.textures), _expand(file, "atlases", scene.atlases)
-    return replace(scene, textures=textures, atlases=atlases)
+    lights, lamp_files = _read_lights(file, scene.lights)
+    return replace(scene, textures=textures, atlases=atlases, lights=lights, lamp_files=lamp_files)
+
+
+def _read_lights(file: SpecFile, names: tuple[str, ...]) -> tuple[tuple[Illuminant, ...], tuple[Path, ...]]:
+    """Return each light once, with lamps read from the folder of the scene file, and the files of the lamps."""
+    lights, files = list[Illuminant](), list[Path]()
+    for number, name in enumerate(dict.fromkeys(names)):
+        try:
+            lights.append(name if is_illuminant(name) else find_light(str(file.path.parent / name)))
+        except UnknownNameError as error:
+            file.fail(("lights", number), f"unknown illuminant {format_value(name)}", code=error.code, hint=error.hint)
+        except UpliftError as error:
+            file.fail(("lights", number), str(error), code=error.code)
+        if isinstance(lights[-1], Lamp):
+            files.append(Path(lamp_file(str(file.path.parent / name))))
+    try:
+        observer.check_distinct(lights)
+    except OptionError as error:
+        file.fail(("lights",), error.problem, code=error.code, hint=error.hint)
+    return tuple(dict.fromkeys(lights)), tuple(files)
 
 
 def _expand(file: SpecFile, key: str, names: tuple[Path, ...]) -> tuple[Path, ...]:

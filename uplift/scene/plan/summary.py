@@ -24,7 +24,7 @@ SHARE = 0.5
 """Share of the expected error of measurements below which a plan spends more than its colours are worth."""
 CUBE_KEYS = ("model", "coefficients", "warp", "dim", "axis")
 """Options of a build that a plan chooses."""
-SCENE_KEYS = ("lights", "tolerance", "quantile", "encoding", "minimise", "limits")
+SCENE_KEYS = ("tolerance", "quantile", "encoding", "minimise", "limits")
 
 
 def front_rows(plan: Plan) -> list[Candidate]:
@@ -80,10 +80,11 @@ def describe_error(plan: Plan) -> str:
     """Definition of the errors."""
     scene = plan.scene
     materials = " and of the atlas's entries" if scene.atlases else ""
+    lights = ", ".join(map(str, scene.lights))
     measured = ", entries with their measurements" if scene.atlases else ""
     return (
         f"ΔE00 of {100 * scene.quantile:.4g} % of the textures' pixels{materials} is at most this value, under the "
-        f"worst of {', '.join(scene.lights)}. Pixels are compared with a cube of the finest lattice and the most "
+        f"worst of {lights}. Pixels are compared with a cube of the finest lattice and the most "
         f"coefficients at all wavelengths{measured}. {len(plan.measured):,} of "
         f"{pluralise(plan.considered, 'candidate')} were measured; the bounds of the others exclude them."
     )
@@ -110,12 +111,13 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
         "uplift": version(),
         "scene": {
             "file": scene.path.name,
+            "lights": list(map(str, scene.lights)),
             **{key: getattr(scene, key) for key in SCENE_KEYS},
             "textures": _sources(scene.textures, path),
             "atlases": _sources(scene.atlases, path),
         },
         "name": chosen.name,
-        "build": chosen.cube and asdict(chosen.cube),
+        "build": chosen.cube and chosen.cube.record(),
         "cells": "sparse" if chosen.sparse else "whole",
         "texture": asdict(chosen.pixel),
         "rendering": _rendering_json(plan),
@@ -143,7 +145,7 @@ def to_json(plan: Plan, path: Path) -> dict[str, Any]:
 def _rendering_json(plan: Plan) -> dict[str, Any]:
     """Wavelengths and their weights, the name of a representation, or matrices of RGB."""
     if plan.chosen.rendering is None:
-        return {"rgb_to_xyz": dict(zip(plan.scene.lights, plan.matrices.tolist(), strict=True))}
+        return {"rgb_to_xyz": dict(zip(map(str, plan.scene.lights), plan.matrices.tolist(), strict=True))}
     if (sampling := plan.chosen.rendering.sampling) is None:
         return {"representation": plan.chosen.rendering.name}
     powers = dict(zip(sampling.lights, sampling.powers.tolist(), strict=True))

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from uplift.colorimetry import Sensor, delta_e_2000, lab, observer
+from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import DEFAULT_OBSERVER
 from uplift.common.arrays import Array
 from uplift.common.errors import OptionError
@@ -29,7 +30,8 @@ class RenderSetup:
     """Materials under lights; `make_setup` makes one from names.
 
     Wavelengths (N,) in nm ascend evenly; reflectances are (M, N), the ``powers`` of the K ``lights`` (K, N), scaled so
-    that the perfect reflector has Y = 1 under each, and the colour-matching functions ``cmfs`` (N, 3).
+    that the perfect reflector has Y = 1 under each, and the colour-matching functions ``cmfs`` (N, 3). ``lights`` are
+    the names of the K ``illuminants``.
     """
 
     wavelengths: Array
@@ -37,6 +39,7 @@ class RenderSetup:
     lights: tuple[str, ...]
     powers: Array
     cmfs: Array
+    illuminants: tuple[Illuminant, ...]
 
     @cached_property
     def xyz(self) -> Array:
@@ -80,7 +83,7 @@ def grid() -> Array:
 
 def make_setup(
     reflectances: ArrayLike,
-    lights: Sequence[str],
+    lights: Sequence[Illuminant],
     *,
     wavelengths: ArrayLike | None = None,
     observer_name: str = DEFAULT_OBSERVER,
@@ -91,7 +94,7 @@ def make_setup(
     ----------
     reflectances : array_like, shape (M, N)
         Reflectances of M materials, finite and at least 0.
-    lights : sequence of str
+    lights : sequence of str or Lamp
         Names of illuminants, such as ``"FL11"``. Repeated names count once.
     wavelengths : array_like, shape (N,), optional
         Wavelengths of the samples in nm, ascending and evenly spaced, at least 16. By default `grid`.
@@ -124,13 +127,14 @@ def make_setup(
     lights = tuple(dict.fromkeys(lights))
     if not lights:
         raise OptionError("lights must not be empty", hint="name at least one, such as D65")
+    observer.check_distinct(lights)
     # The tables have steps of whole nanometres; the grid may have any step.
     step = steps[0] if (nm % 1 == 0).all() else 1.0
     shape = np.floor(nm[0]), np.ceil(nm[-1]), step
     table = np.arange(shape[0], shape[1] + step / 2, step)
     cmfs = interp_curves(nm, table, observer.matching_functions(observer_name, *shape).T).T
-    powers = interp_curves(nm, table, np.stack([observer.illuminant_spd(name, *shape) for name in lights]))
-    return RenderSetup(nm, materials, lights, powers / (powers @ cmfs[:, 1])[:, None], cmfs)
+    powers = interp_curves(nm, table, np.stack([observer.illuminant_spd(each, *shape) for each in lights]))
+    return RenderSetup(nm, materials, tuple(map(str, lights)), powers / (powers @ cmfs[:, 1])[:, None], cmfs, lights)
 
 
 def interp_curves(wavelengths: Array, known: Array, curves: Array) -> Array:

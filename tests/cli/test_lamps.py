@@ -1,0 +1,123 @@
+"""Files of lamps in place of the names of lights, in every command that takes them."""
+
+import json
+import shutil
+
+import numpy as np
+import OpenEXR
+import pytest
+
+from .conftest import warning_lines
+
+LAMP = "\n".join(f"{nm}\t{power:.5f}" for nm, power in zip(range(380, 781, 5), np.linspace(1, 5, 81), strict=True))
+COMMANDS = """
+advise wood.png --cube cube.uplift --light {}
+atlas macbeth --illuminant {}
+bounds #888 --cube cube.uplift --light {}
+build --atlas macbeth --dim 3 --light {} -o x.uplift
+compare --atlas macbeth --write PS16 --light {} -o out
+diff cube.uplift cube.uplift --light {}
+export cube.uplift -o x.cube --light {}
+export cube.uplift -o x.npy --res 8 --light {}
+query #888 --cube cube.uplift --light {}
+relight wood.png --cube cube.uplift --light {} -o x.html
+relight wood.png --cube cube.uplift --light {} -o x.exr
+report cube.uplift --light {} -o x.html
+texture wood.png -o x.exr --cube cube.uplift --errors {}
+wavelengths --count 3 --atlas macbeth --light {} --illuminant {}
+"""
+"""Commands with a light; {} is its name or file."""
+WITHOUT_JSON = ("build", "compare", "export", "report", "texture")
+
+
+@pytest.fixture
+def files(home, repository, cubes):
+    shutil.copy(repository / "uplift" / "samples" / "files" / "wood.png", home)
+    shutil.copy(cubes / "moments-8-macbeth.uplift", home / "cube.uplift")
+    (home / "lamp.spd").write_text(LAMP)
+    (home / "card.csv").write_text("wavelength,reflectance\n400,0.1\n500,0.2\n700,0.3\n")
+    (home / "empty.spd").write_text("")
+    (home / "folder").mkdir()
+    (home / "two.csv").write_text("name,400,550,700\ncold,3,2,1\nwarm,1,2,3\n")
+    return {path.name for path in home.iterdir()}
+
+
+@pytest.mark.parametrize("line", COMMANDS.strip().splitlines())
+def test_every_light_may_be_a_file(run, refuse, home, files, line):
+    for name, code in (
+        ("card.csv", "atlas"),
+        ("empty.spd", "atlas"),
+        ("./folder", "file-unreadable"),
+        ("two.csv", "atlas"),
+        ("two.csv:none", "unknown-name"),
+        ("none.spd", "unknown-name"),
+    ):
+        assert refuse(*line.replace("{}", name).split()).code == code
+    assert {path.name for path in home.iterdir()} == files
+    words = line.replace("{}", "lamp.spd").split()
+    is_json = words[0] not in WITHOUT_JSON
+    result = run(*words, *["--format", "json"] * is_json)
+    assert not is_json or '"lamp"' in result.stdout
+
+
+def test_a_lamp_of_several_and_answers_under_it(ask, files):
+    lights = ask("query", "#888", "--light", "two.csv:warm", "--light", "lamp.spd", "--light", "A")["lights"]
+    assert list(lights) == ["warm", "lamp", "A"]
+    np.testing.assert_allclose(lights["lamp"]["srgb"], lights["A"]["srgb"], atol=0.02)
+    assert lights["lamp"]["xyz"] != lights["A"]["xyz"]
+
+
+def test_channels_have_the_name_of_the_lamp(run, home, files):
+    run("texture", "wood.png", "-o", "x.exr", "--cube", "cube.uplift", "--errors", "lamp.spd")
+    with OpenEXR.File(str(home / "x.exr"), separate_channels=True) as file:
+        assert "error.lamp" in file.channels()
+        settings = json.loads(file.header()["uplift.texture"])
+    assert settings["lamps"][0]["name"] == "lamp"
+
+
+def test_a_changed_lamp_is_another_texture(run, refuse, home, files):
+    words = "texture", "wood.png", "-o", "x.exr", "--cube", "cube.uplift", "--errors", "lamp.spd", "--resume"
+    run(*words)
+    run(*words)
+    (home / "lamp.spd").write_text(LAMP.replace("780\t5", "780\t4"))
+    assert refuse(*words).code == "texture-differs"
+
+
+def test_a_cube_is_not_built_under_a_lamp(refuse, files):
+    assert refuse("build", "--dim", "3", "--illuminant", "lamp.spd").code == "option"
+
+
+def test_two_lights_of_one_name(refuse, home, files):
+    (home / "folder" / "lamp.spd").write_text(LAMP.replace("780\t5", "780\t4"))
+    for line in COMMANDS.strip().splitlines():
+        if "--light" in line and "export" not in line:
+            words = line.replace("{}", "lamp.spd", 1).replace("{}", "A").split()
+            assert refuse(*words, "--light", "folder/lamp.spd").code == "option", line
+
+
+def test_scenes_name_lamps(run, refuse, home, files):
+    scene = home / "scene.toml"
+    scene.write_text('textures = ["wood.png"]\natlases = ["two.csv"]\nlights = ["lamp.spd", "A"]\ntolerance = 0.5\n')
+    (home / "two.csv").write_text("name,400,550,700\ncold,0.3,0.2,0.1\nwarm,0.1,0.2,0.3\n")
+    plan = json.loads(run("plan", "scene.toml", "--quick", "--format", "json").stdout)
+    assert plan["scene"]["lights"] == ["lamp", "A"]
+    assert refuse("plan", "scene.toml", "-o", "lamp.spd", "--force").code == "output-is-input"
+    if plan["build"]:
+        assert not warning_lines(run("build", "--plan", "scene.plan.json"))
+    for lights in ('"card.csv"', '"none.spd"', '"../lamp.spd"', '"folder"', "3"):
+        scene.write_text(f'textures = ["wood.png"]\nlights = [{lights}]\n')
+        assert refuse("plan", "scene.toml", "-o", "x.json").where == "scene.toml"
+    scene.write_text('textures = ["wood.png"]\nlamp_files = []\n')
+    assert refuse("plan", "scene.toml").code == "invalid-file"
+
+
+def test_palettes_name_lamps(run, refuse, home, files):
+    text = '[materials]\ncard = {{rgb = [0.5, 0.5, 0.5]}}\n[lights]\nday = {{illuminant = "{}"}}\n'
+    palette = home / "palette.toml"
+    for name in ("lamp.spd", "two.csv:warm"):
+        palette.write_text(text.format(name))
+        assert json.loads(run("palette", "palette.toml", "--format", "json").stdout)
+        assert refuse("palette", "palette.toml", "-o", name.partition(":")[0], "--force").code == "output-is-input"
+    for name in ("card.csv", "none.spd", "../lamp.spd", "two.csv", "D66"):
+        palette.write_text(text.format(name))
+        assert refuse("palette", "palette.toml", "-o", "x.csv").code in ("atlas", "unknown-name", "invalid-file")
