@@ -45,7 +45,7 @@ def files(home, repository, cubes):
 @pytest.mark.parametrize("line", COMMANDS.strip().splitlines())
 def test_every_light_may_be_a_file(run, refuse, home, files, line):
     for name, code in (
-        ("card.csv", "atlas"),
+        ("card.csv", "not-a-lamp"),
         ("empty.spd", "atlas"),
         ("./folder", "file-unreadable"),
         ("two.csv", "atlas"),
@@ -120,4 +120,4 @@ def test_palettes_name_lamps(run, refuse, home, files):
         assert refuse("palette", "palette.toml", "-o", name.partition(":")[0], "--force").code == "output-is-input"
     for name in ("card.csv", "none.spd", "../lamp.spd", "two.csv", "D66"):
         palette.write_text(text.format(name))
-        assert refuse("palette", "palette.toml", "-o", "x.csv").code in ("atlas", "unknown-name", "invalid-file")
+        assert refuse("palette", "palette.toml", "-o", "x.csv").code in ("not-a-lamp", "atlas", "unknown-name", "invalid-file")

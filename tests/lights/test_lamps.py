@@ -124,8 +124,8 @@ def test_names_of_illuminants_are_not_taken(write):
         ("words.spd", "a lamp\nof words\n", "not-an-atlas"),
         ("short.csv", "450,1\n500,2\n600,1\n", "atlas"),
         ("dark.csv", "400,0\n700,0\n", "atlas"),
-        ("card.csv", "wavelength,reflectance\n400,0.1\n500,0.2\n700,0.3\n", "atlas"),
-        ("filter.csv", "nm;Transmittance\n400;0,1\n500;0,2\n700;0,3\n", "atlas"),
+        ("card.csv", "wavelength,reflectance\n400,0.1\n500,0.2\n700,0.3\n", "not-a-lamp"),
+        ("filter.csv", "nm;Transmittance\n400;0,1\n500;0,2\n700;0,3\n", "not-a-lamp"),
         ("other.json", "[]", "atlas"),
         ("broken.json", "{", "atlas"),
         ("camera.json", '{"range": [400, 700, 300], "sensitivity": [[1, 2, 3], [1, 2, 3]]}', "atlas"),
@@ -145,7 +145,7 @@ def test_bad_files(write, name, text, code):
 def test_folders_reflectances_and_names_of_no_file(tmp_path, repository):
     with raises(AtlasError, "file-unreadable"):
         find_light(str(tmp_path))
-    with raises(AtlasError, "atlas"):
+    with raises(AtlasError, "not-a-lamp"):
         find_light(str(repository / "atlases" / "macbeth.txt"))
     for name in ("none.spd", "macbeth", "none.csv:warm"):
         with raises(UnknownNameError, "unknown-name"):

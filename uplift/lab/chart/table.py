@@ -89,7 +89,7 @@ def chart_csv(chart: Chart) -> str:
     facts = [chart.facts.get(name, "") for name in FACTS]
     rows = []
     for result in chart.results:
-        numbers = (f"{result.numbers[name]:.6g}" if name in result.numbers else "" for name in names)
+        numbers = (f"{result.numbers[name]:.9g}" if name in result.numbers else "" for name in names)
         rows.append([*(getattr(result, name) for name in TEXTS), *numbers, *facts])
     return csv_text([*TEXTS, *names, *FACTS], rows)
 
