@@ -93,10 +93,12 @@ def _vendor_file(random: Random, path: Path) -> None:
     files = choose(random, _vendor_files())
     seeds = tuple(content for each in _vendor_files() for content in each.values())
     spectra = [data for name, data in files.items() if name.endswith(".sli")]  # the header is the file to read
-    (content,) = [data for name, data in files.items() if not name.endswith(".sli")]
+    content, *others = [data for name, data in files.items() if not name.endswith(".sli")]
     if random.random() < 0.95:
         content = mutate(content, random, seeds)
     path.write_bytes(content)
+    for data in others:
+        path.with_name("Wavelengths.txt").write_bytes(data)
     for data in spectra:
         path.with_suffix(".sli").write_bytes(mutate(data, random, seeds) if random.random() < 0.3 else data)
 

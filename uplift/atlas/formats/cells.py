@@ -10,6 +10,7 @@ import numpy as np
 from uplift.atlas.atlas import SLACK, VISIBLE
 from uplift.atlas.statements import NANOMETRE, find_unit, label_quantity
 from uplift.common.arrays import Array
+from uplift.common.csv import parse_decimal
 from uplift.common.text import parse_float
 
 SHORTEST = 100.0
@@ -67,7 +68,7 @@ def parse_cell(text: str) -> float | None:
     if plain.casefold() in MISSING:
         return np.nan
     try:
-        return parse_float(plain.replace(",", "."))
+        return parse_decimal(plain)
     except ValueError:
         return None
 

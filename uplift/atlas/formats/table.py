@@ -2,7 +2,6 @@
 
 import csv
 import io
-import itertools
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -11,10 +10,10 @@ import numpy as np
 
 from uplift.atlas.atlas import Atlas
 from uplift.atlas.document import Document, read_document
-from uplift.atlas.formats.cells import Cell, Row, is_value, parse_cell, parse_label, trimmed
+from uplift.atlas.formats.cells import Cell, Row, is_value, line_texts, trimmed
 from uplift.atlas.formats.grid import LAYOUT, Grid, read_grid
 from uplift.atlas.measurements import Measurements
-from uplift.common.csv import csv_text, plain_cell
+from uplift.common.csv import csv_text, find_delimiter, plain_cell
 from uplift.common.errors import OutputError
 from uplift.common.text import pluralise
 
@@ -26,8 +25,6 @@ SAMPLE_ROWS = 200
 """Rows by which the delimiter is chosen."""
 WAVELENGTHS = "*[Ww]avelength*"
 """Names of files of wavelengths, one a line below a title."""
-NUMBERS = re.compile(r"[\s\d.,;:+%-]*\d[\s\d.,;:+%-]*")
-"""Numbers that another delimiter separates."""
 
 
 def read(document: Document) -> Measurements:
@@ -37,15 +34,15 @@ def read(document: Document) -> Measurements:
         rows = list(_split(document, _delimiter(document)))
     except csv.Error as error:
         raise document.location.error(f"not a readable table: {error}", LAYOUT) from None
-    if max(map(len, rows), default=0) == 1 and sum(is_value(cell.text) for (cell,) in rows) > 1:
-        rows = _beside_wavelengths(document, rows)
+    numbers = [row for row in rows if is_value(row[0].text)]
+    if len(numbers) > 1 and max(map(len, numbers)) == 1:
+        title = next(iter(line_texts(row for row in rows if row not in numbers)), document.stem)
+        rows = _beside_wavelengths(document, title, numbers)
     return read_grid(Grid(rows, document.location, comments), document.stem)
 
 
-def _beside_wavelengths(document: Document, rows: Sequence[Row]) -> list[Row]:
-    """Join a title and values, one a line, with the wavelengths of another file, as libraries of the USGS have them."""
-    title = next((row for row in rows if not is_value(row[0].text)), (Cell(document.stem, 1),))
-    values = [row for row in rows if is_value(row[0].text)]
+def _beside_wavelengths(document: Document, title: str, values: Sequence[Row]) -> list[Row]:
+    """Join values, one a line, with the wavelengths of another file, as the library of the USGS has them."""
     found = list[list[Row]]()
     for path in sorted(Path(document.path).parent.glob(WAVELENGTHS)):
         head, *lines = read_document(path).text.strip().split("\n")
@@ -73,21 +70,11 @@ def text(atlas: Atlas) -> str:
 
 
 def _delimiter(document: Document) -> str:
-    """Return the delimiter that the file states, or that splits off most wavelengths and numbers in a row."""
+    """Return the delimiter that the file states, or that splits off most numbers."""
     if stated := SEPARATOR.fullmatch(document.lines[0].strip(" \ufeff\"'")):
         return stated[1]
 
-    def clear(delimiter: str) -> int:
-        """Count the numbers among cells, less the cells in which numbers remain together."""
-        try:
-            rows = list(itertools.islice(_split(document, delimiter), SAMPLE_ROWS))
-        except csv.Error:
-            return 0
-        texts = [cell.text for row in rows if len(row) > 1 for cell in row if cell.text]
-        numbers = sum(parse_cell(text) is not None or parse_label(text) is not None for text in texts)
-        return numbers - 2 * sum(bool(NUMBERS.fullmatch(text)) for text in texts if parse_cell(text) is None)
-
-    return max((*DELIMITERS, BLANKS), key=clear)
+    return find_delimiter(document.lines[:SAMPLE_ROWS])
 
 
 def _split(document: Document, delimiter: str) -> Iterator[Row]:
