@@ -120,4 +120,5 @@ def test_palettes_name_lamps(run, refuse, home, files):
         assert refuse("palette", "palette.toml", "-o", name.partition(":")[0], "--force").code == "output-is-input"
     for name in ("card.csv", "none.spd", "../lamp.spd", "two.csv", "D66"):
         palette.write_text(text.format(name))
-        assert refuse("palette", "palette.toml", "-o", "x.csv").code in ("not-a-lamp", "atlas", "unknown-name", "invalid-file")
+        code = refuse("palette", "palette.toml", "-o", "x.csv").code
+        assert code in ("not-a-lamp", "atlas", "unknown-name", "invalid-file")

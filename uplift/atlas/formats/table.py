@@ -32,11 +32,11 @@ def read(document: Document) -> Measurements:
     comments = [line.strip("# \t") for line in document.lines if line.lstrip().startswith("#")]
     try:
         rows = list(_split(document, _delimiter(document)))
-    except csv.Error as error:
+    except (csv.Error, ValueError) as error:
         raise document.location.error(f"not a readable table: {error}", LAYOUT) from None
     numbers = [row for row in rows if is_value(row[0].text)]
     if len(numbers) > 1 and max(map(len, numbers)) == 1:
-        title = next(iter(line_texts(row for row in rows if row not in numbers)), document.stem)
+        title = next((text for text in line_texts(rows) if not is_value(text)), document.stem)
         rows = _beside_wavelengths(document, title, numbers)
     return read_grid(Grid(rows, document.location, comments), document.stem)
 
@@ -47,10 +47,8 @@ def _beside_wavelengths(document: Document, title: str, values: Sequence[Row]) -
     for path in sorted(Path(document.path).parent.glob(WAVELENGTHS)):
         head, *lines = read_document(path).text.strip().split("\n")
         if len(lines) == len(values) and path != Path(document.path):
-            texts = [f"Wavelengths: {head}", *lines]
-            found.append(
-                [(Cell(text.strip(), row[0].line), *row) for text, row in zip(texts, [title, *values], strict=True)]
-            )
+            rows = [(Cell(line.strip(), row[0].line), *row) for line, row in zip(lines, values, strict=True)]
+            found.append([(Cell(f"Wavelengths: {head}", 1), Cell(title, 1)), *rows])
     if len(found) != 1:
         problem = f"has {pluralise(len(values), 'value')} without wavelengths, one a line"
         hint = "put the file of their wavelengths, with 'Wavelengths' in its name and as many lines, next to it"
@@ -73,7 +71,6 @@ def _delimiter(document: Document) -> str:
     """Return the delimiter that the file states, or that splits off most numbers."""
     if stated := SEPARATOR.fullmatch(document.lines[0].strip(" \ufeff\"'")):
         return stated[1]
-
     return find_delimiter(document.lines[:SAMPLE_ROWS])
 
 
