@@ -3,7 +3,6 @@
 Keywords precede ``BEGIN_DATA_FORMAT``, which lists the fields of a set. ``BEGIN_DATA`` follows with a set per line.
 """
 
-import csv
 import itertools
 import re
 from dataclasses import replace
@@ -16,6 +15,7 @@ from uplift.atlas.formats.cells import Cell, Row, parse_label
 from uplift.atlas.formats.grid import Grid, read_grid
 from uplift.atlas.measurements import Measurements
 from uplift.atlas.statements import Quantity, Scale
+from uplift.common.csv import split_line
 from uplift.common.text import parse_float
 
 FORMAT, DATA = "DATA_FORMAT", "DATA"
@@ -74,7 +74,10 @@ def _lines(document: Document) -> list[str]:
     delimiter = next((mark for mark in ",;" if mark in labels), None)
     if delimiter is None or "\t" in labels:
         return document.lines
-    return ["\t".join(cells).rstrip("\t") for cells in csv.reader(document.lines, delimiter=delimiter)]
+    try:
+        return ["\t".join(split_line(line, delimiter)) for line in document.lines]
+    except ValueError as error:
+        raise document.location.error(f"not a readable table: {error}", EXPORT) from None
 
 
 def _tokens(text: str, count: int | None) -> list[str]:
