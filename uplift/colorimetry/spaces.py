@@ -142,6 +142,9 @@ def find_space(text: str) -> ImageSpace:
         spaces = _configuration(BUILT_IN).getColorSpaces()
         names = [space.getName() for space in spaces if not space.isData()]
         raise unknown_name(text, (*tables.names("RGB space"), *names), "RGB space", ALL_SPACES) from None
+    is_xyz = np.array_equal(space.primaries, np.eye(3)[:, :2])
+    if is_xyz and (found := find_ocio_space(space.name)) is not None:
+        return found.as_image_space()  # colour-science takes the white of CIE XYZ-D65 for that of illuminant E
     return ImageSpace(space.name, primaries_of(space), space.cctf_decoding)
 
 
