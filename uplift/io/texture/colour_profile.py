@@ -67,7 +67,7 @@ def _statements(spec: Any, header: Mapping[str, Any]) -> Iterator[Profile]:
         yield Profile(interop, _interop_space(interop))
     if (chromaticities := spec.getattribute("chromaticities")) is not None:
         yield _by_primaries("chromaticities", chromaticities)
-    if (points := spec.getattribute("CICP")) is not None:
+    if (points := header.get("cICP", spec.getattribute("CICP"))) is not None:
         yield _by_code_points(points, CODE_BITS.get(str(spec.format), 8))
     if (data := spec.getattribute("ICCProfile")) is not None:
         name = spec.get_string_attribute("ICCProfile:profile_description") or "an ICC profile without a name"

@@ -25,9 +25,9 @@ BLOCK = 1 << 24
 
 
 def read_chunks(path: Path) -> dict[str, Any]:
-    """Return the colour statements of a file: ``gAMA``, ``cHRM``, ``sRGB`` and ``iCCP``, if it has them.
+    """Return the colour statements of a file: ``cICP``, ``iCCP``, ``sRGB``, ``gAMA`` and ``cHRM``, if it has them.
 
-    Those of cHRM are x, y of red, green, blue and white. OpenImageIO has cICP and the profile, but not the others. Numbers that do not have their size are NaN, which no
+    Those of cHRM are x, y of red, green, blue and white. OpenImageIO has the profile, but not the others. Numbers that do not have their size are NaN, which no
     colours have. Raises `TextureError` for a file that is truncated, or whose chunks differ from their checksums.
     """
     chunks: dict[bytes, bytes] = {}
@@ -59,6 +59,8 @@ def _statements(chunks: Mapping[bytes, bytes]) -> dict[str, Any]:
     if b"cHRM" in chunks:
         white_x, white_y, *primaries = _fixed(chunks[b"cHRM"], 8)
         stated["cHRM"] = (*primaries, white_x, white_y)
+    if b"cICP" in chunks:
+        stated["cICP"] = tuple(chunks[b"cICP"])
     for name in ("sRGB", "iCCP"):
         if name.encode() in chunks:
             stated[name] = True
