@@ -296,10 +296,7 @@ def draw_tiff(random: Random, folder: Path) -> Drawn:
     path.write_bytes(files.tiff_bytes(codes, tags, order, exif, index))
     space, assumed = first_usable(stated)
     rgb = codes[0, :, :3] if channels > 2 else np.repeat(codes[0, :, :1], 3, axis=1)
-    if is_float:
-        light = space.linear_to_srgb(rgb.astype(float))
-    else:
-        light = space.to_srgb(rgb / np.iinfo(dtype).max)
+    light = space.linear_to_srgb(rgb.astype(float)) if is_float else space.to_srgb(rgb / np.iinfo(dtype).max)
     return Drawn(path, f"{dtype} {channels} {order}{text}", light, light, assumed)
 
 

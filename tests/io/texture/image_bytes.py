@@ -99,12 +99,10 @@ def _packed(kind, values, order):
     """Bytes and count of values: bytes, a text, or numbers, of which rationals have the denominator 1e6."""
     if isinstance(values, bytes):
         return values, len(values)
+    form = TIFF_FORMATS[kind] * len(values)
     if kind == 5:
-        numbers = [part for value in values for part in (round(1e6 * value), 10**6)]
-    else:
-        numbers = values
-    form = TIFF_FORMATS[kind][0]
-    return struct.pack(order + form * len(numbers), *numbers), len(values)
+        values = np.stack([np.rint(np.multiply(values, 1e6)), np.full(len(values), 1e6)], axis=-1).astype(int).ravel()
+    return struct.pack(order + form, *values), len(form) // len(TIFF_FORMATS[kind])
 
 
 def hdr_bytes(mantissas, exponent, header=""):

@@ -162,7 +162,7 @@ def _table_curve(numbers: tuple[float, ...]) -> code_points.Curve | None:
     tables = np.array(numbers, dtype=float) / 65535
     tables = tables.reshape(3, -1) if len(tables) in (3 << 8, 3 << 16) else np.tile(tables, (3, 1))
     count = tables.shape[1]
-    if count not in (1 << 8, 1 << 16) or (np.diff(tables) < 0).any():
+    if count not in (1 << 8, 1 << 16) or not (np.diff(tables) >= 0).all():
         return None
     at = np.linspace(0, 1, count)
     return lambda codes: np.stack([np.interp(codes[..., k], at, tables[k]) for k in range(3)], axis=-1)

@@ -34,7 +34,7 @@ def read_tags(path: Path) -> dict[str, Any]:
                 return _tags(file)
             exif = _find_exif(file)
             return {} if exif is None else _tags(io.BytesIO(exif))
-        except (struct.error, ValueError, OverflowError):
+        except (struct.error, KeyError, TypeError, ValueError, OSError):
             return {}
 
 
@@ -83,7 +83,8 @@ def _directory(file: BinaryIO, order: str, offset: int, is_big: bool) -> dict[in
     wanted = {*TAGS, EXIF, INTEROPERABILITY, INDEX}
     found: dict[int, Any] = {}
     for tag, kind, length, value in struct.iter_unpack(entry, data):
-        if tag in wanted and (kind == TEXT or kind in NUMBERS):
+        is_readable = kind == TEXT if tag == INDEX else kind in NUMBERS
+        if tag in wanted and is_readable:
             found[tag] = _value(file, order, kind, length, value)
     return {tag: value for tag, value in found.items() if value}
 
