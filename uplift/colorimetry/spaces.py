@@ -15,7 +15,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import encode
 from uplift.colorimetry.tables import RgbSpace
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError, unknown_name
+from uplift.common.errors import OptionError, UnknownNameError, unknown_name
 from uplift.common.files import check_regular
 from uplift.common.text import format_value, parse_float
 
@@ -169,13 +169,13 @@ def primaries_of(space: RgbSpace) -> Primaries:
 
 
 def _check_colours(name: str) -> None:
-    """Raise `OptionError` for the name of a data space of OpenColorIO."""
+    """Raise `UnknownNameError` for the name of a data space of OpenColorIO."""
     for place in (os.environ.get(VARIABLE), BUILT_IN):
         if not place or not name.isprintable():
             continue
         space = _configuration(place).getColorSpace(name)
         if space is not None and space.isData():
-            raise OptionError(
+            raise UnknownNameError(
                 f"'{name}' is a data space of OpenColorIO: its numbers are not colours",
                 hint=f"name an RGB space; {ALL_SPACES} lists all",
             )

@@ -60,6 +60,14 @@ def test_the_chunks_that_were_used_are_named(spectral, tmp_path):
     assert convert(spectral, path)[1] == ("gAMA 1 and cHRM",)
 
 
+def test_chunks_after_the_pixels_are_ignored(spectral, tmp_path):
+    path = tmp_path / "a.png"
+    path.write_bytes(files.png_bytes(CODES, after=files.gama(1)))
+    rgb, _, codes = convert(spectral, path)
+    np.testing.assert_allclose(rgb, colour.models.eotf_sRGB(SHARE)[0], rtol=0, atol=1e-5)
+    assert codes == ()
+
+
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 @pytest.mark.parametrize("count", [1, 2, 3, 4])
 def test_all_depths_and_kinds_of_png_are_linear_by_gamma(dtype, count, spectral, tmp_path):
@@ -200,6 +208,14 @@ def test_primaries_of_radiance_hdr(spectral, tmp_path):
     assert (spaces, codes) == (("PRIMARIES",), ())
     path.write_bytes(files.hdr_bytes(CODES, 128, "PRIMARIES= 1 2 3\n"))
     assert convert(spectral, path)[2] == ("colour-space-assumed",)
+
+
+def test_colours_of_other_models_are_refused_or_assumed(spectral, tmp_path):
+    Image.fromarray(np.full((2, 3, 4), 100, np.uint8), "CMYK").save(tmp_path / "a.jpg", icc_profile=PROFILE)
+    assert convert(spectral, tmp_path / "a.jpg")[2] == ("colour-space-assumed",)
+    Image.fromarray(np.full((2, 3, 3), 100, np.uint8), "LAB").save(tmp_path / "a.tif")
+    with raises(TextureError):
+        convert(spectral, tmp_path / "a.tif")
 
 
 RGB = np.array([[[0.2, 0.5, 0.3], [0.9, 0.9, 0.9], [1, 1, 1], [0, 0, 0]]])

@@ -32,6 +32,7 @@ EXIF_SRGB, EXIF_ADOBE = 1, 2
 """Values of the EXIF tag ColorSpace. The standard has the first, and cameras write the second."""
 ADOBE_INDEX = "R03"
 """EXIF interoperability index of Adobe RGB (DCF 2.0)."""
+CMYK = "CMYK"
 CODE_BITS = {"uint8": 8, "uint16": 16}
 
 
@@ -53,6 +54,8 @@ def read_profile(spec: Any, header: Mapping[str, Any]) -> Profile | None:
     ``spec`` is an `OpenImageIO.ImageSpec`, and ``header`` has the statements that it lacks.
     """
     unusable: list[str] = []
+    if CMYK in (spec.get_string_attribute("tiff:ColorSpace"), spec.get_string_attribute("jpeg:ColorSpace")):
+        return Profile(CMYK, None, (CMYK,))  # OpenImageIO converts it to RGB without a profile
     for statement in _statements(spec, header):
         if statement.space is not None:
             return replace(statement, unusable=tuple(unusable))

@@ -46,6 +46,8 @@ ENVIRONMENTS = ("LatLong Environment", "CubeFace Environment")
 """Values of ``textureformat`` that are kept: they stand for the attribute ``envmap`` of OpenEXR."""
 MAX_METADATA, MAX_METADATA_LENGTH = 100, 10_000
 """Numbers of attributes, and of their characters or numbers, that textures keep."""
+OTHER_COLOURS = {8, 9, 10, 32844, 32845}
+"""Photometric interpretations of TIFF that OpenImageIO reads as RGB: CIELAB, ICCLab, ITULab, LogL and LogLuv."""
 FORMAT_HINT = "use an EXR, HDR, PNG, JPEG or TIFF image"
 MEMORY_HINT = "write the image with smaller tiles or strips, or without interlacing"
 
@@ -231,6 +233,8 @@ def _parts(handle: Any, header: Mapping[str, Any]) -> Iterator[Part]:
 def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:
     if spec.deep or spec.depth > 1:
         raise TextureError("an image must have one value per pixel", hint="flatten it")
+    if spec.get_int_attribute("tiff:PhotometricInterpretation") in OTHER_COLOURS:
+        raise TextureError("the colours of a TIFF must be RGB, grey or CMYK", hint="convert it to RGB")
     formats = spec.channelformats or (spec.format,) * spec.nchannels
     display = (spec.full_x, spec.full_y, spec.full_width, spec.full_height)
     aspect = spec.get_float_attribute("PixelAspectRatio", 1.0)

@@ -28,8 +28,9 @@ def read_chunks(path: Path) -> dict[str, Any]:
     """Return the colour statements of a file: ``cICP``, ``iCCP``, ``sRGB``, ``gAMA`` and ``cHRM``, if it has them.
 
     Those of cHRM are x, y of red, green, blue and white. OpenImageIO has the profile, but not the others. Numbers of
-    another size than theirs are NaN, which no colours have. Raises `TextureError` for a file that is truncated, or whose
-    chunks differ from their checksums.
+    another size than theirs are NaN, which no colours have.
+
+    Raises `TextureError` for a file that is truncated, or whose chunks differ from their checksums.
     """
     chunks: dict[bytes, bytes] = {}
     with path.open("rb") as file:
