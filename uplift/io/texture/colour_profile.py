@@ -1,4 +1,4 @@
-"""Colour space that an image file states; docs/guides/textures.md lists the statements in their order.
+"""Colour space that an image file states; docs/textures.md lists the statements in their order.
 
 OpenColorIO reads matrix profiles, as displays have them, with their primaries and tone curves. Profiles of grey images,
 and those with lookup tables, are not used.

@@ -10,7 +10,7 @@ from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Array, Floats, StrPath, Values
-from uplift.common.errors import OptionError, UpliftWarning, unknown_name
+from uplift.common.errors import OptionError, TextureError, UpliftWarning, unknown_name
 from uplift.common.text import pluralise
 from uplift.io.texture.channels import HALF_ROUNDING, all_inside, colour_channels, without_rounding
 from uplift.io.texture.colour_profile import SRGB_SPACE
@@ -120,11 +120,11 @@ def source_space(part: Part, sensor: Sensor, chosen: ImageSpace | None = None) -
     """Return the space of the colours of a part, None if it is that of the sensor.
 
     The one that the caller names comes first, then the statement of the file, then sRGB for codes and the space of the
-    sensor for floats. Channels X, Y and Z are CIE XYZ. Raises `OptionError` if the caller names an RGB space for them.
+    sensor for floats. Channels X, Y and Z are CIE XYZ. Raises `TextureError` if the caller names an RGB space for them.
     """
     if is_xyz(part):
         if chosen is not None and chosen.to_gamut is None:
-            raise OptionError(
+            raise TextureError(
                 f"channels X, Y and Z are CIE XYZ, not RGB of '{chosen.name}'", hint="leave out the space"
             )
         return chosen or part.xyz
