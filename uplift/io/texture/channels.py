@@ -1,5 +1,6 @@
 """Colour channels of an image: which they are, and their division by alpha."""
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,8 +14,10 @@ BRIGHTEST = 65504.0
 """The largest half float. Colours that alpha would make brighter are light, and not divided."""
 HALF_ROUNDING = 1e-3
 """Linear RGB by which half floats, converted or divided by one another, can leave [0, 1] by rounding."""
-VECTORS = {"N", "Normal", "P", "Pref", "Position", "UV", "Vector"}
-"""Layers of renderers whose X, Y and Z are not CIE XYZ."""
+VECTORS = re.compile(
+    r"(.*[._ ])?(n|ns|ng|p|po|pos|pref|uv)|.*(normal|position|vector|velocity|motion|tangent|world).*", re.I
+)
+"""Names of layers of renderers whose X, Y and Z are vectors, not CIE XYZ."""
 XYZ, CHROMA = {"X", "Y", "Z"}, {"RY", "BY"}
 
 
@@ -123,7 +126,7 @@ def _layers(part: Part, letters: str) -> list[str]:
     ends = [name[:-1] for name in part.channels if name == first or name.endswith(f".{first}")]
     layers = [layer for layer in ends if all(layer + letter in names for letter in others)]
     if letters == "XYZ":
-        layers = [layer for layer in layers if layer.rstrip(".").rpartition(".")[2] not in VECTORS]
+        layers = [layer for layer in layers if not VECTORS.fullmatch(layer.removesuffix("."))]
     return [""] if "" in layers else layers
 
 

@@ -49,6 +49,9 @@ MAX_METADATA, MAX_METADATA_LENGTH = 100, 10_000
 OTHER_COLOURS = {8, 9, 10, 32844, 32845}
 """Photometric interpretations of TIFF that OpenImageIO reads as RGB: CIELAB, ICCLab, ITULab, LogL and LogLuv."""
 FORMAT_HINT = "use an EXR, HDR, PNG, JPEG or TIFF image"
+SUBSAMPLED = "ubsampled"
+"""Part of the error of OpenImageIO for channels of another resolution, such as the chroma of luminance and chroma."""
+SUBSAMPLED_HINT = "write R, G and B at full resolution"
 MEMORY_HINT = "write the image with smaller tiles or strips, or without interlacing"
 
 
@@ -188,7 +191,8 @@ def open_image(path: StrPath) -> Iterator[Image]:
         handle = OpenImageIO.ImageInput.open(utf8_name(path, TextureError), config)
         if handle is None:
             problem = read_error(OpenImageIO) or UNKNOWN_PROBLEM
-            raise TextureError(problem, code="file-unreadable", hint=FORMAT_HINT)
+            hint = SUBSAMPLED_HINT if SUBSAMPLED in problem else FORMAT_HINT
+            raise TextureError(problem, code="file-unreadable", hint=hint)
         parts = tuple(_parts(handle, header))
         for part in parts:
             for name in (part.name, *part.channels):
