@@ -302,6 +302,13 @@ def test_light_without_opacity_stays(dtype, spectral, tmp_path):
     assert (spectra[0, 3] == 0).all()
 
 
+def test_signalling_nan_are_counted_without_a_warning_of_numpy(spectral, tmp_path):
+    bad = np.full((1, 3), 0x7F800001, np.uint32).view(np.float32)
+    source = write_exr(tmp_path / "a.exr", {**dict.fromkeys("RGB", bad), "A": bad})
+    result = texture.convert(spectral, source, tmp_path / "out.exr")
+    assert result.counts.not_finite == 3
+
+
 def test_pictures_show_light_without_opacity(sensor, tmp_path):
     light = np.full((1, 2, 3), 0.25, np.float32)
     source = write_exr(tmp_path / "a.exr", {**planes(light), "A": np.array([[0, 0.5]], np.float32)})

@@ -67,8 +67,9 @@ class ColourChannels:
     def _is_light(self, values: Values) -> Mask:
         """Return the mask (…, 1) of finite colours that alpha would make brighter than half floats hold."""
         assert self.alpha is not None
-        colours = np.abs(values[..., self.rgb].astype(float))
-        alpha = np.abs(values[..., [self.alpha]].astype(float))
+        with np.errstate(invalid="ignore"):  # signalling NaN
+            colours = np.abs(values[..., self.rgb].astype(float))
+            alpha = np.abs(values[..., [self.alpha]].astype(float))
         brightest = colours.max(axis=-1, keepdims=True)
         return np.asarray((brightest > BRIGHTEST * alpha) & np.isfinite(brightest))
 
