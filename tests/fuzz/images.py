@@ -118,6 +118,12 @@ PROFILES = {
     "Adobe": (by_matrix(ADOBE, GAMMA), Space(ADOBE, lambda codes: codes ** (round(2.2 * 256) / 256))),
     "table": (by_matrix("sRGB", b"mft2 and so on"), None),
 }
+INTEROP = {
+    "lin_ap1_scene": Space("ACEScg"),
+    "lin_rec2020_scene": Space("ITU-R BT.2020"),
+    "lin_p3d65_scene": Space(P3),
+    "house_of_colours": None,
+}
 GAMMAS = (1.0, 0.45455, 0.55556, 0.5)
 GAMUTS = ("sRGB", "ITU-R BT.2020", P3, ADOBE, "ProPhoto RGB")
 
@@ -198,6 +204,10 @@ def draw_exr(random: Random, folder: Path) -> Drawn:
         header["chromaticities"] = numbers(gamut)
     else:
         gamut = "sRGB"
+    stated: list[Space | None] = [Space(gamut)] if header else []
+    if kind != "XYZ" and random.random() < 0.3:
+        name = header["colorInteropID"] = choose(random, list(INTEROP))
+        stated.insert(0, INTEROP[name])
     luminance = 1.0
     if random.random() < 0.3:
         luminance = header["whiteLuminance"] = choose(random, (100.0, 80.0))
@@ -227,12 +237,14 @@ def draw_exr(random: Random, folder: Path) -> Drawn:
     given = alpha.astype(dtype).astype(float)[:, None]
     is_light = np.abs(held).max(axis=1, keepdims=True) > HALF_MAX * given
     divided = np.where(is_light, held, held / np.where(given == 0, 1, given))
-    convert = Space(gamut).linear_to_srgb
+    usable, assumed = first_usable(stated)
+    convert = usable.linear_to_srgb
     if kind == "XYZ":
         white = np.array(space.whitepoint)
         convert = lambda values: xyz_to_srgb(values / luminance, white)  # noqa: E731
     text = f"{layer}{kind} {dtype.__name__} {header} alpha {has_alpha}"
-    return Drawn(path, text, convert(held), convert(divided), tolerance=3e-3 if dtype is np.float16 else 1e-3)
+    tolerance = 3e-3 if dtype is np.float16 else 1e-3
+    return Drawn(path, text, convert(held), convert(divided), assumed, tolerance)
 
 
 def draw_tags(random: Random, depth: int) -> tuple[dict[int, Any], list[Space | None], str]:

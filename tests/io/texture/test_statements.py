@@ -82,6 +82,18 @@ def test_all_depths_and_kinds_of_png_are_linear_by_gamma(dtype, count, spectral,
         np.testing.assert_allclose(channels(result.target)["A"], codes[..., -1] / top, rtol=0, atol=1e-3)
 
 
+@pytest.mark.parametrize("mode", ["P", "1", "L"])
+def test_palettes_and_bits_of_png_are_linear_by_gamma(mode, spectral, tmp_path):
+    path = tmp_path / "a.png"
+    image = Image.fromarray(np.repeat(CODES, 2, axis=0)).convert(mode)
+    image.save(path)
+    data = path.read_bytes()
+    path.write_bytes(data[:33] + files.gama(1) + data[33:])
+    result = texture.convert(spectral, path, tmp_path / "out.exr")
+    expected = np.asarray(image.convert("RGB")) / 255
+    np.testing.assert_allclose(read_channels(result.target, "RGB"), expected, rtol=0, atol=1e-6)
+
+
 def test_a_transparent_colour_of_png_does_not_change_the_gamma(spectral, tmp_path):
     path = tmp_path / "a.png"
     transparent = files.png_chunk(b"tRNS", CODES[0, 0].astype(">u2").tobytes())

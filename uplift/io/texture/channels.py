@@ -61,7 +61,8 @@ class ColourChannels:
             return None
         alpha = values[..., [self.alpha]]
         scale = np.iinfo(alpha.dtype).max if np.issubdtype(alpha.dtype, np.integer) else 1
-        opacity = np.clip(np.nan_to_num(alpha / scale, nan=0.0), 0, 1)
+        with np.errstate(invalid="ignore"):  # signalling NaN
+            opacity = np.clip(np.nan_to_num(alpha / scale, nan=0.0), 0, 1)
         return np.where(self._is_light(values), 1, opacity).astype(np.float32)
 
     def _is_light(self, values: Values) -> Mask:
