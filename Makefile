@@ -91,11 +91,12 @@ $(RGB2SPEC):
 library: $(INSTALLED)
 	$(BIN)/python -m tools.ship_library
 
-# Malformed input, ten thousand of each kind, and a thousand commands of each class: takes minutes.
+# Malformed input, ten thousand of each kind, and a thousand commands of each class, odd builds, and images: takes minutes.
 nightly: $(INSTALLED)
 	$(BIN)/python -m tests.fuzz
 	$(BIN)/python -m tests.fuzz.builds 0 2000
 	$(BIN)/python -m tests.fuzz.tables 0 10000
+	$(BIN)/python -m tests.fuzz.images 0 5000
 
 # Packages with the example images of the pages plan, scenes and textures.
 pictures: $(INSTALLED)

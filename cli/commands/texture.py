@@ -85,7 +85,7 @@ image_options = options.stacked(
 
     \f
     Colours of an image in another RGB space than the cube's are converted. Its space is that of --input-space, or the
-    one that the file states by colorInteropID, chromaticities, code points or an ICC profile.
+    one that the file states, for example by chromaticities, an ICC profile or gAMA. Channels X, Y and Z are CIE XYZ.
 
     Colours outside [0, 1] are treated by --out-of-gamut, and NaN becomes 0. A warning counts both.
 

@@ -106,6 +106,21 @@ def test_unknown_names_raise_with_near_names(call, code, near):
     assert near in caught.value.hint
 
 
+@pytest.mark.parametrize("name", ["Raw", "raw", "Utility - Raw", "data"])
+def test_a_data_space_of_opencolorio_is_not_suggested(name):
+    for find in (find_space, look_up_space):
+        with raises(UnknownNameError) as caught:
+            find(name)
+        assert name in str(caught.value)
+        assert "Raw" not in caught.value.hint
+
+
+def test_cie_xyz_by_name_keeps_its_white():
+    space = find_space("CIE XYZ-D65 - Scene-referred")
+    white = space.matrix(SRGB) @ SRGB.rgb_to_xyz.sum(axis=1)
+    np.testing.assert_allclose(white, 1, rtol=0, atol=1e-3)
+
+
 @pytest.mark.parametrize("limits", [(360, 830, 1), (360, 1000, 5), (380, 780, 10)])
 def test_other_ranges_agree_with_colour_science(limits, sensor):
     found = observer.on_range(sensor, *limits)

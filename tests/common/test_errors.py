@@ -34,6 +34,10 @@ def test_every_error_class_is_exported_by_the_package(kind):
     assert getattr(uplift, kind.__name__) is kind
 
 
+def test_unknown_name_does_not_suggest_itself():
+    assert "'Raw'" not in unknown_name("Raw", ("Raw", "sRGB"), "RGB space").hint
+
+
 def test_unknown_name_suggests_near_names_regardless_of_case():
     error = unknown_name("d56", ("D50", "D55", "D65", "A"), "illuminant")
     assert isinstance(error, UnknownNameError)

@@ -27,6 +27,8 @@ def main(names: tuple[str, ...], inputs: int, seed: int) -> None:
             count = inputs if name in READERS else inputs // 10
             blocks = [range(first, min(first + BLOCK, count)) for first in range(0, count, BLOCK)]
             tally = sum(pool.map(run_target, [name] * len(blocks), [seed] * len(blocks), blocks), Counter())
+            if not tally["accepted"]:
+                tally["no input accepted"] = 1
             row = {
                 "target": name,
                 "tried": count,

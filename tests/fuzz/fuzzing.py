@@ -22,8 +22,8 @@ from uplift.common.text import printable
 ROOT = Path(__file__).parents[2]
 SECONDS = 5.0
 """Limit of processor time per input. Valid inputs take milliseconds."""
-MEGABYTES = 1024
-"""Limit of address space in addition to that of the process at the start."""
+MEGABYTES = 2048
+"""Limit of address space in addition to that of the process at the start; the libraries of images take half of it."""
 Random = np.random.Generator
 Seeds = tuple[bytes, ...]
 

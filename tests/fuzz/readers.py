@@ -18,6 +18,7 @@ from tests.atlas.vendor_files import VENDORS, Files, sample
 from tests.cube.cube_files import forge, header_length, with_header, with_header_length
 from tests.fuzz.fuzzing import ROOT, Random, Seeds, Target, choose, mutate, mutated
 from tests.io.texture.exr_bytes import attribute, exr_bytes
+from tests.io.texture.image_bytes import BT2020, hdr_bytes, tiff_bytes
 from uplift.atlas import read_atlas, resample, write_atlas
 from uplift.colorimetry import observer
 from uplift.colorimetry.gamut import METHODS, map_to_gamut
@@ -338,6 +339,14 @@ def _images() -> Seeds:
         buffer = io.BytesIO()
         Image.fromarray(codes[..., :depth]).save(buffer, kind, **options)
         images.append(buffer.getvalue())
+    tags = {318: (5, BT2020[6:]), 319: (5, BT2020[:6]), 301: (3, list(range(0, 65536, 257)))}
+    exif = {0xA001: (3, [65535])}, {1: (2, b"R03\0")}
+    images.append(tiff_bytes(codes, tags, "<", *exif))
+    buffer = io.BytesIO()
+    Image.fromarray(codes[..., :3]).save(buffer, "JPEG", exif=b"Exif\0\0" + tiff_bytes(None, tags, ">", *exif))
+    images.append(buffer.getvalue())
+    images.append(hdr_bytes(codes[..., :3], 128, f"PRIMARIES= {' '.join(map(str, BT2020))}\n"))
+    images.append(exr_bytes([b"X", b"Y", b"Z", b"A"], attribute(b"whiteLuminance", b"float", bytes(4))))
     text = attribute(b"owner", b"string", b"someone") + attribute(b"chromaticities", b"chromaticities", bytes(32))
     return (*images, exr_bytes(), exr_bytes([b"R", b"G", b"B", b"A", b"Z"], text))
 

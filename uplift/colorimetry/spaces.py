@@ -15,7 +15,7 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.srgb import encode
 from uplift.colorimetry.tables import RgbSpace
 from uplift.common.arrays import Array
-from uplift.common.errors import OptionError, unknown_name
+from uplift.common.errors import OptionError, UnknownNameError, unknown_name
 from uplift.common.files import check_regular
 from uplift.common.text import format_value, parse_float
 
@@ -52,11 +52,18 @@ class ImageSpace:
     """Whether floats of the space are codes, too, as those of encoded spaces of OpenColorIO."""
     mixes_channels: bool = False
     """Whether `decode` computes each component from all three."""
+    to_gamut: Array | None = None
+    """Matrix (3, 3) from decoded values, such as CIE XYZ, to linear RGB of `gamut`."""
+
+    def matrix(self, target: Gamut) -> Array:
+        """Compute the matrix (3, 3) from decoded values to linear RGB of a gamut."""
+        matrix = conversion(self.gamut, target)
+        return matrix if self.to_gamut is None else matrix @ self.to_gamut
 
     def matrix_to(self, sensor: Sensor) -> Array | None:
         """Compute the matrix (3, 3) to the linear RGB of a sensor; None if the primaries are equal."""
         sensor.require_xyz()
-        matrix = conversion(self.gamut, sensor)
+        matrix = self.matrix(sensor)
         return None if np.abs(matrix - np.eye(3)).max() <= MAX_PRIMARIES_DIFFERENCE else matrix
 
     def agrees_with(self, sensor: Sensor, *, encoded: bool) -> bool:
@@ -99,9 +106,14 @@ class OcioSpace:
         return AP0.rgb_to_xyz @ self.matrix
 
     def as_image_space(self) -> ImageSpace:
-        """Return the space with its own primaries if it is linear, else decoded to `AP0`."""
+        """Return the space with its own primaries if it is linear RGB, else converted to `AP0`."""
         if self.is_linear:
-            return ImageSpace(self.name, self, lambda codes: codes)
+            white = self.matrix.sum(axis=1)
+            is_rgb = np.abs(white - 1).max() <= MAX_MATRIX_DIFFERENCE
+            if is_rgb:
+                return ImageSpace(self.name, self, lambda codes: codes)
+            # In CIE XYZ, (1, 1, 1) is not white.
+            return ImageSpace(self.name, AP0, lambda codes: codes, to_gamut=self.matrix)
         return ImageSpace(self.name, AP0, self.convert, floats_are_codes=True, mixes_channels=True)
 
 
@@ -126,8 +138,13 @@ def find_space(text: str) -> ImageSpace:
     except KeyError:
         if (found := find_ocio_space(text)) is not None:
             return found.as_image_space()
-        names = _configuration(BUILT_IN).getColorSpaceNames()
+        _check_colours(text)
+        spaces = _configuration(BUILT_IN).getColorSpaces()
+        names = [space.getName() for space in spaces if not space.isData()]
         raise unknown_name(text, (*tables.names("RGB space"), *names), "RGB space", ALL_SPACES) from None
+    is_xyz = np.array_equal(space.primaries, np.eye(3)[:, :2])
+    if is_xyz and (found := find_ocio_space(space.name)) is not None:
+        return found.as_image_space()  # colour-science takes the white of CIE XYZ-D65 for that of illuminant E
     return ImageSpace(space.name, primaries_of(space), space.cctf_decoding)
 
 
@@ -141,12 +158,27 @@ def look_up_space(name: str, *, ocio: bool = True) -> RgbSpace:
                 difference = space.matrix - conversion(primaries_of(each), AP0)
                 if np.abs(difference).max() <= MAX_MATRIX_DIFFERENCE:
                     return each
+    if ocio:
+        _check_colours(name)
     raise unknown_name(name, tables.names("RGB space"), "RGB space", ALL_SPACES)
 
 
 def primaries_of(space: RgbSpace) -> Primaries:
     """Return the primaries and white of an RGB space of colour-science."""
     return Primaries.of([*space.primaries.ravel(), *space.whitepoint])
+
+
+def _check_colours(name: str) -> None:
+    """Raise `UnknownNameError` for the name of a data space of OpenColorIO."""
+    for place in (os.environ.get(VARIABLE), BUILT_IN):
+        if not place or not name.isprintable():
+            continue
+        space = _configuration(place).getColorSpace(name)
+        if space is not None and space.isData():
+            raise UnknownNameError(
+                f"'{name}' is a data space of OpenColorIO: its numbers are not colours",
+                hint=f"name an RGB space; {ALL_SPACES} lists all",
+            )
 
 
 def find_ocio_space(name: str, *, built_in: bool = True) -> OcioSpace | None:

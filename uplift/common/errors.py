@@ -154,7 +154,7 @@ def unknown_name(name: str, known: Iterable[str], kind: str, lister: str = "") -
     """
     import difflib
 
-    by_folded = {entry.casefold(): entry for entry in known}
+    by_folded = {entry.casefold(): entry for entry in known if entry != name}
     near = difflib.get_close_matches(name.casefold(), by_folded, n=3)
     everything = f"{lister} lists all" if lister else f"known: {listed(list(by_folded.values()))}"
     choices = ", ".join(f"'{by_folded[entry]}'" for entry in near)

@@ -15,7 +15,8 @@ from uplift.common.arrays import Array, Indices, Mask
 from uplift.common.errors import OptionError, TextureError
 from uplift.common.files import file_digest
 from uplift.common.progress import Progress, ProgressCallback
-from uplift.io.texture.colours import Counts, check_encoding, coloured_parts, make_decoder, space_warnings
+from uplift.io.texture.channels import coloured_parts
+from uplift.io.texture.colours import Counts, check_encoding, make_decoder, space_warnings
 from uplift.io.texture.image import open_image
 from uplift.lattice import CORNERS, EntryBoxes, Lattice
 from uplift.lattice.entry_boxes import MARGIN

@@ -239,7 +239,7 @@ def test_tiffs_state_whether_they_are_multiplied(is_multiplied, small_cube, spec
     expected = small_cube.decode(straight)
     if is_multiplied:
         expected = small_cube.decode(np.rint(straight[:2] * 255 / 200)) * 200 / 255
-        expected = np.concatenate([expected, np.zeros((2, 3))])
+        expected = np.concatenate([expected, small_cube.decode(straight[2:])])
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-6)
     np.testing.assert_array_equal(np.rint(channels(tmp_path / "out.exr")["A"][0] * 255.0), codes[0, :, 3])
 
@@ -256,10 +256,11 @@ def test_odd_alpha_gives_finite_colours_and_warnings(spectral, tmp_path):
     source = write_exr(tmp_path / "a.exr", {**planes(np.full((1, 6, 3), 0.75, np.float32)), "A": alpha})
     result = texture.convert(spectral, source, tmp_path / "out.exr")
     assert {each.code for each in result.warnings} == {"pixels-not-finite", "pixels-out-of-gamut"}
-    assert (result.counts.not_finite, result.counts.outside) == (2, 2)  # alpha 0 and NaN; below 0 and the colour
+    assert (result.counts.not_finite, result.counts.outside) == (1, 2)  # NaN; below 0 and the colour
     found = read_channels(tmp_path / "out.exr", (*"RGB", *spectral.channels))
     assert np.isfinite(found).all()
-    assert (found[0, [0, 1, 4]] == 0).all()
+    assert (found[0, [1, 4]] == 0).all()
+    np.testing.assert_allclose(found[0, 0, :3], 0.75)  # light without opacity
     np.testing.assert_allclose(found[0, 3, :3], 0.375)
     np.testing.assert_array_equal(channels(tmp_path / "out.exr")["A"], alpha)
 

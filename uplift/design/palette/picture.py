@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from uplift.common.arrays import Array, StrPath, Values
 from uplift.common.errors import OptionError, TextureError, unknown_name
 from uplift.common.text import pluralise
-from uplift.io.texture.colours import colour_channels
+from uplift.io.texture.channels import colour_channels
 from uplift.io.texture.image import Part, open_image
 
 Weights = NDArray[np.float32]

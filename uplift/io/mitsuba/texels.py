@@ -13,7 +13,8 @@ import numpy as np
 from uplift.common.arrays import Array, Floats, Values
 from uplift.common.errors import TextureError, UpliftError, UpliftWarning, unknown_name
 from uplift.io.texture import exr_file
-from uplift.io.texture.colours import Counts, coloured_parts, space_warnings
+from uplift.io.texture.channels import coloured_parts
+from uplift.io.texture.colours import Counts, space_warnings
 from uplift.io.texture.image import Image, open_image
 from uplift.io.texture.uplifter import Converter, Multipliers, Uplifter, prepare
 from uplift.lights.lookup import EmissionTable

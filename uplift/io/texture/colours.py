@@ -1,4 +1,4 @@
-"""Colours of an image: their channels, division by alpha, conversion to linear RGB in [0, 1] with counts of changes."""
+"""Colours of an image: conversion to linear RGB in [0, 1] with counts of changes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
@@ -6,13 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from uplift.colorimetry.gamut import SRGB, map_to_gamut
+from uplift.colorimetry.gamut import map_to_gamut
 from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
-from uplift.colorimetry.srgb import decode
 from uplift.common.arrays import Array, Floats, StrPath, Values
 from uplift.common.errors import OptionError, TextureError, UpliftWarning, unknown_name
 from uplift.common.text import pluralise
+from uplift.io.texture.channels import HALF_ROUNDING, all_inside, colour_channels, without_rounding
+from uplift.io.texture.colour_profile import SRGB_SPACE
 from uplift.io.texture.image import Image, Part
 from uplift.lattice.entry_boxes import NO_ROWS, OutsideBoxes
 
@@ -26,95 +27,13 @@ PAST_TENSE = {
     "desaturate-oklab": "desaturated in Oklab",
 }
 """Words for messages, by the names in `uplift.colorimetry.gamut.METHODS`."""
-COLOUR_TYPES = {"uint8", "uint16", "half", "float", "double"}
 BRIGHT = 10.0
 """Change of a component by gamut mapping that makes lights of an image likely."""
 LIGHTS = "if they are lights, convert them with an emission table"
-HALF_ROUNDING = 1e-3
-"""Linear RGB by which half floats, converted or divided by one another, can leave [0, 1] by rounding."""
-SRGB_SPACE = ImageSpace("sRGB", SRGB, decode)
-"""Space of 8-bit and 16-bit images that state none."""
-
-
-@dataclass(frozen=True)
-class ColourChannels:
-    """Indices of red, green and blue, all the same for a grey image, and of the alpha that multiplies them, if any."""
-
-    rgb: tuple[int, int, int]
-    alpha: int | None = None
-
-    def straight(self, values: Values) -> Values:
-        """Return the colours (…, 3) of values (…, channels), divided by alpha if they are multiplied by it.
-
-        Where alpha is 0, black stays black and other colours are infinite. Integers are rounded, and limited to the
-        largest.
-        """
-        colours = values[..., self.rgb]
-        if self.alpha is None:
-            return colours
-        alpha = values[..., [self.alpha]]
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            divided = np.where(colours == 0, 0, colours / alpha)
-        if np.issubdtype(values.dtype, np.integer):
-            top = np.iinfo(values.dtype).max
-            return np.rint(np.minimum(divided, 1) * top).astype(values.dtype)
-        return without_rounding(divided)
-
-    def opacity(self, values: Values) -> Floats | None:
-        """Return the factor (…, 1) in [0, 1] of converted colours, 0 for NaN; None if they were not divided."""
-        if self.alpha is None:
-            return None
-        alpha = values[..., [self.alpha]]
-        scale = np.iinfo(alpha.dtype).max if np.issubdtype(alpha.dtype, np.integer) else 1
-        return np.clip(np.nan_to_num(alpha / scale, nan=0.0), 0, 1).astype(np.float32)
-
-
-def without_rounding(rgb: Values) -> Values:
-    """Clip colours that lie outside [0, 1] by no more than the rounding of half floats."""
-    inside = np.clip(rgb, 0, 1)
-    is_rounding = np.abs(rgb - inside).max(axis=-1, keepdims=True) <= HALF_ROUNDING
-    return np.where(is_rounding, inside, rgb)
-
-
-def colour_channels(part: Part) -> ColourChannels | None:
-    """Find the colour channels of a part: R, G, B, else those of the only layer that has them, else Y; or None.
-
-    Raises `TextureError` for several layers of colours, and for integers of unknown scale.
-    """
-    layers = [name[:-1] for name in part.channels if name == "R" or name.endswith(".R")]
-    layers = [layer for layer in layers if {layer + "G", layer + "B"} <= set(part.channels)]
-    if "" in layers:
-        layers = [""]
-    if len(layers) > 1:
-        found = ", ".join(layer[:-1] for layer in layers)
-        raise TextureError(f"a part must have one layer of colour, got {found}", hint="write each layer as a part")
-    if layers:
-        names, alpha = [layers[0] + letter for letter in "RGB"], layers[0] + "A"
-    elif "Y" in part.channels and not {"RY", "BY"} & set(part.channels):  # luminance, not luma with chroma
-        names, alpha = ["Y"] * 3, "A"
-    else:
-        return None
-    red, green, blue = map(part.channels.index, names)
-    if types := {part.types[channel] for channel in (red, green, blue)} - COLOUR_TYPES:
-        raise TextureError(
-            f"colour channels must be 8-bit, 16-bit, half or float, got {min(types)}", hint="convert them"
-        )
-    is_multiplied = part.has_associated_alpha and alpha in part.channels
-    return ColourChannels((red, green, blue), part.channels.index(alpha) if is_multiplied else None)
-
-
-def colour_channels_by_part(image: Image) -> list[tuple[Part, ColourChannels | None]]:
-    """Return every part and its colour channels. Raises `TextureError` if no part has any."""
-    parts = [(part, colour_channels(part)) for part in image.parts]
-    if not any(colours for _, colours in parts):
-        names = ", ".join(dict.fromkeys(name for part in image.parts for name in part.channels))
-        raise TextureError(f"no colour channels among {names}", hint="name them R, G and B, or Y")
-    return parts
-
-
-def coloured_parts(image: Image) -> list[tuple[Part, ColourChannels]]:
-    """Return the parts that have colours, at least one. Raises `TextureError`."""
-    return [(part, colours) for part, colours in colour_channels_by_part(image) if colours is not None]
+FLOAT_ROUNDING = 1e-6
+"""Linear RGB by which floats can leave [0, 1] by rounding."""
+HALF_ERROR = 2.0**-11
+"""Relative error of half floats."""
 
 
 def _counted(code: str, text: str) -> Any:
@@ -191,12 +110,24 @@ class Counts:
         )
 
 
+def is_xyz(part: Part) -> bool:
+    """Return whether the colours of a part are CIE XYZ."""
+    channels = colour_channels(part)
+    return channels is not None and channels.is_xyz
+
+
 def source_space(part: Part, sensor: Sensor, chosen: ImageSpace | None = None) -> ImageSpace | None:
     """Return the space of the colours of a part, None if it is that of the sensor.
 
     The one that the caller names comes first, then the statement of the file, then sRGB for codes and the space of the
-    sensor for floats.
+    sensor for floats. Channels X, Y and Z are CIE XYZ. Raises `TextureError` if the caller names an RGB space for them.
     """
+    if is_xyz(part):
+        if chosen is not None and chosen.to_gamut is None:
+            raise TextureError(
+                f"channels X, Y and Z are CIE XYZ, not RGB of '{chosen.name}'", hint="leave out the space"
+            )
+        return chosen or part.xyz
     stated = None if part.profile is None else part.profile.space
     space = chosen or stated or (SRGB_SPACE if part.max_code else None)
     return None if space is None or space.agrees_with(sensor, encoded=bool(part.max_code)) else space
@@ -206,37 +137,46 @@ def space_warnings(image: Image, sensor: Sensor, chosen: ImageSpace | None = Non
     """Return warnings about parts whose space is not known: unusable statements, and assumptions."""
     found: dict[str, UpliftWarning] = {}
     for part in image.parts if chosen is None else ():
-        read_as = f"its colours are read as {'sRGB' if part.max_code else f'linear {sensor.space}'}"
-        if part.profile is None:
-            if SRGB_SPACE.agrees_with(sensor, encoded=False):
-                continue
-            problem = f"the image states no colour space; {read_as}"
-        elif part.profile.space is None:
-            name = f" ({part.profile.name})" if part.profile.name else ""
-            problem = f"the image states a colour space that cannot be used{name}; {read_as}"
-        else:
-            continue
-        found[problem] = UpliftWarning(problem, code="colour-space-assumed", path=image.path)
+        if problem := _space_problem(part, sensor):
+            found[problem] = UpliftWarning(problem, code="colour-space-assumed", path=image.path)
     return tuple(found.values())
+
+
+def _space_problem(part: Part, sensor: Sensor) -> str:
+    """Return what is assumed about the space of a part, empty if nothing is."""
+    stated = part.profile
+    if is_xyz(part):
+        read_as = "CIE XYZ of white D65"
+    elif stated is not None and stated.space is not None:
+        read_as = f"those of {stated.name}"
+    else:
+        read_as = "sRGB" if part.max_code else f"linear {sensor.space}"
+    if stated is not None and stated.unusable:
+        names = ", ".join(stated.unusable)
+        return f"the image states a colour space that cannot be used ({names}); its colours are read as {read_as}"
+    if stated is None and not is_xyz(part) and not SRGB_SPACE.agrees_with(sensor, encoded=False):
+        return f"the image states no colour space; its colours are read as {read_as}"
+    return ""
 
 
 @dataclass(frozen=True, eq=False)
 class Decoder:
     """Conversion of the colours (…, 3) of a part to linear RGB of a sensor, made by `make_decoder`.
 
-    ``function`` maps the numbers of the part to linear RGB of its space, which are in [0, 1] if ``is_bounded``. With
+    ``function`` maps the numbers of the part, integers if ``is_integer``, to linear values of its space. With
     ``maps_codes``, codes outside [0, 1] are mapped before decoding, as the encoding ends at 0 and 1. ``matrix`` (3, 3)
     leads from the space of the part to that of the sensor; None if they agree. Linear RGB in the boxes of entries
-    ``outside`` [0, 1] are not mapped.
+    ``outside`` [0, 1] are not mapped, and those outside [0, 1] by no more than ``rounding`` are clipped.
     """
 
     function: Callable[[Values], Values]
-    is_bounded: bool
+    is_integer: bool
     maps_codes: bool
     matrix: Array | None
     sensor: Sensor
     method: str
     outside: OutsideBoxes | None = None
+    rounding: float = FLOAT_ROUNDING
 
     def __call__(self, colours: Values) -> tuple[Floats, Counts]:
         """Return linear RGB (…, 3) in [0, 1] or in boxes, and counts of the pixels that were changed.
@@ -246,21 +186,22 @@ class Decoder:
         """
         not_finite = outside = 0
         max_change = 0.0
-        if not self.is_bounded:
+        if not self.is_integer:
             colours, not_finite = self._finite(colours)
         if self.maps_codes:
             colours, outside, max_change = self._mapped(colours)
         rgb = self.function(colours)
         if self.matrix is not None:
-            rgb = without_rounding(np.asarray(rgb, dtype=float) @ self.matrix.T)
-        if self.matrix is not None or not (self.is_bounded or self.maps_codes):
+            rgb = np.asarray(rgb, dtype=float) @ self.matrix.T
+        if self.matrix is not None or not self.maps_codes:
+            rgb = without_rounding(rgb, self.rounding)
             rgb, outside, max_change = self._mapped(rgb, self.outside)
         counts = Counts(colours.size // 3, outside, not_finite, max_change=max_change)
         return rgb.astype(np.float32, copy=False), counts
 
     def _finite(self, colours: Values) -> tuple[Values, int]:
         """Return colours without NaN and infinity, and their number; with the method ``error`` they stay."""
-        if _all_inside(colours):
+        if all_inside(colours):
             return colours, 0
         finite = np.asarray(np.isfinite(colours).all(axis=-1))
         if self.method != "error":
@@ -270,7 +211,7 @@ class Decoder:
 
     def _mapped(self, colours: Values, boxes: OutsideBoxes | None = None) -> tuple[Values, int, float]:
         """Return colours in [0, 1] or in boxes, the number of those that were moved, and the largest change."""
-        if _all_inside(colours):
+        if all_inside(colours):
             return colours, 0, 0.0
         flat = colours.reshape(-1, 3)
         kept = NO_ROWS if boxes is None else boxes.find(flat).rows
@@ -280,10 +221,6 @@ class Decoder:
         mapped = map_to_gamut(flat, self.sensor, self.method)
         mapped.rgb[kept] = colours.reshape(-1, 3)[kept]
         return mapped.rgb.reshape(colours.shape), mapped.count, mapped.max_change
-
-
-def _all_inside(colours: Values) -> bool:
-    return bool(colours.size and colours.min() >= 0 and colours.max() <= 1)  # NaN fails both
 
 
 def check_encoding(encoding: str) -> None:
@@ -321,8 +258,22 @@ def make_decoder(
             code="encoded-floats-not-mapped",
             hint="their encoding ends at 0 and 1; pass out_of_gamut='clip' or encoding='linear'",
         )
+    if is_encoded and source is not None and source.to_gamut is not None:
+        raise OptionError("CIE XYZ must be linear", hint="leave out encoding='encoded'")
     function = linear_reader(sensor, part, encoding, source)
-    return Decoder(function, bool(part.max_code), is_encoded, matrix, sensor, method, outside)
+    rounding = _rounding(part, matrix)
+    return Decoder(function, bool(part.max_code), is_encoded, matrix, sensor, method, outside, rounding)
+
+
+def _rounding(part: Part, matrix: Array | None) -> float:
+    """Return linear RGB by which white of a part, converted by a matrix, can leave [0, 1] by rounding."""
+    if matrix is None:
+        return FLOAT_ROUNDING
+    if "half" not in part.types:
+        return HALF_ROUNDING
+    white = np.linalg.solve(matrix, np.ones(3))
+    largest = np.abs(matrix) @ np.abs(white)
+    return max(HALF_ROUNDING, HALF_ERROR * float(largest.max()))
 
 
 def reads_codes(part: Part, source: ImageSpace | None) -> bool:
@@ -335,7 +286,7 @@ def linear_reader(sensor: Sensor, part: Part, encoding: str, source: ImageSpace 
     to_linear = (source and source.decode) or (lambda codes: sensor.decode(255 * codes))
     if not part.max_code:
         return to_linear if encoding == "encoded" or reads_codes(part, source) else np.asarray
-    if source is not None and source.mixes_channels:
+    if source is not None and source.mixes_channels and encoding != "linear":
         return lambda codes: to_linear(codes / part.max_code)
     # A table, as channels are independent.
     share = np.repeat(np.linspace(0, 1, part.max_code + 1)[:, None], 3, axis=1)

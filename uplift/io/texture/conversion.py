@@ -12,7 +12,8 @@ from uplift.common.arrays import StrPath, Values
 from uplift.common.errors import TextureError, UpliftWarning
 from uplift.common.files import check_output, file_digest
 from uplift.common.progress import Progress, ProgressCallback, ignore_progress
-from uplift.io.texture.colours import ColourChannels, Counts, colour_channels_by_part, source_space, space_warnings
+from uplift.io.texture.channels import ColourChannels, colour_channels_by_part
+from uplift.io.texture.colours import Counts, source_space, space_warnings
 from uplift.io.texture.image import Image, Part, open_image
 from uplift.io.texture.uplifter import Converter, ConvertRows, ReadColours
 from uplift.io.texture.writer import OutputPart, Writer, open_writer

@@ -13,13 +13,14 @@ from typing import Any
 
 import numpy as np
 
+from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import StrPath, Values
 from uplift.common.errors import ColourError, TextureError, UpliftError
 from uplift.common.files import check_regular
 from uplift.common.machine import check_memory
 from uplift.common.text import pluralise
-from uplift.io.texture import exr_file, png_file
-from uplift.io.texture.colour_profile import Profile, read_profile
+from uplift.io.texture import exr_file, hdr_file, png_file, tiff_file
+from uplift.io.texture.colour_profile import Profile, read_profile, xyz_space
 
 FORMATS = ("openexr", "hdr", "png", "jpeg", "tiff")
 MAX_BAND_BYTES = 1 << 25
@@ -29,7 +30,7 @@ UINT32_SCALE = 2**32 - 1
 MAX_EXACT_INTEGER = 1 << 24
 """Integers up to this number pass through 32-bit floats."""
 UNKNOWN_PROBLEM = "the image cannot be read"
-SIGNATURES = (exr_file.MAGIC, b"#?", png_file.SIGNATURE, b"\xff\xd8", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+SIGNATURES = (exr_file.MAGIC, hdr_file.MAGIC, png_file.SIGNATURE, b"\xff\xd8", b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 """First bytes of the formats."""
 PNG_INTERLACE = 28
 """Offset of the byte that marks an interlaced PNG file, which can only be decoded in one piece."""
@@ -45,7 +46,12 @@ ENVIRONMENTS = ("LatLong Environment", "CubeFace Environment")
 """Values of ``textureformat`` that are kept: they stand for the attribute ``envmap`` of OpenEXR."""
 MAX_METADATA, MAX_METADATA_LENGTH = 100, 10_000
 """Numbers of attributes, and of their characters or numbers, that textures keep."""
+OTHER_COLOURS = {8, 9, 10, 32844, 32845}
+"""Photometric interpretations of TIFF that OpenImageIO reads as RGB: CIELAB, ICCLab, ITULab, LogL and LogLuv."""
 FORMAT_HINT = "use an EXR, HDR, PNG, JPEG or TIFF image"
+SUBSAMPLED = "ubsampled"
+"""Part of the error of OpenImageIO for channels of another resolution, such as the chroma of luminance and chroma."""
+SUBSAMPLED_HINT = "write R, G and B at full resolution"
 MEMORY_HINT = "write the image with smaller tiles or strips, or without interlacing"
 
 
@@ -89,6 +95,8 @@ class Part:
     metadata: Mapping[str, Attribute] = field(default_factory=dict)
     has_associated_alpha: bool = False
     """Whether colours next to an alpha are multiplied by it."""
+    xyz: ImageSpace | None = None
+    """Space of channels of CIE XYZ."""
 
     @property
     def max_code(self) -> int:
@@ -167,6 +175,7 @@ def open_image(path: StrPath) -> Iterator[Image]:
     import OpenImageIO
 
     path, config, handle = Path(path), OpenImageIO.ImageSpec(), None
+    header: Mapping[str, Any] = {}
     config["oiio:UnassociatedAlpha"] = 1  # keep colours as stored, not multiplied by alpha
     OpenImageIO.attribute("limits:imagesize_MB", 0)  # bands are read, which are compared with memory
     try:
@@ -174,12 +183,17 @@ def open_image(path: StrPath) -> Iterator[Image]:
         if start.startswith(exr_file.MAGIC):
             exr_file.check_size(path)
         elif start.startswith(png_file.SIGNATURE):
-            png_file.check_chunks(path)
+            header = png_file.read_chunks(path)
+        elif start.startswith(hdr_file.MAGIC):
+            header = hdr_file.read_primaries(path)
+        else:
+            header = tiff_file.read_tags(path)
         handle = OpenImageIO.ImageInput.open(utf8_name(path, TextureError), config)
         if handle is None:
             problem = read_error(OpenImageIO) or UNKNOWN_PROBLEM
-            raise TextureError(problem, code="file-unreadable", hint=FORMAT_HINT)
-        parts = tuple(_parts(handle))
+            hint = SUBSAMPLED_HINT if SUBSAMPLED in problem else FORMAT_HINT
+            raise TextureError(problem, code="file-unreadable", hint=hint)
+        parts = tuple(_parts(handle, header))
         for part in parts:
             for name in (part.name, *part.channels):
                 if not _is_text(name):
@@ -209,20 +223,22 @@ def _read_start(path: Path) -> bytes:
     return start
 
 
-def _parts(handle: Any) -> Iterator[Part]:
+def _parts(handle: Any, header: Mapping[str, Any]) -> Iterator[Part]:
     if handle.format_name() not in FORMATS:
         raise TextureError(f"unsupported image format {handle.format_name()}", hint=FORMAT_HINT)
     number = 0
     while handle.seek_subimage(number, 0):
-        yield _part(handle.spec(), number)
+        yield _part(handle.spec(), number, header)
         number += 1
         if handle.format_name() != "openexr":  # pages of a TIFF are separate images
             return
 
 
-def _part(spec: Any, number: int) -> Part:
+def _part(spec: Any, number: int, header: Mapping[str, Any]) -> Part:
     if spec.deep or spec.depth > 1:
         raise TextureError("an image must have one value per pixel", hint="flatten it")
+    if spec.get_int_attribute("tiff:PhotometricInterpretation") in OTHER_COLOURS:
+        raise TextureError("the colours of a TIFF must be RGB, grey or CMYK", hint="convert it to RGB")
     formats = spec.channelformats or (spec.format,) * spec.nchannels
     display = (spec.full_x, spec.full_y, spec.full_width, spec.full_height)
     aspect = spec.get_float_attribute("PixelAspectRatio", 1.0)
@@ -235,10 +251,11 @@ def _part(spec: Any, number: int) -> Part:
         types=tuple(map(str, formats)),
         rows_per_block=spec.tile_height or max(spec.get_int_attribute("oiio:RowsPerChunk", 1), 1),
         is_tiled=bool(spec.tile_width),
-        profile=read_profile(spec),
+        profile=read_profile(spec, header),
         date=date if _is_text(date) and date else None,
         metadata=_metadata(spec),
         has_associated_alpha=not spec.get_int_attribute("oiio:UnassociatedAlpha"),
+        xyz=xyz_space(spec),
     )
 
 

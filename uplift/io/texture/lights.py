@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from uplift.colorimetry.gamut import conversion
 from uplift.colorimetry.observer import sensor
 from uplift.colorimetry.spaces import find_space
 from uplift.common.arrays import Array, Floats, Values
 from uplift.common.errors import OptionError
 from uplift.io import exr
 from uplift.io.texture import colours, uplifter
+from uplift.io.texture.channels import BRIGHTEST, ColourChannels
 from uplift.io.texture.image import Part
 from uplift.lights.lookup import MAX_VALUE, EmissionTable
 from uplift.lights.table import emission_digest
@@ -20,8 +20,6 @@ from uplift.lookup.blocks import as_wavelengths
 
 DEPTHS = ("float", "half")
 """Types of channels, the default first."""
-BRIGHTEST = 65504.0
-"""What replaces infinity: the largest half float."""
 UNITS = "W.m^-2.sr^-1"
 """Units of emissive channels in the layout of Fichet et al. 2021."""
 
@@ -34,7 +32,7 @@ class LightUplifter(uplifter.Converter):
     wavelengths: Array
     threads: int
 
-    def colour_channels(self, found: colours.ColourChannels) -> colours.ColourChannels:
+    def colour_channels(self, found: ColourChannels) -> ColourChannels:
         # Colours stay multiplied by alpha: a spectrum scales with its light, and light needs no opacity.
         return replace(found, alpha=None)
 
@@ -44,7 +42,7 @@ class LightUplifter(uplifter.Converter):
             # A transfer function ends at 1, lights do not.
             hint = "leave out encoding='encoded', or name an encoded space"
             raise OptionError("floats of lights must be linear", hint=hint)
-        matrix = None if source is None else conversion(source.gamut, self.table)
+        matrix = None if source is None else source.matrix(self.table)
         to_linear = colours.linear_reader(self.sensor, part, self.encoding, source)
 
         def read(numbers: Values) -> tuple[Floats, colours.Counts]:

@@ -20,7 +20,8 @@ from uplift.common.errors import ColourError, OptionError, TextureError
 from uplift.common.files import file_digest
 from uplift.common.text import pluralise
 from uplift.cube import common_sensor
-from uplift.io.texture.colours import Counts, colour_channels, coloured_parts
+from uplift.io.texture.channels import colour_channels, coloured_parts
+from uplift.io.texture.colours import Counts
 from uplift.io.texture.image import Image, Part, open_image
 from uplift.io.texture.uplifter import Converted, Converter, ConvertRows, Uplifter
 from uplift.lattice.entry_boxes import OutsideBoxes
@@ -50,7 +51,7 @@ def open_mask(path: StrPath, cubes: int, window: tuple[int, int]) -> Iterator[Re
                 hint="scale the mask",
             )
         found = colour_channels(part)
-        if found is None and len(part.channels) > 1:
+        if (found is None and len(part.channels) > 1) or (found is not None and found.is_xyz):
             raise TextureError(f"no mask among the channels {', '.join(part.channels)}", hint=HINT)
         rgb = (0, 0, 0) if found is None else found.rgb
         to_weights = _interpret(image, part, rgb, cubes)

@@ -8,7 +8,8 @@ from uplift.colorimetry.sensor import Sensor
 from uplift.colorimetry.spaces import ImageSpace
 from uplift.common.arrays import Floats, StrPath, Values
 from uplift.common.errors import UpliftWarning
-from uplift.io.texture.colours import Counts, check_encoding, coloured_parts, make_decoder, space_warnings
+from uplift.io.texture.channels import coloured_parts
+from uplift.io.texture.colours import Counts, check_encoding, make_decoder, space_warnings
 from uplift.io.texture.image import Part, open_image
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from uplift.colorimetry.gamut import conversion
 from uplift.colorimetry.lights import Illuminant
 from uplift.colorimetry.observer import display_sensors
 from uplift.colorimetry.spaces import find_space
@@ -39,9 +40,9 @@ class Relighter(Converter):
     def _to_space(self, part: Part, lit: Floats) -> Floats:
         """Convert linear RGB (…, 3 L) of the sensor to the space of a part."""
         space = source_space(part, self.sensor, self.space)
-        to_sensor = None if space is None else space.matrix_to(self.sensor)
-        if to_sensor is None:
+        if space is None or space.matrix_to(self.sensor) is None:
             return lit
+        to_sensor = conversion(space.gamut, self.sensor)
         return (lit.reshape(-1, 3) @ np.linalg.inv(to_sensor).T.astype(lit.dtype)).reshape(lit.shape)
 
 

@@ -20,7 +20,8 @@ from uplift.colorimetry.spaces import ImageSpace, find_space
 from uplift.common.arrays import Array, Floats, Indices, Values
 from uplift.common.errors import OptionError
 from uplift.io import exr
-from uplift.io.texture.colours import ColourChannels, Counts, Decoder, check_encoding, make_decoder
+from uplift.io.texture.channels import ColourChannels
+from uplift.io.texture.colours import Counts, Decoder, check_encoding, make_decoder
 from uplift.io.texture.image import Image, Part
 from uplift.lattice.entry_boxes import BoxHits, OutsideBoxes
 from uplift.lookup import Cube
