@@ -179,7 +179,13 @@ class Source:
     missing: str = "refuse"
 
     def changed_options(self) -> dict[str, str]:
-        """Return the options of reading that the caller gave."""
+        """Return the options of reading that the caller gave.
+
+        Returns
+        -------
+        dict of str to str
+            ``measured`` and ``missing``, without defaults.
+        """
         options = {"measured": self.measured, "missing": self.missing}
         return {name: value for name, value in options.items() if value not in ("auto", "refuse")}
 

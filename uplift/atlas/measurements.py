@@ -105,7 +105,7 @@ def to_atlas(
         skipped += [
             SkippedEntry(each.spectrum.name, each.skipped, document.path, each.spectrum.line) for each in left_out
         ]
-    else:  # an entry says what is wrong
+    else:  # the error of an entry states what is wrong
         kept = samples
     # One scale for all spectra: a dark one alone does not show whether it is in percent.
     scale, scale_note = _scale(document.location, measurements.scales, kept, measured)

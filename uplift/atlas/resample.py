@@ -148,7 +148,7 @@ def _clip(entry: Entry, grid: Array) -> Clip | None:
 
 
 def _step(grid: Array) -> float:
-    """Return the step of a regular grid in nm; 0 for other grids, and for those that are no sampling of a spectrum."""
+    """Return the step of a regular grid in nm; 0 for wavelengths that do not sample a spectrum."""
     steps = np.diff(grid)
     is_sampling = len(steps) > 1 and np.ptp(steps) < SLACK and 0 < steps[0] <= WIDEST
     return float(steps[0]) if is_sampling else 0.0

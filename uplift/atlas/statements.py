@@ -27,7 +27,7 @@ _FRACTION = _any(
     r"\bunits? of 1\b",
 )
 _SCALED = _any(
-    "r[eé]fle[ckx]", r"\brefl\b", r"\br\b", "remission", "remittance", "albedo", r"\bunits?\b", "scale",
+    "r[eé]fl", r"\br\b", "remission", "remittance", "albedo", r"\bunits?\b", "scale",
     r"\bvalues?\b", r"\bdata\b", r"spectr", r"\by\b", r"measured in",
 )  # fmt: skip
 """What a remark on the scale is about."""
@@ -74,7 +74,7 @@ _PLAIN = frozenset(
         "factor", "spectral", "data",
     )
 )  # fmt: skip
-"""Words of labels that name no sample, besides those that begin with 'reflect'."""
+"""Words of labels without a name of a sample, next to those that begin with 'reflect'."""
 NANOMETRE, MICROMETRE, ANGSTROM, METRE = 1.0, 1e3, 0.1, 1e9
 """Lengths in nm."""
 WAVE_NUMBER = -1e7
@@ -154,7 +154,7 @@ def is_photometric(text: str) -> bool:
 
 
 def name_quantity(text: str) -> Quantity | None:
-    """Return the quantity of a row that is no sample: the deviations of the others."""
+    """Return the quantity of a row of deviations of the others, which is not a sample."""
     return Quantity("standard deviation", text) if _UNCERTAINTY.fullmatch(text) else None
 
 

@@ -29,7 +29,7 @@ PREFIXES = frozenset(
         "specex", "reflsci", "reflsce", "t", "%t", "t%", "tnm", "τ",
     )
 )  # fmt: skip
-"""What labels of wavelengths begin with, in lower case and without blanks, besides the names of quantities."""
+"""What labels of wavelengths begin with, in lower case and without blanks, next to the names of quantities."""
 
 
 class Cell(NamedTuple):
