@@ -141,5 +141,5 @@ def covers_visible(nm: Array) -> bool:
 
 
 def is_visible(nm: Array) -> bool:
-    """Whether numbers are wavelengths in nm that cover the visible range, and not wavelengths beside their values."""
+    """Whether numbers are wavelengths in nm that cover the visible range, and not wavelengths next to their values."""
     return bool(nm.min() >= SHORTEST) and covers_visible(nm)

@@ -168,7 +168,7 @@ class Block:
         return tuple(_cell(row, column) for row in self.rows)
 
     def _is_head(self, row: Row) -> bool:
-        """Whether a row has labels: those of columns of text, or of numbers beside a label of wavelengths."""
+        """Whether a row has labels: those of columns of text, or of numbers next to a label of wavelengths."""
         if not self.column < len(row) <= self.width or row[self.column].text.endswith(":"):
             return False
         corner = row[self.column].text
@@ -450,6 +450,6 @@ def _no_table(grid: Grid) -> AtlasError:
                 hint = "add the missing wavelengths, or state their unit in a label, such as 'Wavelength (µm)'"
                 return grid.location.at(cells[run.first].line).error(problem, hint)
     first = grid.rows[0]
-    seen = f"a table whose first line has {pluralise(len(first), 'cell')}, '{truncate(line_texts([first])[0])}'"
-    problem = f"{NO_TABLE}: read as {seen}"
+    layout = f"a table whose first line has {pluralise(len(first), 'cell')}, '{truncate(line_texts([first])[0])}'"
+    problem = f"{NO_TABLE}: read as {layout}"
     return grid.location.at(first[0].line).error(problem, LAYOUT, code="not-an-atlas")

@@ -37,11 +37,11 @@ def read(document: Document) -> Measurements:
     numbers = [row for row in rows if is_value(row[0].text)]
     if len(numbers) > 1 and max(map(len, numbers)) == 1:
         title = next((text for text in line_texts(rows) if not is_value(text)), document.stem)
-        rows = _beside_wavelengths(document, title, numbers)
+        rows = _with_wavelengths(document, title, numbers)
     return read_grid(Grid(rows, document.location, comments), document.stem)
 
 
-def _beside_wavelengths(document: Document, title: str, values: Sequence[Row]) -> list[Row]:
+def _with_wavelengths(document: Document, title: str, values: Sequence[Row]) -> list[Row]:
     """Join values, one a line, with the wavelengths of another file, as the library of the USGS has them."""
     found = list[list[Row]]()
     for path in sorted(Path(document.path).parent.glob(WAVELENGTHS)):
