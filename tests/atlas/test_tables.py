@@ -66,7 +66,7 @@ def test_a_stated_percentage_wins_over_small_values(save, text):
         (HEADER + row("a").replace("0.", "1."), "scale-not-stated"),
     ],
 )
-def test_contradictions_and_doubts_are_asked_about(save, text, code):
+def test_contradictions_and_doubts_are_refused(save, text, code):
     with raises(AtlasError, code) as caught:
         read_atlas(save(text))
     assert "measured=" in caught.value.hint

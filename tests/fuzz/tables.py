@@ -68,13 +68,13 @@ CHOICES = {
 
 
 def is_possible(writing: Writing) -> bool:
-    """Whether programs write such tables, and the reader can know what is meant."""
+    """Whether programs write such tables, and the reader can know it."""
     if writing.decimal == writing.separator:
         return False
     if writing.separator == " " and writing.mark == "":
         return False  # a gap
     if writing.scale == "percent" and writing.values == "dark":
-        return False  # nobody can know
+        return False  # nothing in the file tells
     if writing.layout != "columns" and writing.head != "names":
         return False
     if writing.head == "none" and writing.scale == "percent in label":
@@ -129,7 +129,7 @@ def write(writing: Writing, reflectances: dict[str, np.ndarray], generator: np.r
     end = writing.separator * 3 if writing.ending == "trailing separators" else ""
     lines += [writing.separator.join(row) + end for row in table]
     if writing.ending == "footer":
-        lines += ["", "End of data", "Checked by: nobody"]
+        lines += ["", "End of data", "Checked by: A. Person"]
     if writing.ending == "blank lines":
         lines = list(itertools.chain.from_iterable((line, "") for line in lines))
     text = "\n".join(lines) + "\n"

@@ -110,7 +110,6 @@ def to_atlas(
     # One scale for all spectra: a dark one alone does not show whether it is in percent.
     scale, scale_note = _scale(document.location, measurements.scales, kept, measured)
     entries = [_entry(each, scale, document) for each in kept]
-    _warn_of_odd(entries)
     counts = Counter(note for each in kept for note in each.notes)
     changes = [f"{count} of {pluralise(len(entries), 'entry')}: {note}" for note, count in counts.items()]
     notes = (*measurements.notes, *changes, scale_note) if entries else ()
@@ -188,7 +187,7 @@ def _entry(samples: Samples, scale: float, document: Document) -> Entry:
     return Entry(spectrum.name, nm, scaled, path=document.path, **stated)
 
 
-def _warn_of_odd(entries: Sequence[Entry]) -> None:
+def warn_of_odd(entries: Sequence[Entry]) -> None:
     """Warn of values that are ten times both neighbours, or a tenth."""
     for entry in entries:
         values = np.maximum(entry.values, FLOOR / PERCENT)
@@ -199,7 +198,7 @@ def _warn_of_odd(entries: Sequence[Entry]) -> None:
         for at in np.flatnonzero((above | below) & is_near & (np.maximum(value, before) > FLOOR))[:1] + 1:
             problem = f"{entry.values[at]:g} at {entry.wavelengths[at]:g} nm is far from both of its neighbours"
             warning = UpliftWarning(problem, code="odd-value", path=entry.path, line=entry.line, entry=entry.name)
-            warnings.warn(warning, stacklevel=4)
+            warnings.warn(warning, stacklevel=3)
 
 
 def is_missing(values: ArrayLike) -> Mask:

@@ -16,7 +16,7 @@ import numpy as np
 from uplift.atlas.atlas import Atlas, Entry, Header, Source, merge, skipped_warning
 from uplift.atlas.document import Document, SourceLocation, read_document
 from uplift.atlas.formats import art, read_any
-from uplift.atlas.measurements import MEASURED, MISSING, Measured, Missing, to_atlas
+from uplift.atlas.measurements import MEASURED, MISSING, Measured, Missing, to_atlas, warn_of_odd
 from uplift.common.arrays import StrPath
 from uplift.common.errors import OutputError, UpliftWarning, unknown_name
 from uplift.common.files import write_text
@@ -59,8 +59,8 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto", missing: Missing = 
     Warns
     -----
     UpliftWarning
-        Entries were skipped (``entry-skipped``), a table was read as percent (``values-in-percent``), or a shipped
-        atlas replaces a missing file (``shipped-atlas``); the name ``macbeth`` without a suffix gives no warning.
+        Entries were skipped (``entry-skipped``), a table was read as percent (``values-in-percent``), is in percent without
+        a value above 1 (``dark-percent``), a value is far from its neighbours (``odd-value``), or a shipped atlas replaces a missing file (``shipped-atlas``); the name ``macbeth`` without a suffix gives no warning.
 
     Examples
     --------
@@ -78,6 +78,7 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto", missing: Missing = 
         chosen, found = read_any(document)
         atlases.append(found if isinstance(found, Atlas) else to_atlas(document, found, chosen.name, measured, missing))
     atlas = merge(atlases)
+    warn_of_odd(atlas.entries)
     if atlas.skipped:
         warnings.warn(skipped_warning(atlas.skipped, code="entry-skipped"), stacklevel=2)
     return atlas

@@ -39,16 +39,7 @@ _UNSCALED = _any(
 _ONLY_SCALE = _any(r"\W*(?:in |as )?(?:%|percent(?:age)?|per cent|pct|fractions?)\W*")
 
 _REFLECTANCE = _any(
-    "r[eé]fle[ck]t",
-    "reflexion",
-    "remission",
-    "remittance",
-    "albedo",
-    r"\br-factor",
-    r"\brefl\b",
-    r"\brfl\b",
-    r"%r\b",
-    r"\br ?[\[(]?%",
+    "r[eé]fl", "remission", "remittance", "albedo", r"\br-factor", r"\brefl\b", r"\brfl\b", r"%r\b", r"\br ?[\[(]?%"
 )
 _MATERIAL = _any(
     "transmi(?:ttance|ssion|ssive|ssivity)", "absor(?:bance|ptance|ption|ptivity)", "extinction", "optical density",
