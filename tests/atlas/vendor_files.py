@@ -50,7 +50,7 @@ class Vendor:
 
     ``count`` spectra fit into it, ``percent`` is not stated, ``skipped`` columns are of other quantities. Samples of
     libraries of ENVI are numbers of a type, each eighth decimal a unit, in a file of their own. Those of the USGS are
-    beside a file of ``wavelengths``.
+    next to a file of ``wavelengths``.
     """
 
     format: str

@@ -74,7 +74,7 @@ def is_possible(writing: Writing) -> bool:
     if writing.separator == " " and writing.mark == "":
         return False  # a gap
     if writing.scale == "percent" and writing.values == "dark":
-        return False  # nothing in the file tells
+        return False  # the file does not state it
     if writing.layout != "columns" and writing.head != "names":
         return False
     if writing.head == "none" and writing.scale == "percent in label":

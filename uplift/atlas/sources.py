@@ -59,8 +59,9 @@ def read_atlas(*paths: StrPath, measured: Measured = "auto", missing: Missing = 
     Warns
     -----
     UpliftWarning
-        Entries were skipped (``entry-skipped``), a table was read as percent (``values-in-percent``), is in percent without
-        a value above 1 (``dark-percent``), a value is far from its neighbours (``odd-value``), or a shipped atlas replaces a missing file (``shipped-atlas``); the name ``macbeth`` without a suffix gives no warning.
+        Entries were skipped (``entry-skipped``), a table was read as percent (``values-in-percent``), a file in percent
+        has no value above 1 (``dark-percent``), a value is far from its neighbours (``odd-value``), or a shipped atlas
+        replaces a missing file (``shipped-atlas``); the name ``macbeth`` without a suffix gives no warning.
 
     Examples
     --------
