@@ -256,9 +256,11 @@ def test_pairs_on_a_line_are_one_spectrum(save):
     check_values(atlas)
 
 
-def test_a_second_table_is_named(save):
-    notes = read_atlas(save("nm R\n" + lines("{:g} {:g}") + "\nnm R\n" + lines("{:g} {:g}"))).sources[0].notes
-    assert any("line 25" in note for note in notes)
+def test_a_second_table_is_skipped_by_name(save):
+    with warns("entry-skipped"):
+        atlas = read_atlas(save("nm R\n" + lines("{:g} {:g}") + "\nnm R\n" + lines("{:g} {:g}")))
+    assert [entry.line for entry in atlas.skipped] == [25]
+    check_values(atlas)
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uplift.atlas.atlas import SkippedEntry
 from uplift.atlas.document import SourceLocation, truncate
 from uplift.atlas.formats.cells import (
     SHORTEST,
@@ -84,6 +85,7 @@ class Table:
     series: Sequence[Series]
     remarks: Sequence[str]
     notes: tuple[str, ...]
+    skipped: tuple[SkippedEntry, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -197,7 +199,11 @@ def read_grid(grid: Grid, stem: str) -> Measurements:
         spectra.append(Spectrum(name.text, series.nm, values, line=name.line, quantity=quantity))
     stated = [scale for scale in scales if scale is not None]
     return Measurements(
-        tuple(spectra), scales=tuple(stated), notes=table.notes, quantity=remark_quantity(table.remarks)
+        tuple(spectra),
+        skipped=table.skipped,
+        scales=tuple(stated),
+        notes=table.notes,
+        quantity=remark_quantity(table.remarks),
     )
 
 
@@ -368,9 +374,12 @@ def _blocks(grid: Grid) -> Iterator[Block]:
 def _tall(block: Block) -> Table:
     """Return a spectrum for each column of values of a block."""
     notes = ["layout: wavelength and value" if block.width == 2 else "layout: a column per spectrum"]
+    skipped = list[SkippedEntry]()
     for other in _blocks(block.grid):
         if other.column == block.column and other.run != block.run:
-            notes.append(f"not used: the table from line {other.rows[0][0].line} on")
+            line = other.rows[0][0].line
+            reason = "it is a table of its own: write it to another file"
+            skipped.append(SkippedEntry(f"lines from {line} on", reason, block.grid.location.path, line))
     axes = _axes(block)
     if pairs := _pairs(block, axes):
         return Table([pairs], block.remarks, ("layout: several pairs a line",))
@@ -401,7 +410,7 @@ def _tall(block: Block) -> Table:
         series.append(Series(label, axes[axis][known].tolist(), tuple(cells[row] for row in known), name))
     if not series:
         raise _no_table(block.grid)
-    return Table(series, block.remarks, (*notes, *not_used_note(unused)))
+    return Table(series, block.remarks, (*notes, *not_used_note(unused)), tuple(skipped))
 
 
 def _axes(block: Block) -> dict[int, Array]:
