@@ -37,8 +37,5 @@ def main() -> None:
         row = {"name": each.name, "suffixes": ", ".join(each.suffixes), "written": each.written}
         row |= {"library": each.library or UPLIFT, "extra": each.extra}
         rows.append(row | {"layouts": len(names) or "the shipped atlases", "difference": largest})
-    programs = [
-        {"program": vendor.program, "format": vendor.format, "sample": f"tests/atlas/layouts/{vendor.template}"}
-        for vendor in VENDORS
-    ]
+    programs = [{"program": vendor.program, "format": vendor.format, "sample": vendor.template} for vendor in VENDORS]
     record("atlas-files", layouts=len(found), largest=max(found.values()), formats=rows, programs=programs)
