@@ -116,8 +116,6 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
     -------
     Resampled
     """
-    from scipy.interpolate import PchipInterpolator
-
     grid = np.asarray(wavelengths, dtype=np.float64)
     entries = atlas.entries
     alike = defaultdict[bytes, list[int]](list)
@@ -127,12 +125,7 @@ def resample(atlas: Atlas, wavelengths: ArrayLike) -> Resampled:
     for rows in alike.values():
         nm = entries[rows[0]].wavelengths
         values = np.stack([entries[row].values for row in rows])
-        curve = PchipInterpolator(nm, values, axis=1)
-        step = _step(grid)
-        if step and np.median(np.diff(nm)) < step - SLACK:
-            raw[rows] = (_integral(curve, grid + step / 2) - _integral(curve, grid - step / 2)) / step
-        else:
-            raw[rows] = curve(np.clip(grid, nm[0], nm[-1]))
+        raw[rows] = values if np.array_equal(nm, grid) else _interpolate(nm, values, grid)
     clips = [clip for entry in entries if (clip := _clip(entry, grid))]
     return Resampled(np.clip(raw, 0.0, 1.0), tuple(clips))
 
@@ -152,6 +145,17 @@ def _step(grid: Array) -> float:
     steps = np.diff(grid)
     is_sampling = len(steps) > 1 and np.ptp(steps) < SLACK and 0 < steps[0] <= WIDEST
     return float(steps[0]) if is_sampling else 0.0
+
+
+def _interpolate(nm: Array, values: Array, grid: Array) -> Array:
+    """Resample values (E, n) at wavelengths (n,) to a grid (N,): averages over its bands if they are finer."""
+    from scipy.interpolate import PchipInterpolator  # takes as long to import as a small build
+
+    curve = PchipInterpolator(nm, values, axis=1)
+    step = _step(grid)
+    if step and np.median(np.diff(nm)) < step - SLACK:
+        return (_integral(curve, grid + step / 2) - _integral(curve, grid - step / 2)) / step
+    return np.asarray(curve(np.clip(grid, nm[0], nm[-1])))
 
 
 def _integral(curve: Any, ends: Array) -> Array:
