@@ -58,8 +58,6 @@ MAX_HEADS = 4
 """Rows of labels above columns."""
 MAX_AXIS = 3
 """Columns among which that of the wavelengths is searched."""
-ALIKE = 0.1
-"""Relative difference between the ranges of columns of wavelengths without labels."""
 EQUAL = 1e-6
 """Tolerance in nm of equal steps."""
 NAME_LABELS = (
@@ -381,7 +379,7 @@ def _tall(block: Block) -> Table:
             reason = "it is a table of its own: write it to another file"
             skipped.append(SkippedEntry(f"lines from {line} on", reason, block.grid.location.path, line))
     axes = _axes(block)
-    if pairs := _pairs(block, axes):
+    if pairs := _pairs(block):
         return Table([pairs], block.remarks, ("layout: several pairs a line",))
     series, unused = list[Series](), list[str]()
     axis = block.column
@@ -418,32 +416,26 @@ def _axes(block: Block) -> dict[int, Array]:
     axes = {block.column: block.nm}
     own_labels = [cell.text for cell in block.labels(block.column)]
     for column in range(block.column + 1, block.width):
-        texts = [cell.text for cell in block.labels(column)]
-        numbers = np.array([parse_cell(cell.text) for cell in block.cells(column)], dtype=float)
-        known = numbers[np.isfinite(numbers)]
-        if len(known) < 2 or (block.heads and texts != own_labels and not any(map(names_wavelengths, texts))):
-            continue
-        unit = find_unit(" ".join(texts)) or block.unit
-        nm = to_nm(numbers, unit)
-        ends = np.array([[block.nm.min(), block.nm.max()], [np.nanmin(nm), np.nanmax(nm)]])
-        is_alike = np.allclose(ends[0], ends[1], rtol=ALIKE)
-        if np.nanmin(nm) >= SHORTEST and (block.heads or is_alike):
-            axes[column] = nm
+        labels = [cell.text for cell in block.labels(column)]
+        if labels and (labels == own_labels or any(map(names_wavelengths, labels))):
+            numbers = np.array([parse_cell(cell.text) for cell in block.cells(column)], dtype=float)
+            nm = to_nm(numbers, find_unit(" ".join(labels)) or block.unit)
+            if (nm >= SHORTEST).any():
+                axes[column] = nm
     return axes
 
 
-def _pairs(block: Block, axes: dict[int, Array]) -> Series | None:
+def _pairs(block: Block) -> Series | None:
     """Return the spectrum whose wavelengths go on from pair to pair in equal steps, and then to the next line."""
     labels = [cell.text for head in block.heads for cell in head]
     is_labelled = not all(is_plain(label) or names_wavelengths(label) for label in labels)
-    if len(axes) < 2 or list(axes) != [*range(0, block.width, 2)] or is_labelled:
+    wavelengths = [parse_label(cell.text) for row in block.rows for cell in row[::2]]
+    cells = tuple(cell for row in block.rows for cell in row[1::2])
+    numbers = [label.number for label in wavelengths if label is not None]
+    if block.width < 4 or is_labelled or not len(numbers) == len(wavelengths) == len(cells):
         return None
-    nm = np.stack([*axes.values()], axis=1).ravel()
-    nm = nm[np.isfinite(nm)]
-    if np.ptp(np.diff(nm)) > EQUAL:
-        return None
-    cells = [cell for row in block.rows for cell in row[1::2]]
-    return Series("", nm.tolist(), tuple(cells), None) if len(cells) == len(nm) else None
+    nm = to_nm(numbers, block.unit)
+    return None if np.ptp(np.diff(nm)) > EQUAL else Series("", nm.tolist(), cells, None)
 
 
 def _no_table(grid: Grid) -> AtlasError:
