@@ -376,7 +376,7 @@ def _tall(block: Block) -> Table:
     for other in _blocks(block.grid):
         if other.column == block.column and other.run != block.run:
             line = other.rows[0][0].line
-            reason = "it is a table of its own: write it to another file"
+            reason = "a file has one table: write it to another file"
             skipped.append(SkippedEntry(f"lines from {line} on", reason, block.grid.location.path, line))
     axes = _axes(block)
     if pairs := _pairs(block):
