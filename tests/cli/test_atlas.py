@@ -74,3 +74,25 @@ def test_shipped_atlases_are_listed_without_a_file(run, ask):
         assert all(value == str(atlas[key]) for key, value in row.items())
         assert all(value in " ".join(text.split()) for value in row.values())
         assert "https://opensource.org/licenses/BSD-3-Clause" in text  # not broken between lines
+
+
+GAPS = "name,400,500,600,700\nochre,0.1,,0.5,0.6\number,0.1,0.2,0.3,0.3\n"
+
+
+def test_missing_values_are_refused_filled_or_skipped_and_a_build_is_repeated(run, ask, refuse, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("gaps.csv").write_text(GAPS)
+    assert refuse("atlas", "gaps.csv").code == "missing-value"
+    filled = ask("atlas", "gaps.csv", "--missing", "interpolate")
+    assert [entry["name"] for entry in filled["entries"]] == ["ochre", "umber"]
+    assert filled["sources"][0]["missing"] == "interpolate"
+    assert [entry["name"] for entry in ask("atlas", "gaps.csv", "--missing", "skip")["skipped"]] == ["ochre"]
+    built = run("build", "--atlas", "gaps.csv", "--missing", "interpolate", "--dim", 3, "-o", "gaps.uplift")
+    assert "assumed" in built.stdout  # the scale
+    run("check", "gaps.uplift")
+
+
+def test_what_a_build_will_clip_is_printed_when_an_atlas_is_written(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("white.csv").write_text("name,400,500,600,700\nwhite,0.9,1.02,0.9,0.9\n")
+    assert "1.02 at 500 nm" in run("atlas", "white.csv", "-o", "white.txt").stderr
