@@ -43,7 +43,7 @@ _REFLECTANCE = _any(
 )
 _MATERIAL = _any(
     "transmi(?:ttance|ssion|ssive|ssivity)", "absor(?:bance|ptance|ption|ptivity)", "extinction", "optical density",
-    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", r"\bst(?:d|andard)?[ .]*dev", r"\bstd\b", "uncertaint",
+    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", r"\bst(?:d|andard)?[ .]*dev", r"r[eé]fl.*\bstd\b", "uncertaint",
     r"log ?\(? ?1/r",
 )  # fmt: skip
 _LIGHT = _any(
@@ -57,7 +57,7 @@ _ABSORBANCE = _any(r"\W*(?:abs|od)\W*\d*\W*")
 _KEYS = "lux|lx|fc|foot-?candles?|cct|tcp|duv|cri|ra|ppfd|tlci|lumens?|lm|colou?r temperature"
 _PHOTOMETRIC = _any(rf"\W*(?:{_KEYS}) ?(?:[([][^)\]]*[)\]])? ?[:=,;]? ?(?:[+-]?[\d.,]+ ?\w*)?\W*")
 """A key of light meters, perhaps with its value."""
-_UNCERTAINTY = _any(r"\W*(?:standard deviation|st(?:d|andard)?\.? ?dev(?:iation|\.)?|std|sd|σ|uncertainty)\W*")
+_UNCERTAINTY = _any(r"\W*(?:standard deviation|st(?:d|andard)?\.? ?dev(?:iation|\.)?|σ|uncertainty)\W*")
 
 _PLAIN = frozenset(
     (
