@@ -82,6 +82,8 @@ def test_scales_of_remarks(text, expected):
         ("mW m^-2 nm^-1", "mw m^-2", True),
         ("ochre", None, False),
         ("Std", None, False),
+        ("T1", None, False),
+        ("T12 blue", None, False),
         ("STD Blue", None, False),
         ("Std. Dev.", "std. dev", False),
         ("Reflectance std", "reflectance std", False),

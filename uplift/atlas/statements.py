@@ -43,15 +43,15 @@ _REFLECTANCE = _any(
 )
 _MATERIAL = _any(
     "transmi(?:ttance|ssion|ssive|ssivity)", "absor(?:bance|ptance|ption|ptivity)", "extinction", "optical density",
-    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", r"\bst(?:d|andard)?[ .]*dev", r"r[eé]fl.*\bstd\b", "uncertaint",
-    r"log ?\(? ?1/r",
+    r"\bk/s\b", "emissivity", "t-factor", "fluorescence", r"\bst(?:d|andard)?[ .]*dev", r"r[eé]fl.*\bstd\b",
+    "uncertaint", r"log ?\(? ?1/r",
 )  # fmt: skip
 _LIGHT = _any(
     "irradiance", "radiance", "radiant", r"\brad\b", "exitance", "emissi(?:on|ve)", "emittance", "illuminance",
     "luminance(?! factor)", "luminous (?:flux|intensity)", r"\bspd\b", "(?:spectral|relative) power",
     "(?:spectral|photon) flux", r"\bcounts?\b(?!\W*\d)", r"[µμumn]?w ?[/·* ] ?\(?[cm]?m ?\^?(?:[²2]|-2|⁻²)", r"\bcd/m",
 )  # fmt: skip
-_TRANSMITTANCE = _any(r"\W*(?:%?\W*t\W*%\W*|%\W*t|t\d.*|trans|t ?nm.*|τ.*)\W*")
+_TRANSMITTANCE = _any(r"\W*(?:%?\W*t\W*%\W*|%\W*t|t ?\d{3,4}(?:\D.*)?|trans|t ?nm.*|τ.*)\W*")
 _ABSORBANCE = _any(r"\W*(?:abs|od)\W*\d*\W*")
 """Short labels of other quantities."""
 _KEYS = "lux|lx|fc|foot-?candles?|cct|tcp|duv|cri|ra|ppfd|tlci|lumens?|lm|colou?r temperature"
