@@ -8,9 +8,10 @@ from dataclasses import replace
 from typing import Any
 
 from uplift.atlas.document import Document, one_line
-from uplift.atlas.formats.cells import Cell, Row, trimmed
-from uplift.atlas.formats.grid import NO_TABLE, Grid, read_grid
 from uplift.atlas.measurements import Measurements, parsed_by
+from uplift.atlas.tables.cells import Cell, Row, trimmed
+from uplift.atlas.tables.grid import Grid
+from uplift.atlas.tables.read import NO_TABLE, read_grid
 from uplift.common.csv import plain_cell
 from uplift.common.errors import AtlasError
 

@@ -10,9 +10,10 @@ import numpy as np
 
 from uplift.atlas.atlas import Atlas
 from uplift.atlas.document import Document, read_document
-from uplift.atlas.formats.cells import Cell, Row, is_value, line_texts, trimmed
-from uplift.atlas.formats.grid import LAYOUT, Grid, read_grid
 from uplift.atlas.measurements import Measurements
+from uplift.atlas.tables.cells import Cell, Row, is_value, line_texts, trimmed
+from uplift.atlas.tables.grid import LAYOUT, Grid
+from uplift.atlas.tables.read import read_grid
 from uplift.common.csv import csv_text, find_delimiter, plain_cell
 from uplift.common.errors import OutputError
 from uplift.common.text import pluralise

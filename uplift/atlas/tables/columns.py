@@ -1,0 +1,165 @@
+"""Spectra in columns: a column of wavelengths with a column per spectrum, one before each, or pairs on a line."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from uplift.atlas.atlas import SkippedEntry
+from uplift.atlas.measurements import not_used_note
+from uplift.atlas.statements import NANOMETRE, find_unit, is_plain, names_wavelengths, to_nm, unit_by_values
+from uplift.atlas.tables.cells import SHORTEST, Cell, Row, Run, is_value, is_visible, parse_cell, parse_label, runs
+from uplift.atlas.tables.grid import MAX_AXIS, Grid, Series, Table, cell_at
+from uplift.common.arrays import Array
+
+MAX_HEADS = 4
+"""Rows of labels above columns."""
+EQUAL = 1e-6
+"""Tolerance in nm of equal steps."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """Neighbouring rows with wavelengths in one column, and the rows of labels above them."""
+
+    grid: Grid
+    run: Run
+    column: int
+
+    @cached_property
+    def rows(self) -> Sequence[Row]:
+        """Rows of numbers."""
+        return self.grid.rows[self.run.first : self.run.last]
+
+    @cached_property
+    def width(self) -> int:
+        """Cells of the widest row."""
+        return max(map(len, self.rows))
+
+    @cached_property
+    def heads(self) -> Sequence[Row]:
+        """Rows of labels, from top to bottom."""
+        first = last = self.run.first
+        while last - first < MAX_HEADS and first and self._is_head(self.grid.rows[first - 1]):
+            first -= 1
+        return self.grid.rows[first:last]
+
+    @cached_property
+    def remarks(self) -> list[str]:
+        """Lines of text around the block."""
+        return self.grid.remarks(self.run.first - len(self.heads), self.run.last)
+
+    @cached_property
+    def unit(self) -> float:
+        """Unit of the wavelengths, see `find_unit`."""
+        label = " ".join(cell.text for cell in self.labels(self.column))
+        stated = self.run.unit or find_unit(label)
+        if stated is not None:
+            return stated
+        # The lines around may be about another range.
+        if self.grid.unit is not None and is_visible(to_nm(self.run.numbers, self.grid.unit)):
+            return self.grid.unit
+        if names_wavelengths(label):  # in any order
+            return unit_by_values(np.unique(self.run.numbers))
+        return unit_by_values(self.run.numbers) if self.column == 0 else NANOMETRE
+
+    @cached_property
+    def nm(self) -> Array:
+        """Wavelengths in nm."""
+        return to_nm(self.run.numbers, self.unit)
+
+    def labels(self, column: int) -> list[Cell]:
+        """Return the labels above a column, from top to bottom."""
+        return [cell for row in self.heads for cell in row[column : column + 1] if cell.text]
+
+    def cells(self, column: int) -> Row:
+        """Return a column; the ends of short rows are empty."""
+        return tuple(cell_at(row, column) for row in self.rows)
+
+    def _is_head(self, row: Row) -> bool:
+        """Whether a row has labels: those of columns of text, or of numbers next to a label of wavelengths."""
+        if not self.column < len(row) <= self.width or row[self.column].text.endswith(":"):
+            return False
+        corner = row[self.column].text
+        labels = [cell.text for cell in row if cell.text and cell is not row[self.column]]
+        has_numbers = any(map(is_value, labels))
+        if names_wavelengths(corner):
+            return bool(labels) or len(corner.split()) == 1
+        return bool(labels) and (not has_numbers or not corner)
+
+
+def blocks(grid: Grid) -> Iterator[Block]:
+    """Yield the blocks of rows that begin with wavelengths in the visible range."""
+    for column in range(MAX_AXIS):
+        for run in runs(grid.column(column)):
+            block = Block(grid, run, column)
+            if is_visible(block.nm) and block.width > column + 1:
+                yield block
+
+
+def spectra_of(block: Block) -> Table:
+    """Return a spectrum for each column of values of a block."""
+    notes = ["layout: wavelength and value" if block.width == 2 else "layout: a column per spectrum"]
+    skipped = list[SkippedEntry]()
+    for other in blocks(block.grid):
+        if other.column == block.column and other.run != block.run:
+            line = other.rows[0][0].line
+            reason = "a file has one table: write it to another file"
+            skipped.append(SkippedEntry(f"lines from {line} on", reason, block.grid.location.path, line))
+    axes = _axes(block)
+    if pairs := _pairs(block):
+        return Table([pairs], block.remarks, ("layout: several pairs a line",))
+    series, unused = list[Series](), list[str]()
+    axis = block.column
+    prefix = block.rows[0][axis].text if block.run.prefix else ""
+    for column in range(block.width):
+        if column in axes:
+            # Of neighbouring columns of wavelengths the first one counts: others repeat it in other units.
+            axis = axis if column - 1 in axes else column
+            continue
+        cells = block.cells(column)
+        labels = block.labels(column)
+        label = " ".join([prefix, *(cell.text for cell in labels)]).strip()
+        if column < block.column or not any(is_value(cell.text) for cell in cells):
+            unused.append(label)
+            continue
+        if axis != block.column:  # the name may stand above the wavelengths
+            labels = [cell for cell in block.labels(axis) if not names_wavelengths(cell.text)] + labels
+        # Names stand next to the values, or above their quantity and unit.
+        if block.heads and not labels:
+            problem = f"column {column + 1} has values and no label"
+            hint = "label it, and use another separator than the decimal comma"
+            raise block.grid.location.at(cells[0].line).error(problem, hint)
+        names = [cell for cell in reversed(labels) if not is_plain(cell.text)]
+        name = next((cell for cell in names if len(cell.text) > 1), next(iter(names), None))
+        known = np.flatnonzero(np.isfinite(axes[axis])).tolist()
+        series.append(Series(label, axes[axis][known].tolist(), tuple(cells[row] for row in known), name))
+    return Table(series, block.remarks, (*notes, *not_used_note(unused)), tuple(skipped))
+
+
+def _axes(block: Block) -> dict[int, Array]:
+    """Return the wavelengths in nm of each column that has them, NaN where a cell is empty."""
+    axes = {block.column: block.nm}
+    own_labels = [cell.text for cell in block.labels(block.column)]
+    for column in range(block.column + 1, block.width):
+        labels = [cell.text for cell in block.labels(column)]
+        if labels and (labels == own_labels or any(map(names_wavelengths, labels))):
+            numbers = np.array([parse_cell(cell.text) for cell in block.cells(column)], dtype=float)
+            nm = to_nm(numbers, find_unit(" ".join(labels)) or block.unit)
+            if (nm >= SHORTEST).any():
+                axes[column] = nm
+    return axes
+
+
+def _pairs(block: Block) -> Series | None:
+    """Return the spectrum whose wavelengths go on from pair to pair in equal steps, and then to the next line."""
+    labels = [cell.text for head in block.heads for cell in head]
+    is_labelled = not all(is_plain(label) or names_wavelengths(label) for label in labels)
+    wavelengths = [parse_label(cell.text) for row in block.rows for cell in row[::2]]
+    cells = tuple(cell for row in block.rows for cell in row[1::2])
+    numbers = [label.number for label in wavelengths if label is not None]
+    if block.width < 4 or is_labelled or not len(numbers) == len(wavelengths) == len(cells):
+        return None
+    nm = to_nm(numbers, block.unit)
+    return None if np.ptp(np.diff(nm)) > EQUAL else Series("", nm.tolist(), cells, None)

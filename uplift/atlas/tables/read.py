@@ -1,0 +1,108 @@
+"""Spectra of a grid of cells.
+
+Wavelengths lie in a row, with a row per spectrum below; in a column, with a column per spectrum; or in a column before
+each spectrum. All else is text: preamble, comments, lines below. It states scale, quantity and unit.
+"""
+
+from uplift.atlas.document import SourceLocation, truncate
+from uplift.atlas.measurements import Measurements, Spectrum, is_missing
+from uplift.atlas.statements import (
+    NANOMETRE,
+    PERCENT,
+    Scale,
+    label_quantity,
+    label_scale,
+    name_quantity,
+    remark_quantity,
+    remark_scale,
+    to_nm,
+)
+from uplift.atlas.tables.cells import SHORTEST, Cell, Row, line_texts, parse_cell, runs
+from uplift.atlas.tables.columns import blocks, spectra_of
+from uplift.atlas.tables.grid import LAYOUT, MAX_AXIS, MAX_PREAMBLE, NAME_LABELS, Grid, Table, plain_label
+from uplift.atlas.tables.rows import find_samples, headers, spectra_below
+from uplift.common.errors import AtlasError
+from uplift.common.text import pluralise
+
+NO_TABLE = "neither an atlas text (no 'Entry ID') nor a table of reflectances"
+
+
+def read_grid(grid: Grid, stem: str) -> Measurements:
+    """Read the spectra of a grid. One without a name has that of the file, ``stem``."""
+    table = find_samples(grid) or _rows_or_columns(grid)
+    if not table.series:
+        raise _no_table(grid)
+    scales = [remark_scale(text) for text in table.remarks]
+    nameless = [series for series in table.series if series.name is None]
+    spectra = list[Spectrum]()
+    for series in table.series:
+        first = series.cells[0]
+        name = series.name or Cell(stem if len(nameless) == 1 else series.label, first.line)
+        quantity = label_quantity(series.label) or name_quantity(name.text)
+        if not name.text and series.name is None:
+            raise grid.location.at(first.line).error("the header row is missing", LAYOUT)
+        values, percent = _values(series.cells, grid.location.at(entry=name.text))
+        if quantity is None or quantity.is_reflectance:
+            scales += [label_scale(series.label), remark_scale(name.text), percent]
+        spectra.append(Spectrum(name.text, series.nm, values, line=name.line, quantity=quantity))
+    stated = [scale for scale in scales if scale is not None]
+    return Measurements(
+        tuple(spectra),
+        skipped=table.skipped,
+        scales=tuple(stated),
+        notes=table.notes,
+        quantity=remark_quantity(table.remarks),
+    )
+
+
+def _values(cells: Row, location: SourceLocation) -> tuple[list[float], Scale | None]:
+    """Parse the values of a spectrum, NaN where one is missing, and the scale that percent signs in cells state."""
+    values = list[float]()
+    percents = [cell.text for cell in cells if cell.text.endswith("%")]
+    for cell in cells:
+        value = parse_cell(cell.text)
+        if value is None:
+            problem = f"value '{truncate(cell.text)}' is not a number"
+            raise location.at(cell.line).error(problem, "write a plain number such as 0.125")
+        values.append(value)
+    if not percents:
+        return values, None
+    if len(percents) < (~is_missing(values)).sum():
+        problem = f"{len(percents)} of {pluralise(len(cells), 'value')} are in percent, such as '{percents[0]}'"
+        raise location.at(cells[0].line).error(problem, "give all or none in percent", code="mixed-scales")
+    return values, Scale(PERCENT, percents[0])
+
+
+def _rows_or_columns(grid: Grid) -> Table:
+    """Find the row or the column of wavelengths. Raise `AtlasError` if there is none, or if both may be meant."""
+    header = max(headers(grid), key=lambda header: len(header.nm), default=None)
+    block = max(blocks(grid), key=lambda block: len(block.rows), default=None)
+    if block is None:
+        if header is None:
+            raise _no_table(grid)
+        return spectra_below(grid, header)
+    if header is None or header.at != block.run.first - 1:
+        return spectra_of(block)
+    corner = grid.rows[header.at][block.column]
+    if plain_label(corner.text) in NAME_LABELS:
+        return spectra_below(grid, header)
+    problem = "the first row and the first column may both be wavelengths"
+    raise grid.location.at(corner.line).error(problem, "label the names 'name', or give them letters")
+
+
+def _no_table(grid: Grid) -> AtlasError:
+    """Create the error for a grid without spectra."""
+    if not grid.rows:
+        return grid.location.at(1).error(NO_TABLE, LAYOUT, code="not-an-atlas")
+    columns = [grid.column(column) for column in range(MAX_AXIS)]
+    for cells in (*grid.rows[:MAX_PREAMBLE], *columns):
+        for run in runs(cells):
+            nm = to_nm(run.numbers, run.unit or grid.unit or NANOMETRE)
+            if len(nm) > 2 and (run.prefix or nm.min() >= SHORTEST):
+                problem = f"wavelengths must cover 400–700 nm, got {nm.min():g}–{nm.max():g} nm"
+                hint = "add the missing wavelengths, or state their unit in a label, such as 'Wavelength (µm)'"
+                return grid.location.at(cells[run.first].line).error(problem, hint)
+    first = grid.rows[0]
+    layout = f"a table whose first line has {pluralise(len(first), 'cell')}, '{truncate(line_texts([first])[0])}'"
+    problem = f"{NO_TABLE}: read as {layout}"
+    return grid.location.at(first[0].line).error(problem, LAYOUT, code="not-an-atlas")

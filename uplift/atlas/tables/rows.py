@@ -1,0 +1,144 @@
+"""Spectra in rows: a row of wavelengths with a row per spectrum below it, or a row per sample."""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from uplift.atlas.document import truncate
+from uplift.atlas.measurements import not_used_note
+from uplift.atlas.statements import (
+    METRE,
+    NANOMETRE,
+    find_unit,
+    is_photometric,
+    is_plain,
+    names_wavelengths,
+    to_nm,
+    unit_by_values,
+)
+from uplift.atlas.tables.cells import (
+    Cell,
+    Row,
+    Run,
+    covers_visible,
+    is_value,
+    is_visible,
+    line_texts,
+    parse_cell,
+    parse_label,
+    runs,
+)
+from uplift.atlas.tables.grid import MAX_PREAMBLE, NAME_LABELS, Grid, Series, Table, cell_at, plain_label
+from uplift.common.arrays import Array
+from uplift.common.text import pluralise
+
+
+class Header(NamedTuple):
+    """A row of wavelengths: its index, the cells of the wavelengths, and their numbers in nm."""
+
+    at: int
+    run: Run
+    nm: Array
+
+
+def headers(grid: Grid) -> Iterator[Header]:
+    """Yield the indices of rows with wavelengths in nm, and numbers in the row below."""
+    for index, row in enumerate(grid.rows[:MAX_PREAMBLE]):
+        for run in runs(row):
+            nm = to_nm(run.numbers, run.unit or grid.unit or (METRE if max(run.numbers) < 1e-5 else NANOMETRE))
+            below = grid.rows[index + 1][run.first : run.last] if index + 1 < len(grid.rows) else ()
+            numbers = [value for cell in below if (value := parse_cell(cell.text)) is not None]
+            has_values = bool(numbers) and not (len(numbers) > 1 and is_visible(np.array(numbers)))
+            is_named = run.first == 1 and plain_label(row[0].text) in NAME_LABELS and covers_visible(nm)
+            if has_values and (is_visible(nm) or is_named or (run.prefix and len(nm) > 2)):
+                yield Header(index, run, nm)
+
+
+def spectra_below(grid: Grid, wavelengths: Header) -> Table:
+    """Return a spectrum for each row below a row of wavelengths that has a value at one of them."""
+    index, run, nm = wavelengths
+    header = grid.rows[index]
+    remarks = grid.remarks(index)
+    body = list[Row]()
+    for row in grid.rows[index + 1 :]:
+        line = row[0].line
+        if not any(is_value(cell.text) for cell in row[run.first : run.last]):
+            remarks += line_texts([row])
+            continue
+        if len(row) > len(header):
+            problem = f"a row must have {pluralise(len(header), 'cell')} like the header row, got {len(row)}"
+            hint = "put a name that contains the separator in quotes, or remove the other cells"
+            raise grid.location.at(line).error(problem, hint)
+        body.append((*row, *[Cell("", line)] * (len(header) - len(row))))
+    others = [*range(run.first), *range(run.last, len(header))]
+    column = _name_column(header, body, others)
+    label = header[run.first].text if run.prefix else ""
+    series = list[Series]()
+    for number, row in enumerate(body, 1):
+        name = Cell(f"sample {number}", row[0].line) if column is None else row[column]
+        series.append(Series(label, nm.tolist(), row[run.first : run.last], name))
+    unused = [header[other].text for other in others if other != column]
+    remarks += filter(is_photometric, unused)
+    if column is not None:
+        remarks.append(header[column].text)
+    return Table(series, remarks, ("layout: a row per spectrum", *not_used_note(unused)))
+
+
+def _name_column(header: Row, body: Sequence[Row], others: Sequence[int]) -> int | None:
+    """Return the column of the names: that of a usual label whose texts differ, or else the first one."""
+    # Labels that state a name come before those of numbers, unless they repeat a name.
+    labels = {index: plain_label(header[index].text) for index in others}
+    known = [index for wanted in NAME_LABELS for index, label in labels.items() if label == wanted]
+    for index in known:
+        names = [row[index].text for row in body]
+        if all(names) and len(set(names)) == len(names):
+            return index
+    return next(iter((*known, *others)), None)
+
+
+def find_samples(grid: Grid) -> Table | None:
+    """Read a table with a row per sample: a name, a wavelength and a reflectance, in any order of columns."""
+    for index, header in enumerate(grid.rows[:MAX_PREAMBLE]):
+        if is_value(header[-1].text):
+            continue
+        name = _first(header, lambda text: plain_label(text) in NAME_LABELS)
+        wavelength = _first(header, names_wavelengths)
+        value = _first(header, lambda text: is_plain(text) or text in ("R", "r"))
+        if name is not None and wavelength is not None and value is not None:
+            return _sample_table(grid, index, (name, wavelength, value))
+    return None
+
+
+def _first(header: Row, is_wanted: Callable[[str], bool]) -> int | None:
+    """Return the first column whose label is wanted."""
+    return next((column for column, cell in enumerate(header) if is_wanted(cell.text)), None)
+
+
+def _sample_table(grid: Grid, index: int, columns: tuple[int, int, int]) -> Table | None:
+    """Return a spectrum for each name in the first of three columns; the header is the row of an index."""
+    header = grid.rows[index]
+    remarks = grid.remarks(index)
+    found: dict[str, list[tuple[float, Cell]]] = {}
+    for row in grid.rows[index + 1 :]:
+        name, wavelength, value = [cell_at(row, column) for column in columns]
+        label = parse_label(wavelength.text)
+        if label is not None:
+            found.setdefault(name.text, []).append((label.number, value))
+        elif is_value(value.text):
+            problem = f"wavelength '{truncate(wavelength.text)}' is not a number"
+            raise grid.location.at(row[0].line, name.text).error(problem, "write a plain number such as 400")
+        else:
+            remarks += line_texts([row])
+    are_measured = any(is_value(name) and not name.isdigit() for name in found)
+    if not found or are_measured or min(map(len, found.values())) < 2:  # another layout
+        return None
+    numbers = [number for samples in found.values() for number, _ in samples]
+    _, wavelength_column, value_column = columns
+    unit = find_unit(header[wavelength_column].text) or grid.unit or unit_by_values(np.unique(numbers))
+    series = list[Series]()
+    for text, samples in found.items():
+        nm = to_nm([number for number, _ in samples], unit).tolist()
+        cells = tuple(cell for _, cell in samples)
+        series.append(Series(header[value_column].text, nm, cells, Cell(text, cells[0].line)))
+    return Table(series, remarks, ("layout: a row per sample",))
