@@ -20,7 +20,7 @@ from uplift.atlas import (
     write_atlas,
 )
 from uplift.atlas.document import SourceLocation
-from uplift.atlas.measurements import Spectrum
+from uplift.atlas.samples import Spectrum
 from uplift.common.errors import AtlasError, UnknownNameError
 
 RED = Entry("red", [400, 550, 700], [0.0, 0.0, 1.0])

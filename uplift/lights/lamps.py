@@ -9,7 +9,8 @@ import numpy as np
 from uplift.atlas.atlas import Atlas, Entry, merge, skipped_warning
 from uplift.atlas.document import Document, SourceLocation, truncate
 from uplift.atlas.formats import read_any
-from uplift.atlas.measurements import Measurements, is_missing, to_atlas
+from uplift.atlas.measurements import Measurements, to_atlas
+from uplift.atlas.samples import is_missing
 from uplift.atlas.sources import find_atlas_file, read_named
 from uplift.colorimetry import tables
 from uplift.colorimetry.lights import Illuminant, Lamp

@@ -5,7 +5,8 @@ from typing import Any
 
 from uplift.atlas.atlas import Header, SkippedEntry
 from uplift.atlas.document import Document, one_line
-from uplift.atlas.measurements import Measurements, Spectrum, not_used_note, parsed_by
+from uplift.atlas.measurements import Measurements, not_used_note, parsed_by
+from uplift.atlas.samples import Spectrum
 from uplift.atlas.statements import Quantity, Scale
 from uplift.common.text import listed
 

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from uplift.atlas.document import MAX_BYTES, Document, SourceLocation, check_scale, one_line, stated_unit
-from uplift.atlas.measurements import Measurements, Spectrum, parsed_by
+from uplift.atlas.measurements import Measurements, parsed_by
+from uplift.atlas.samples import Spectrum
 from uplift.atlas.statements import Quantity, Scale, remark_quantity, remark_scale, to_nm, unit_by_values
 from uplift.common.errors import AtlasError
 from uplift.common.files import read_bytes

@@ -7,7 +7,8 @@ import re
 import numpy as np
 
 from uplift.atlas.document import EXPORT, Document, one_line, stated_unit, truncate
-from uplift.atlas.measurements import Measurements, Spectrum, parsed_by
+from uplift.atlas.measurements import Measurements, parsed_by
+from uplift.atlas.samples import Spectrum
 from uplift.atlas.statements import Quantity, Scale, label_quantity, label_scale, to_nm
 from uplift.common.text import pluralise
 

@@ -1,7 +1,8 @@
 """Reader of IES TM-27-14 (``.spdx``), by colour-science."""
 
 from uplift.atlas.document import Document, one_line
-from uplift.atlas.measurements import Measurements, Spectrum, parsed_by
+from uplift.atlas.measurements import Measurements, parsed_by
+from uplift.atlas.samples import Spectrum
 from uplift.atlas.statements import Quantity
 from uplift.common.colour_science import colour_science
 

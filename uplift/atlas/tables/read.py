@@ -5,7 +5,8 @@ each spectrum. All else is text: preamble, comments, lines below. It states scal
 """
 
 from uplift.atlas.document import SourceLocation, truncate
-from uplift.atlas.measurements import Measurements, Spectrum, is_missing
+from uplift.atlas.measurements import Measurements
+from uplift.atlas.samples import Spectrum, is_missing
 from uplift.atlas.statements import (
     NANOMETRE,
     PERCENT,

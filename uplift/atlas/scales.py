@@ -1,0 +1,84 @@
+"""The scale of the values of a file: as given, as the file states, or by the values."""
+
+import warnings
+from collections.abc import Sequence
+
+import numpy as np
+
+from uplift.atlas.atlas import HIGHEST
+from uplift.atlas.document import SourceLocation, truncate
+from uplift.atlas.samples import Samples
+from uplift.atlas.statements import PERCENT, Scale
+from uplift.common.errors import UpliftWarning
+
+GIVEN = {"percent": "percent", "fraction": "0 to 1"}
+WHICH_SCALE = "pass measured='percent' or measured='fraction'"
+DARKEST = 1.0
+"""A row of a table in percent whose values are all below this number is darker than any common material."""
+JUMP, FLOOR = 30.0, 0.1
+"""Ratio of neighbouring samples that no reflectance has, and the smallest divisor in units of the table."""
+
+
+def find_scale(
+    location: SourceLocation, stated: Sequence[Scale], samples: Sequence[Samples], measured: str
+) -> tuple[float, str]:
+    """Return the divisor of all values, and a note about it. What is stated wins over what the values suggest."""
+    if measured != "auto":
+        return PERCENT if measured == "percent" else 1.0, f"scale: {GIVEN[measured]}, as given"
+    used = [each.used() for each in samples]
+    highest = [float(each.values.max(initial=0)) for each in used]
+    top = max(highest, default=0.0)
+    first = stated[0] if stated else None
+    if first is not None:
+        others = [scale for scale in stated if scale.divisor != first.divisor]
+        if others:
+            problem = f"the file states two scales: '{truncate(first.text)}' and '{truncate(others[0].text)}'"
+            raise location.error(problem, WHICH_SCALE, code="scales-contradict")
+        if top > HIGHEST * first.divisor and first.divisor == 1:
+            problem = f"the file states '{truncate(first.text)}', and has values up to {top:g}"
+            raise location.error(problem, WHICH_SCALE, code="scales-contradict")
+        if first.divisor == PERCENT and top <= DARKEST and samples:
+            problem = f"no value exceeds {top:g} percent, as the file states '{truncate(first.text)}'"
+            hint = "pass measured='fraction' if they are from 0 to 1"
+            warnings.warn(UpliftWarning(problem, code="dark-percent", path=location.path, hint=hint), stacklevel=4)
+        return first.divisor, f"scale: 0 to {first.divisor:g}, as stated: '{truncate(first.text)}'"
+    if top > HIGHEST:
+        _check_one_scale(location, used, highest)
+        problem = f"values up to {top:g} are read as percent and divided by 100"
+        entry = used[int(np.argmax(highest))].spectrum.name
+        warnings.warn(UpliftWarning(problem, code="values-in-percent", path=location.path, entry=entry), stacklevel=4)
+        return PERCENT, f"scale: percent, by values up to {top:g}"
+    everything = np.concatenate([np.empty(0), *(each.values for each in used)])
+    if (everything > 1).sum() * 2 > len(everything):
+        problem = f"most values exceed 1, up to {top:g}, and no scale is stated"
+        raise location.error(problem, WHICH_SCALE, code="scale-not-stated")
+    return 1.0, f"scale: 0 to 1, assumed: none is stated, and the largest value is {top:g}"
+
+
+def _check_one_scale(location: SourceLocation, samples: Sequence[Samples], highest: Sequence[float]) -> None:
+    """Raise `AtlasError` for a row in units of 1 among rows in percent, or the reverse, or within one row."""
+    problem, odd = "", samples[0].spectrum
+    # A row that never exceeds 1, where others are in percent, is in units of 1, or the reverse; the minority is named.
+    dark = [row for row, top in enumerate(highest) if top <= DARKEST]
+    if dark:
+        light = [row for row, top in enumerate(highest) if top > HIGHEST]
+        (row, *_), (usual, *_) = sorted((dark, light), key=len)
+        odd = samples[row].spectrum
+        name = truncate(samples[usual].spectrum.name)
+        problem = f"values up to {highest[row]:g}, where '{name}' has up to {highest[usual]:g}"
+    for each in samples:
+        # Neighbours that differ by more than JUMP, one of them within [0, 1], and the other one in percent.
+        low = np.minimum(each.values[:-1], each.values[1:])
+        high = np.maximum(each.values[:-1], each.values[1:])
+        jumps = np.flatnonzero((low <= DARKEST) & (high > HIGHEST) & (high / JUMP > np.maximum(low, FLOOR)))
+        if len(jumps):
+            at = jumps[0]
+            odd = each.spectrum
+            problem = f"{each.values[at]:g}, then {each.values[at + 1]:g}, at {each.nm[at + 1]:g} nm"
+            break
+    if problem:
+        raise location.at(odd.line, odd.name).error(
+            f"mixed scales of percent and 0 to 1: {problem}",
+            "correct the row, or pass measured='percent' or measured='fraction' if it is right",
+            code="mixed-scales",
+        )
