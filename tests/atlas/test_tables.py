@@ -276,6 +276,16 @@ def test_tables_that_may_mean_two_things_are_refused(save, text):
         read_atlas(save(text))
 
 
+@pytest.mark.parametrize(
+    ("text", "line"), [("a,b\nc,d\n1,x\n2,y\n", 3), ("hello\nworld\n", 1), ("name,400,x,700\na,1,1,1\n", 1)]
+)
+def test_errors_show_the_line_that_was_not_understood(save, text, line):
+    with raises(AtlasError, "not-an-atlas") as caught:
+        read_atlas(save(text))
+    assert caught.value.line == line
+    assert text.split("\n")[line - 1].replace(",", " ") in caught.value.problem
+
+
 def test_values_without_their_wavelengths(tmp_path):
     (tmp_path / "a.txt").write_text("a paint\n" + "".join(f"{value}\n" for value in VALUES))
     with raises(AtlasError, "not-an-atlas"):

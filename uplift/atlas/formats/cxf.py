@@ -68,7 +68,10 @@ def _content(cxf: Any, path: str) -> Measurements:
     # the schema has values in (−0.1, 3); some programs write percent
     is_of_schema = all(-0.1 < value < 3 for spectrum in spectra for value in spectrum.values)
     scales = (Scale(1.0, "the schema of CxF3"),) if is_of_schema else ()
-    measured_as = (f"measurement conditions: {listed(sorted(conditions))}",) if conditions else ()
+    measured_as = tuple[str, ...]()
+    if conditions:
+        alike = "; the entries of an object are nearly the same" if len(conditions) > 1 else ""
+        measured_as = (f"measurement conditions: {listed(sorted(conditions))}{alike}",)
     notes = ("layout: an object per spectrum", *measured_as, *not_used_note(sorted(colours)))
     return Measurements(tuple(spectra), skipped=tuple(skipped), scales=scales, header=header, notes=notes)
 

@@ -18,7 +18,7 @@ from uplift.atlas.statements import (
     remark_scale,
     to_nm,
 )
-from uplift.atlas.tables.cells import SHORTEST, Cell, Row, line_texts, parse_cell, runs
+from uplift.atlas.tables.cells import SHORTEST, Cell, Row, is_value, line_texts, parse_cell, runs
 from uplift.atlas.tables.columns import blocks, spectra_of
 from uplift.atlas.tables.grid import LAYOUT, MAX_AXIS, MAX_PREAMBLE, NAME_LABELS, Grid, Table, plain_label
 from uplift.atlas.tables.rows import find_samples, headers, spectra_below
@@ -103,7 +103,8 @@ def _no_table(grid: Grid) -> AtlasError:
                 problem = f"wavelengths must cover 400–700 nm, got {nm.min():g}–{nm.max():g} nm"
                 hint = "add the missing wavelengths, or state their unit in a label, such as 'Wavelength (µm)'"
                 return grid.location.at(cells[run.first].line).error(problem, hint)
-    first = grid.rows[0]
-    layout = f"a table whose first line has {pluralise(len(first), 'cell')}, '{truncate(line_texts([first])[0])}'"
-    problem = f"{NO_TABLE}: read as {layout}"
+    # A line with numbers was meant to be understood.
+    first = next((row for row in grid.rows if any(is_value(cell.text) for cell in row)), grid.rows[0])
+    text = truncate(line_texts([first])[0])
+    problem = f"{NO_TABLE}; read as a table, this line has {pluralise(len(first), 'cell')}: '{text}'"
     return grid.location.at(first[0].line).error(problem, LAYOUT, code="not-an-atlas")
