@@ -64,6 +64,7 @@ def test_a_stated_percentage_wins_over_small_values(save, text):
         ("nm,R (0-1)\n" + lines(factor=100), "scales-contradict"),
         ("# values in percent\nnm,R (fraction)\n" + lines(), "scales-contradict"),
         (HEADER + row("a").replace("0.", "1."), "scale-not-stated"),
+        (lines("{:g} {:g}", 8), "scale-not-stated"),  # a lamp, perhaps
     ],
 )
 def test_contradictions_and_doubts_are_refused(save, text, code):

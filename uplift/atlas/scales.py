@@ -15,6 +15,8 @@ GIVEN = {"percent": "percent", "fraction": "0 to 1"}
 WHICH_SCALE = "pass measured='percent' or measured='fraction'"
 DARKEST = 1.0
 """A row of a table in percent whose values are all below this number is darker than any common material."""
+DIM = 5.0
+"""Largest value in percent that is too small to tell dark samples from other quantities."""
 JUMP, FLOOR = 30.0, 0.1
 """Ratio of neighbouring samples that no reflectance has, and the smallest divisor in units of the table."""
 
@@ -42,6 +44,9 @@ def find_scale(
             hint = "pass measured='fraction' if they are from 0 to 1"
             warnings.warn(UpliftWarning(problem, code="dark-percent", path=location.path, hint=hint), stacklevel=4)
         return first.divisor, f"scale: 0 to {first.divisor:g}, as stated: '{truncate(first.text)}'"
+    if HIGHEST < top <= DIM:
+        problem = f"values up to {top:g} may be dark samples in percent, or another quantity, and no scale is stated"
+        raise location.error(problem, WHICH_SCALE, code="scale-not-stated")
     if top > HIGHEST:
         _check_one_scale(location, used, highest)
         problem = f"values up to {top:g} are read as percent and divided by 100"
