@@ -16,7 +16,7 @@ WHICH_SCALE = "pass measured='percent' or measured='fraction'"
 DARKEST = 1.0
 """A row of a table in percent whose values are all below this number is darker than any common material."""
 DIM = 5.0
-"""Largest value in percent that is too small to tell dark samples from other quantities."""
+"""Largest value in percent of dark samples that may be another quantity."""
 JUMP, FLOOR = 30.0, 0.1
 """Ratio of neighbouring samples that no reflectance has, and the smallest divisor in units of the table."""
 
