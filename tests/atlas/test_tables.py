@@ -294,7 +294,9 @@ def test_values_without_their_wavelengths(tmp_path):
     for name in ("Wavelengths_1.txt", "Wavelengths_2.txt"):
         (tmp_path / name).write_text("Wavelengths in microns\n" + "".join(f"{at / 1000}\n" for at in NM))
         if name == "Wavelengths_1.txt":
-            check_values(read_atlas(tmp_path / "a.txt"))
+            atlas = read_atlas(tmp_path / "a.txt")
+            check_values(atlas)
+            assert any(name in note for note in atlas.sources[0].notes)
     with raises(AtlasError, "not-an-atlas"):  # which of the two?
         read_atlas(tmp_path / "a.txt")
 

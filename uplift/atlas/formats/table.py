@@ -1,9 +1,10 @@
-"""Delimited text: rows of cells, whose spectra `grid` finds."""
+"""Delimited text: rows of cells, whose spectra `read_grid` finds."""
 
 import csv
 import io
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,13 +19,13 @@ from uplift.common.csv import csv_text, find_delimiter, plain_cell
 from uplift.common.errors import OutputError
 from uplift.common.text import pluralise
 
-DELIMITERS, BLANKS = ",;\t", " "
-"""Delimiters of cells; the last one stands for any number of blanks."""
+BLANKS = " "
+"""Delimiter that stands for any number of blanks."""
 SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
 """First line of a table that states its delimiter to spreadsheets."""
 SAMPLE_ROWS = 200
 """Rows by which the delimiter is chosen."""
-WAVELENGTHS = "*[Ww]avelength*"
+WAVELENGTHS = "*[Ww]avelength*.txt"
 """Names of files of wavelengths, one a line below a title."""
 
 
@@ -36,20 +37,26 @@ def read(document: Document) -> Measurements:
     except (csv.Error, ValueError) as error:
         raise document.location.error(f"not a readable table: {error}", LAYOUT) from None
     numbers = [row for row in rows if is_value(row[0].text)]
-    if len(numbers) > 1 and max(map(len, numbers)) == 1:
-        title = next((text for text in line_texts(rows) if not is_value(text)), document.stem)
-        rows = _with_wavelengths(document, title, numbers)
-    return read_grid(Grid(rows, document.location, comments), document.stem)
+    if len(numbers) < 2 or max(map(len, numbers)) > 1:
+        return read_grid(Grid(rows, document.location, comments), document.stem)
+    title = next((text for text in line_texts(rows) if not is_value(text)), document.stem)
+    name, rows = _with_wavelengths(document, title, numbers)
+    found = read_grid(Grid(rows, document.location, comments), document.stem)
+    return replace(found, notes=(*found.notes, f"wavelengths: those of {name}"))
 
 
-def _with_wavelengths(document: Document, title: str, values: Sequence[Row]) -> list[Row]:
-    """Join values, one a line, with the wavelengths of another file, as the library of the USGS has them."""
-    found = list[list[Row]]()
+def _with_wavelengths(document: Document, title: str, values: Sequence[Row]) -> tuple[str, list[Row]]:
+    """Join values, one a line, with the wavelengths of another file, as the library of the USGS has them.
+
+    Return the name of this file, and the rows.
+    """
+    found = list[tuple[str, list[Row]]]()
     for path in sorted(Path(document.path).parent.glob(WAVELENGTHS)):
         head, *lines = read_document(path).text.strip().split("\n")
         if len(lines) == len(values) and path != Path(document.path):
             rows = [(Cell(line.strip(), row[0].line), *row) for line, row in zip(lines, values, strict=True)]
-            found.append([(Cell(f"Wavelengths: {head}", 1), Cell(title, 1)), *rows])
+            labels = Cell(f"Wavelengths: {head}", 1), Cell(title, 1)
+            found.append((path.name, [labels, *rows]))
     if len(found) != 1:
         problem = f"has {pluralise(len(values), 'value')} without wavelengths, one a line"
         hint = "put the file of their wavelengths, with 'Wavelengths' in its name and as many lines, next to it"
