@@ -123,15 +123,15 @@ def remark_scale(text: str) -> Scale | None:
 
 
 def label_quantity(text: str) -> Quantity | None:
-    """Return the quantity that the label of values states; reflectance wins over others.
+    """Return the quantity that the label of values states; that of a material wins over that of a light.
 
     >>> [found and found.name for found in map(label_quantity, ("%T", "R [%]", "SPD", "ochre"))]
     ['transmittance', 'reflectance', 'spd', None]
     """
-    if _MATERIAL.search(text) is None and _REFLECTANCE.search(text):
-        return Quantity("reflectance", text)
     if found := _MATERIAL.search(text):
         return Quantity(found[0].lower(), text)
+    if _REFLECTANCE.search(text):
+        return Quantity("reflectance", text)
     if found := _LIGHT.search(text):
         return Quantity(found[0].lower(), text, of_light=True)
     if _TRANSMITTANCE.fullmatch(text):
@@ -150,15 +150,17 @@ def name_quantity(text: str) -> Quantity | None:
 
 
 def remark_quantity(texts: Iterable[str]) -> Quantity | None:
-    """Return the quantity that lines of text state; reflectance wins, then the keys of light meters."""
+    """Return reflectance if a line of text states it, else the first other quantity that one states."""
     others = list[Quantity]()
     for text in texts:
         if _REFLECTANCE.search(text):
             return Quantity("reflectance", text)
         if _PHOTOMETRIC.fullmatch(text):
             others.append(Quantity("the measurement of a light", text, of_light=True))
-        elif found := _LIGHT.search(text) or _MATERIAL.search(text):
-            others.append(Quantity(found[0].lower(), text, of_light=bool(_LIGHT.search(text))))
+        elif found := _LIGHT.search(text):
+            others.append(Quantity(found[0].lower(), text, of_light=True))
+        elif found := _MATERIAL.search(text):
+            others.append(Quantity(found[0].lower(), text))
     return others[0] if others else None
 
 
