@@ -98,19 +98,13 @@ def blocks(grid: Grid) -> Iterator[Block]:
                 yield block
 
 
-def spectra_of(block: Block) -> Table:
-    """Return a spectrum for each column of values of a block."""
-    notes = ["layout: wavelength and value" if block.width == 2 else "layout: a column per spectrum"]
-    skipped = list[SkippedEntry]()
-    for other in blocks(block.grid):
-        if other.column == block.column and other.run != block.run:
-            line = other.rows[0][0].line
-            reason = "a file has one table: write it to another file"
-            skipped.append(SkippedEntry(f"lines from {line} on", reason, block.grid.location.path, line))
-    axes = _axes(block)
+def spectra_of(block: Block, others: Sequence[Block]) -> Table:
+    """Return a spectrum for each column of values of a block; the ``others`` of the file are skipped."""
     if pairs := _pairs(block):
         return Table([pairs], block.remarks, ("layout: several pairs a line",))
-    series, unused = list[Series](), list[str]()
+    series = list[Series]()
+    unused = list[str]()
+    axes = _axes(block)
     axis = block.column
     prefix = block.rows[0][axis].text if block.run.prefix else ""
     for column in range(block.width):
@@ -126,16 +120,28 @@ def spectra_of(block: Block) -> Table:
             continue
         if axis != block.column:  # the name may stand above the wavelengths
             labels = [cell for cell in block.labels(axis) if not names_wavelengths(cell.text)] + labels
-        # Names stand next to the values, or above their quantity and unit.
         if block.heads and not labels:
             problem = f"column {column + 1} has values and no label"
             hint = "label it, and use another separator than the decimal comma"
             raise block.grid.location.at(cells[0].line).error(problem, hint)
-        names = [cell for cell in reversed(labels) if not is_plain(cell.text)]
-        name = next((cell for cell in names if len(cell.text) > 1), next(iter(names), None))
         known = np.flatnonzero(np.isfinite(axes[axis])).tolist()
-        series.append(Series(label, axes[axis][known].tolist(), tuple(cells[row] for row in known), name))
-    return Table(series, block.remarks, (*notes, *not_used_note(unused)), tuple(skipped))
+        values = tuple(cells[row] for row in known)
+        series.append(Series(label, axes[axis][known].tolist(), values, _name(labels)))
+    layout = "layout: wavelength and value" if block.width == 2 else "layout: a column per spectrum"
+    return Table(series, block.remarks, (layout, *not_used_note(unused)), tuple(map(_skipped, others)))
+
+
+def _name(labels: Sequence[Cell]) -> Cell | None:
+    """Return the label that names a sample: the lowest one, as it stands above quantity and unit; None for none."""
+    names = [cell for cell in reversed(labels) if not is_plain(cell.text)]
+    return next((cell for cell in names if len(cell.text) > 1), next(iter(names), None))
+
+
+def _skipped(block: Block) -> SkippedEntry:
+    """Return the entry that stands for a further table of a file."""
+    line = block.rows[0][0].line
+    reason = "a file has one table: write it to another file"
+    return SkippedEntry(f"lines from {line} on", reason, block.grid.location.path, line)
 
 
 def _axes(block: Block) -> dict[int, Array]:

@@ -77,13 +77,15 @@ def _values(cells: Row, location: SourceLocation) -> tuple[list[float], Scale | 
 def _rows_or_columns(grid: Grid) -> Table:
     """Find the row or the column of wavelengths. Raise `AtlasError` if there is none, or if both may be meant."""
     header = max(headers(grid), key=lambda header: len(header.nm), default=None)
-    block = max(blocks(grid), key=lambda block: len(block.rows), default=None)
+    found = list(blocks(grid))
+    block = max(found, key=lambda block: len(block.rows), default=None)
     if block is None:
         if header is None:
             raise _no_table(grid)
         return spectra_below(grid, header)
     if header is None or header.at != block.run.first - 1:
-        return spectra_of(block)
+        others = [other for other in found if other.column == block.column and other is not block]
+        return spectra_of(block, others)
     corner = grid.rows[header.at][block.column]
     if plain_label(corner.text) in NAME_LABELS:
         return spectra_below(grid, header)
