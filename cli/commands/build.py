@@ -239,9 +239,8 @@ def command(
 def _print_assumptions(atlas: Atlas | None) -> None:
     """Print the scale of files that state none."""
     for source in () if atlas is None else atlas.sources:
-        for note in source.notes:
-            if "assumed" in note:
-                paragraph(f"{source.name}: {note}")
+        for note in source.assumptions:
+            paragraph(f"{source.name}: {note}")
 
 
 def _default_name(atlases: tuple[str, ...], images: tuple[str, ...], settings: dict[str, Any]) -> str:

@@ -27,6 +27,9 @@ LONGEST = 1e6
 SLACK = 1e-6
 """Tolerance in nm for the ends of a range, as start + n × increment is rounded."""
 
+ASSUMED = ", assumed: "
+"""Part of a note on what a file does not state."""
+
 MAX_NAME = 1000
 """Characters of a name."""
 NOTEBOOK = "uplift.viz.notebook"
@@ -177,6 +180,11 @@ class Source:
     measured: str = "auto"
     notes: tuple[str, ...] = ()
     missing: str = "refuse"
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """Notes on what the file does not state."""
+        return tuple(note for note in self.notes if ASSUMED in note)
 
     def changed_options(self) -> dict[str, str]:
         """Return the options of reading that the caller gave.

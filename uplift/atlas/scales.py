@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from uplift.atlas.atlas import HIGHEST
+from uplift.atlas.atlas import ASSUMED, HIGHEST
 from uplift.atlas.document import SourceLocation, truncate
 from uplift.atlas.samples import Samples
 from uplift.atlas.statements import PERCENT, Scale
@@ -30,20 +30,14 @@ def find_scale(
     used = [each.used() for each in samples]
     highest = [float(each.values.max(initial=0)) for each in used]
     top = max(highest, default=0.0)
-    first = stated[0] if stated else None
-    if first is not None:
-        others = [scale for scale in stated if scale.divisor != first.divisor]
-        if others:
-            problem = f"the file states two scales: '{truncate(first.text)}' and '{truncate(others[0].text)}'"
-            raise location.error(problem, WHICH_SCALE, code="scales-contradict")
-        if top > HIGHEST * first.divisor and first.divisor == 1:
-            problem = f"the file states '{truncate(first.text)}', and has values up to {top:g}"
-            raise location.error(problem, WHICH_SCALE, code="scales-contradict")
-        if first.divisor == PERCENT and top <= DARKEST and samples:
-            problem = f"no value exceeds {top:g} percent, as the file states '{truncate(first.text)}'"
+    if stated:
+        _check_statements(location, stated, top)
+        text = truncate(stated[0].text)
+        if stated[0].divisor == PERCENT and top <= DARKEST and samples:
+            problem = f"no value exceeds {top:g} percent, as the file states '{text}'"
             hint = "pass measured='fraction' if they are from 0 to 1"
             warnings.warn(UpliftWarning(problem, code="dark-percent", path=location.path, hint=hint), stacklevel=4)
-        return first.divisor, f"scale: 0 to {first.divisor:g}, as stated: '{truncate(first.text)}'"
+        return stated[0].divisor, f"scale: 0 to {stated[0].divisor:g}, as stated: '{text}'"
     if HIGHEST < top <= DIM:
         problem = f"values up to {top:g} may be dark samples in percent, or another quantity, and no scale is stated"
         raise location.error(problem, WHICH_SCALE, code="scale-not-stated")
@@ -57,7 +51,21 @@ def find_scale(
     if (everything > 1).sum() * 2 > len(everything):
         problem = f"most values exceed 1, up to {top:g}, and no scale is stated"
         raise location.error(problem, WHICH_SCALE, code="scale-not-stated")
-    return 1.0, f"scale: 0 to 1, assumed: none is stated, and the largest value is {top:g}"
+    return 1.0, f"scale: 0 to 1{ASSUMED}none is stated, and the largest value is {top:g}"
+
+
+def _check_statements(location: SourceLocation, stated: Sequence[Scale], top: float) -> None:
+    """Raise `AtlasError` if statements contradict each other, or the largest value."""
+    first = stated[0]
+    text = truncate(first.text)
+    others = [scale for scale in stated if scale.divisor != first.divisor]
+    problem = ""
+    if others:
+        problem = f"the file states two scales: '{text}' and '{truncate(others[0].text)}'"
+    elif first.divisor == 1 and top > HIGHEST:
+        problem = f"the file states '{text}', and has values up to {top:g}"
+    if problem:
+        raise location.error(problem, WHICH_SCALE, code="scales-contradict")
 
 
 def _check_one_scale(location: SourceLocation, samples: Sequence[Samples], highest: Sequence[float]) -> None:
