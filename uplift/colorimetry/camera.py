@@ -96,7 +96,7 @@ def camera_sensor(camera: Camera, standard: Sensor) -> Sensor:
 
 
 def read_camera(path: StrPath) -> Camera:
-    """Read the sensitivities of a file, of the name of which is that of the camera.
+    """Read the sensitivities of a file, whose name without the suffix is that of the camera.
 
     Rows of a table have a wavelength in nm, red, green and blue, separated by commas, semicolons, tabs or blanks, with
     decimal points or commas, in ascending or descending order. Rows before them with fewer than two numbers are
