@@ -107,14 +107,13 @@ def samples(kind: str, name: Illuminant, start: float = START, end: float = END,
     Outside its table a spectrum keeps its last value, as CIE 15 has it for lights, and one of `RESPONSES` is 0.
     ``kind`` is one of the keys of `TABLES`, such as ``"display"`` for the power of the primaries of a display.
     """
-    wavelengths = np.arange(start, end + step / 2, step)
     if isinstance(name, Lamp):
-        values = name.at(wavelengths)
+        values = name.at(np.arange(start, end + step / 2, step))
         values.setflags(write=False)
         return values
     name, kelvin = lights.standard_name(name) if kind == "illuminant" else (name, None)
     if kelvin is not None and kelvin < lights.DAYLIGHT_FROM:
-        values = lights.black_body(kelvin, wavelengths)
+        values = lights.black_body(kelvin, np.arange(start, end + step / 2, step))
     elif kind in SPECTRA and (start, end, step) == WAVELENGTHS and name in names(kind):
         values = _file()[f"{kind}: samples"][names(kind).index(name)]
     else:
@@ -167,7 +166,10 @@ def look_up(kind: str, name: str) -> Any:
     except KeyError:
         if kind in FILES and os.path.isfile(name):
             raise UnknownNameError(f"unknown {kind} '{name}', which is a file", hint=FILES[kind]) from None
-        raise unknown_name(name, known, kind, f"tables.names('{kind}')") from None
+        error = unknown_name(name, known, kind, f"tables.names('{kind}')")
+        if kind in FILES and os.path.splitext(name)[1][1:2].isalpha():
+            error.problem += ", and there is no such file"
+        raise error from None
 
 
 def _of_temperature(kelvin: float, name: str) -> Any:
