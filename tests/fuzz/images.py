@@ -282,6 +282,16 @@ EXIF_TAGS = {
 }
 
 
+def draw_exif(random: Random, chance: float, stated: list[Space | None]) -> tuple[Any, Any, str]:
+    """Draw the EXIF tags ColorSpace and interoperability index, by a chance, and add the space that they state."""
+    if random.random() >= chance:
+        return None, None, ""
+    name = choose(random, list(EXIF_TAGS))
+    exif, index, space = EXIF_TAGS[name]
+    stated.insert(0 if name in ("R03", "2") else len(stated), space)
+    return exif, index, f" EXIF {name}"
+
+
 def draw_tiff(random: Random, folder: Path) -> Drawn:
     """Draw a TIFF file."""
     dtype = choose(random, ("uint8", "uint16", "float32"))
@@ -292,12 +302,8 @@ def draw_tiff(random: Random, folder: Path) -> Drawn:
     tags, stated, text = draw_tags(random, bits)
     if channels == 4:
         tags[338] = (3, [2])  # straight alpha
-    exif, index = None, None
-    if random.random() < 0.4:
-        name = choose(random, list(EXIF_TAGS))
-        exif, index, space = EXIF_TAGS[name]
-        stated.insert(0 if name in ("R03", "2") else len(stated), space)
-        text += f" EXIF {name}"
+    exif, index, words = draw_exif(random, 0.4, stated)
+    text += words
     if random.random() < 0.2:
         name = choose(random, ("P3", "Adobe"))
         tags[34675] = (7, PROFILES[name][0])
@@ -318,12 +324,8 @@ def draw_jpeg(random: Random, folder: Path) -> Drawn:
     image = Image.fromarray(np.tile(random.integers(0, 256, 3, dtype=np.uint8), (8, 8, 1)))
     tags, stated, text = draw_tags(random, 8)
     settings: dict[str, Any] = {"quality": 100, "subsampling": 0}
-    exif, index = None, None
-    if random.random() < 0.6:
-        name = choose(random, list(EXIF_TAGS))
-        exif, index, space = EXIF_TAGS[name]
-        stated.insert(0 if name in ("R03", "2") else len(stated), space)
-        text += f" EXIF {name}"
+    exif, index, words = draw_exif(random, 0.6, stated)
+    text += words
     order = choose(random, "<>")
     settings["exif"] = b"Exif\0\0" + files.tiff_bytes(None, tags, order, exif, index)
     if random.random() < 0.3:
