@@ -168,7 +168,7 @@ def look_up(kind: str, name: str) -> Any:
             raise UnknownNameError(f"unknown {kind} '{name}', which is a file", hint=FILES[kind]) from None
         error = unknown_name(name, known, kind, f"tables.names('{kind}')")
         if kind in FILES and os.path.splitext(name)[1][1:2].isalpha():
-            error.problem += ", and there is no such file"
+            error.problem += ", and no file has this name"
         raise error from None
 
 
